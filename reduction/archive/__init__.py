@@ -1,0 +1,1 @@
+"""Edge: reduced tests to CF netCDF and back."""

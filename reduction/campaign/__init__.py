@@ -1,0 +1,1 @@
+"""Edge: campaign.toml, its tests and its marks, validated."""

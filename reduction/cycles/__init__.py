@@ -1,0 +1,1 @@
+"""Stage: reversals, cycles, branches and closed loops."""

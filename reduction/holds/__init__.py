@@ -1,0 +1,1 @@
+"""Stage: relaxation at constant length and creep at constant tension."""

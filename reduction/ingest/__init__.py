@@ -1,0 +1,1 @@
+"""Edge: raw logs in declared layouts to records in SI."""

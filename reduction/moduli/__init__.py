@@ -1,0 +1,1 @@
+"""Stage: tangent, secant and segment moduli, and what follows from them."""

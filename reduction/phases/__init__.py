@@ -1,0 +1,1 @@
+"""Stage: where the crosshead stands still, and what kind of standing it is."""

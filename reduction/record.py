@@ -1,0 +1,250 @@
+"""What the stages hand to each other at the start of the way: specimens, marks, records.
+
+Everything is SI: metre, newton, second, pascal, and 1 for strain.  Objects are
+frozen and their arrays are made non-writeable, so that no stage can change what
+an earlier one said.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from enum import IntFlag
+from math import pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.errors import DataError
+
+__all__ = [
+    "Bools",
+    "Floats",
+    "Integers",
+    "Quality",
+    "Record",
+    "Specimen",
+    "SpliceMarks",
+    "freeze_arrays",
+]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.integer[Any]]
+Bools = NDArray[np.bool_]
+
+
+class Quality(IntFlag):
+    """Masks of `quality_flag`: what is known against a sample.  Nothing is deleted.
+
+    The order is the contract's; the values are powers of two and never change.
+    """
+
+    MISSING = 1
+    GAP = 2
+    REPEATED_OR_BACKWARD_TIME = 4
+    SATURATED = 8
+    STUCK = 16
+    SPIKE = 32
+    OUTSIDE_VERIFIED_RANGE = 64
+    NOT_CONSTANT_RATE = 128
+    RESAMPLED = 256
+    EXTRAPOLATED = 512
+
+
+def freeze_arrays(product: object) -> None:
+    """Make every array field of a dataclass instance non-writeable."""
+    for item in fields(product):  # type: ignore[arg-type]
+        value = getattr(product, item.name)
+        if isinstance(value, np.ndarray):
+            value.setflags(write=False)
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """One tether, hose or rope as it was before the test.
+
+    Parameters
+    ----------
+    name : str
+        Key of the specimen in the campaign.
+    kind : str
+        ``rubber tether``, ``stretch hose``, ``rope``, ``wire`` or ``elastomer``.
+    diameter : tuple of float
+        Readings before stretch; the nominal area uses their mean. Empty where
+        no diameter is known. [m]
+    stretched_diameters : tuple of (float, float)
+        Pairs (strain, diameter) read on the stretched specimen, for the
+        constant-volume check. [1], [m]
+    rated_break_strength : float or None
+        Stated once for a specimen. [N]
+    gauge_length : float or None
+        Distance between gauge marks at zero tension, where marked. [m]
+    """
+
+    name: str
+    kind: str = "rubber tether"
+    material: str = ""
+    condition: str = ""
+    diameter: tuple[float, ...] = ()
+    stretched_diameters: tuple[tuple[float, float], ...] = ()
+    rated_break_strength: float | None = None
+    rated_break_strength_source: str = ""
+    gauge_length: float | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def mean_diameter(self) -> float:
+        """Mean of the diameter readings before stretch. [m]."""
+        if not self.diameter:
+            raise DataError(
+                f"specimen '{self.name}' has no diameter",
+                needed="at least one diameter reading before stretch",
+                hint=f"Give specimens.{self.name}.diameter in campaign.toml.",
+            )
+        return float(np.mean(self.diameter))
+
+    @property
+    def area(self) -> float:
+        """Cross-sectional area at zero tension (WHOI-2005-10, eq. 2). [m2]."""
+        return pi * self.mean_diameter**2 / 4
+
+
+@dataclass(frozen=True)
+class SpliceMarks:
+    """Tape readings at the splice toes of one specimen, one row a reading.
+
+    ``near_toe``, ``far_toe`` and ``far_thimble`` are read from the near thimble.
+
+    Parameters
+    ----------
+    specimen : str
+        Which specimen was read.
+    test : tuple of str, length n_marks
+        Test in which each row was read.
+    hold : tuple of str, length n_marks
+        ``slack``, ``min``, ``centre``, ``max`` or a strain as text.
+    near_toe, far_toe, far_thimble : ndarray, shape (n_marks,)
+        Positions of the toes and of the far thimble. [m]
+    reading_uncertainty : float
+        Standard uncertainty of one tape reading. [m]
+    """
+
+    specimen: str
+    test: tuple[str, ...]
+    hold: tuple[str, ...]
+    near_toe: Floats
+    far_toe: Floats
+    far_thimble: Floats
+    reading_uncertainty: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check that a row is 0 < near toe < far toe < far thimble."""
+        freeze_arrays(self)
+        ordered = (
+            (self.near_toe > 0)
+            & (self.near_toe < self.far_toe)
+            & (self.far_toe < self.far_thimble)
+        )
+        if not np.all(ordered):
+            bad = int(np.flatnonzero(~ordered)[0])
+            raise DataError(
+                f"{int(np.sum(~ordered))} of {ordered.size} mark rows of '{self.specimen}' "
+                f"contradict themselves, first test {self.test[bad]}, hold {self.hold[bad]}",
+                found=f"near toe {self.near_toe[bad]:g} m, far toe {self.far_toe[bad]:g} m, "
+                f"far thimble {self.far_thimble[bad]:g} m",
+                needed="0 < near toe < far toe < far thimble",
+                hint="Correct the row in the marks file.",
+            )
+
+    @property
+    def free_length(self) -> Floats:
+        """Splice toe to splice toe, shape (n_marks,). [m]."""
+        return self.far_toe - self.near_toe
+
+    @property
+    def splice_length(self) -> Floats:
+        """Both splices together, shape (n_marks,). [m]."""
+        return self.far_thimble - self.free_length
+
+    @property
+    def is_slack(self) -> Bools:
+        """Rows read on the slack specimen, shape (n_marks,)."""
+        return np.array([hold == "slack" for hold in self.hold], dtype=bool)
+
+
+@dataclass(frozen=True)
+class Record:
+    """One test in SI, every row of the log kept.
+
+    A sample that is missing is NaN and carries a flag.
+
+    Parameters
+    ----------
+    test_id : str
+        Key of the test in the campaign.
+    specimens : tuple of str, length n_specimens
+        Names, in the order of the first axis of ``tension``.
+    time : ndarray, shape (n_samples,)
+        Elapsed time as logged. [s]
+    crosshead_position : ndarray, shape (n_samples,)
+        Thimble-to-thimble length, or a displacement where
+        ``position_is_length`` is false. [m]
+    tension : ndarray, shape (n_specimens, n_samples)
+        Sign and zero applied. [N]
+    quality_flag : ndarray of uint16, shape (n_specimens, n_samples)
+        Masks of `Quality` for tension.
+    crosshead_position_quality_flag : ndarray of uint16, shape (n_samples,)
+        Masks of `Quality` for time and position.
+    measured_strain : ndarray, shape (n_specimens, n_samples), optional
+        From an extensometer, where there is one. [1]
+    cycle_counter : ndarray of int, shape (n_samples,), optional
+        The machine's own count.
+    n_rows_read : int
+        Data rows in the file or files.
+    tension_standard_uncertainty : tuple of float, length n_specimens
+        As declared in the layout; NaN where not declared. [N]
+    position_standard_uncertainty : float
+        As declared in the layout; NaN where not declared. [m]
+    metadata : dict of str to str
+        Preamble rows of the file, as printed there.
+    notes : tuple of str
+        What a reader of the product has to know.
+    """
+
+    test_id: str
+    specimens: tuple[str, ...]
+    time: Floats
+    crosshead_position: Floats
+    tension: Floats
+    quality_flag: NDArray[np.uint16]
+    crosshead_position_quality_flag: NDArray[np.uint16]
+    measured_strain: Floats | None = None
+    cycle_counter: Integers | None = None
+    position_is_length: bool = True
+    n_rows_read: int = 0
+    tension_standard_uncertainty: tuple[float, ...] = ()
+    position_standard_uncertainty: float = float("nan")
+    metadata: dict[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check shapes once and make the arrays read-only."""
+        freeze_arrays(self)
+        n_samples = self.time.shape[0]
+        shapes = {
+            "crosshead_position": (n_samples,),
+            "crosshead_position_quality_flag": (n_samples,),
+            "tension": (len(self.specimens), n_samples),
+            "quality_flag": (len(self.specimens), n_samples),
+        }
+        for name, shape in shapes.items():
+            found = getattr(self, name).shape
+            if found != shape:
+                raise DataError(
+                    f"{name} does not fit the record", found=str(found), needed=str(shape)
+                )
+
+    @property
+    def n_samples(self) -> int:
+        """Number of rows kept."""
+        return int(self.time.shape[0])

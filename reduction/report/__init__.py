@@ -1,0 +1,1 @@
+"""Edge: the HTML report of a campaign, made from its archives alone."""

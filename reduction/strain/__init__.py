@@ -1,0 +1,1 @@
+"""Stage: crosshead position to strain of the splice-free length; tension to stress."""

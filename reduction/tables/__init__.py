@@ -1,0 +1,1 @@
+"""Edge: the CSV tables of a campaign, made from its archives alone."""

@@ -1,0 +1,223 @@
+"""Units at the edge: text with a unit in, SI out, and SI to what a reader is shown.
+
+Inside the package every number is SI.  The factors are pint's, which are exact
+by definition for the pound-force, the inch and the foot.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import Literal
+
+import pint
+
+from reduction.errors import SettingsError
+
+__all__ = ["DIMENSIONS", "Dimension", "UnitSystem", "display_unit", "parse_quantity", "scale_to_si"]
+
+Dimension = Literal[
+    "time", "length", "force", "strain", "stress", "area", "frequency", "temperature", "angle",
+    "mass", "velocity", "number", "force_rate",
+]  # fmt: skip
+UnitSystem = Literal["si", "us"]
+
+DIMENSIONS: dict[Dimension, str] = {
+    "time": "s",
+    "length": "m",
+    "force": "N",
+    "strain": "1",
+    "stress": "Pa",
+    "area": "m2",
+    "frequency": "Hz",
+    "temperature": "K",
+    "angle": "rad",
+    "mass": "kg",
+    "velocity": "m s-1",
+    "number": "1",
+    "force_rate": "N s-1",
+}
+_PINT_SI = {"m2": "m**2", "m s-1": "m/s", "N s-1": "N/s", "1": "dimensionless"}
+_US = {"m": "ft", "N": "lbf", "Pa": "psi", "m2": "in2", "J m-1": "lbf", "m s-1": "ft s-1"}
+_US_PINT = {"in2": "in**2", "ft s-1": "ft/s"}
+_QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
+
+
+@lru_cache(maxsize=1)
+def _registry() -> pint.UnitRegistry[float]:
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry(cache_folder=None)
+    registry.define("kip = 1000 * lbf")
+    registry.define("tonne_force = 1000 * kgf = tf")
+    return registry
+
+
+def _pint_text(unit: str) -> str:
+    text = unit.strip()
+    if text in ("", "1", "-"):
+        return "dimensionless"
+    # the degree, square and dot signs that test machines write
+    return (
+        text.replace("%", "percent")
+        .replace("µ", "micro")
+        .replace("μ", "micro")
+        .replace("²", "**2")
+        .replace("³", "**3")
+        .replace("°C", "degC")
+        .replace("°F", "degF")
+        .replace("°", "degree")
+        .replace("·", "*")
+    )
+
+
+@lru_cache(maxsize=512)
+def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
+    """Factor and offset that turn a value in ``unit`` into SI: ``factor * value + offset``.
+
+    Parameters
+    ----------
+    unit : str
+        As the test house writes it: ``lbf``, ``ft``, ``kN``, ``mm``, ``%``, ``°C``.
+    dimension : Dimension
+        What the channel or setting has to be.
+
+    Returns
+    -------
+    factor, offset : float
+        To SI; the offset is zero for all but temperatures.
+
+    Raises
+    ------
+    SettingsError
+        If the unit is unknown or has another dimension.
+
+    Examples
+    --------
+    >>> scale_to_si("lbf", "force")
+    (4.4482216152605, 0.0)
+    >>> scale_to_si("%", "strain")
+    (0.01, 0.0)
+    """
+    registry = _registry()
+    target = DIMENSIONS[dimension]
+    try:
+        # pound is a mass in pint; a test house that writes lb for a load means lbf
+        text = "lbf" if dimension == "force" and unit.strip() in ("lb", "lbs") else _pint_text(unit)
+        target_unit = registry.Unit(_PINT_SI.get(target, target))
+        zero = registry.Quantity(0.0, text).to(target_unit).magnitude
+        one = registry.Quantity(1.0, text).to(target_unit).magnitude
+    except pint.DimensionalityError as error:
+        raise SettingsError(
+            f"unit '{unit}' is not a unit of {dimension}",
+            found=f"'{unit}', a unit of {error.dim1 or 'another dimension'}",
+            needed=f"a unit of {dimension}, such as {target}",
+        ) from error
+    except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError) as error:
+        raise SettingsError(
+            f"unit '{unit}' is not known",
+            found=f"'{unit}'",
+            needed=f"a unit of {dimension}, such as {target}",
+        ) from error
+    return float(one - zero), float(zero)
+
+
+def parse_quantity(
+    text: str | float, dimension: Dimension, *, rated_break_strength: float | None = None
+) -> float:
+    """Value in SI of a text with a unit, such as ``"21.5 ft"`` or ``"12 %RBS"``.
+
+    Parameters
+    ----------
+    text : str or float
+        A number and a unit; a bare number only where the dimension is a plain
+        number or a strain.
+    dimension : Dimension
+        What it has to be.
+    rated_break_strength : float, optional
+        What ``%RBS`` (also ``%MBS``, ``%MBL``) refers to. [N]
+
+    Returns
+    -------
+    value : float
+        In SI.
+
+    Raises
+    ------
+    SettingsError
+        If there is no unit, or the wrong one.
+
+    Examples
+    --------
+    >>> parse_quantity("21.5 ft", "length")
+    6.5532
+    >>> parse_quantity("12 %RBS", "force", rated_break_strength=1000.0)
+    120.0
+    """
+    if isinstance(text, (int, float)) and not isinstance(text, bool):
+        if dimension in ("strain", "number"):
+            return float(text)
+        raise SettingsError(
+            "a value has no unit", found=repr(text), needed=f'text such as "{text} {DIMENSIONS[dimension]}"'
+        )
+    match = _QUANTITY.match(str(text))
+    if match is None:
+        raise SettingsError(
+            "a value is not a number with a unit",
+            found=repr(text),
+            needed=f'text such as "1.5 {DIMENSIONS[dimension]}"',
+        )
+    number, unit = float(match[1]), match[2]
+    if re.fullmatch(r"%\s*(RBS|MBS|MBL)", unit) and dimension == "force":
+        if rated_break_strength is None:
+            raise SettingsError(
+                "a share of the break strength is given, but no break strength",
+                found=repr(text),
+                needed="rated_break_strength of the specimen",
+            )
+        return number / 100 * rated_break_strength
+    if not unit and dimension not in ("strain", "number"):
+        raise SettingsError(
+            "a value has no unit",
+            found=repr(text),
+            needed=f'text such as "{number:g} {DIMENSIONS[dimension]}"',
+        )
+    factor, offset = scale_to_si(unit, dimension)
+    return factor * number + offset
+
+
+def display_unit(si_unit: str, system: UnitSystem) -> tuple[str, float]:
+    """Unit to show and the factor from SI to it.
+
+    Parameters
+    ----------
+    si_unit : str
+        Unit as in `reduction.vocabulary`.
+    system : {"si", "us"}
+        ``us`` shows psi, lbf and ft.
+
+    Returns
+    -------
+    unit : str
+        What to print.
+    factor : float
+        Value in SI times this is the value to print.
+
+    Raises
+    ------
+    SettingsError
+        If the system is neither.
+
+    Examples
+    --------
+    >>> display_unit("N", "us")
+    ('lbf', 0.22480894309971)
+    """
+    if system == "si":
+        return si_unit, 1.0
+    if system != "us":
+        raise SettingsError("unit system is not known", found=repr(system), needed="si or us")
+    shown = _US.get(si_unit)
+    if shown is None:
+        return si_unit, 1.0
+    source = {"J m-1": "N", "m2": "m**2", "m s-1": "m/s"}.get(si_unit, si_unit)
+    factor = _registry().Quantity(1.0, source).to(_US_PINT.get(shown, shown)).magnitude
+    return shown, float(factor)
