@@ -141,9 +141,7 @@ class SpliceMarks:
         """Check that a row is 0 < near toe < far toe < far thimble."""
         freeze_arrays(self)
         ordered = (
-            (self.near_toe > 0)
-            & (self.near_toe < self.far_toe)
-            & (self.far_toe < self.far_thimble)
+            (self.near_toe > 0) & (self.near_toe < self.far_toe) & (self.far_toe < self.far_thimble)
         )
         if not np.all(ordered):
             bad = int(np.flatnonzero(~ordered)[0])

@@ -37,7 +37,7 @@ class QualitySettings:
     """When a sample is flagged (nothing is deleted)."""
 
     stuck_samples: int = 50
-    """A channel that repeats one value at least this often while the crosshead moves is stuck. [1]"""
+    """A channel repeating one value this often while the crosshead moves is stuck. [1]"""
     spike_factor: float = 12.0
     """A single sample this many robust deviations off both neighbours is a spike. [1]"""
     gap_factor: float = 3.5

@@ -156,7 +156,9 @@ def parse_quantity(
         if dimension in ("strain", "number"):
             return float(text)
         raise SettingsError(
-            "a value has no unit", found=repr(text), needed=f'text such as "{text} {DIMENSIONS[dimension]}"'
+            "a value has no unit",
+            found=repr(text),
+            needed=f'text such as "{text} {DIMENSIONS[dimension]}"',
         )
     match = _QUANTITY.match(str(text))
     if match is None:

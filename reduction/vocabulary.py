@@ -43,8 +43,12 @@ _ROWS = (
     Quantity("cycle_number", "1", "cycle number, 0 outside cycles"),
     Quantity("branch", "1", "branch of the cycle"),
     Quantity("quality_flag", "1", "quality of tension", standard_name="quality_flag"),
-    Quantity("crosshead_position_quality_flag", "1", "quality of time and crosshead position",
-             standard_name="quality_flag"),
+    Quantity(
+        "crosshead_position_quality_flag",
+        "1",
+        "quality of time and crosshead position",
+        standard_name="quality_flag",
+    ),
     # per cycle
     Quantity("frequency", "Hz", "cycle frequency", "003 f"),
     Quantity("cycle_start_time", "s", "elapsed time at the start of the cycle"),
@@ -54,34 +58,47 @@ _ROWS = (
     Quantity("strain_amplitude", "1", "strain amplitude, half the range"),
     Quantity("peak_tension", "N", "greatest tension of the cycle"),
     Quantity("valley_tension", "N", "least tension of the cycle"),
-    Quantity("apparent_spring_constant", "N", "tension amplitude over strain amplitude",
-             "003 K_ap, eq 1"),
-    Quantity("hysteresis_energy", "J m-1", "closed-loop area, tension against strain",
-             "003 H, eq 4"),
+    Quantity(
+        "apparent_spring_constant", "N", "tension amplitude over strain amplitude", "003 K_ap, eq 1"
+    ),
+    Quantity(
+        "hysteresis_energy", "J m-1", "closed-loop area, tension against strain", "003 H, eq 4"
+    ),
     Quantity("loss_factor", "1", "loss over storage spring constant"),
     Quantity("storage_spring_constant", "N", "in-phase part of the fundamental, force per strain"),
     Quantity("loss_spring_constant", "N", "quadrature part of the fundamental, force per strain"),
-    Quantity("fundamental_energy_share", "1",
-             "share of the loop energy that the fundamental carries"),
+    Quantity(
+        "fundamental_energy_share", "1", "share of the loop energy that the fundamental carries"
+    ),
     Quantity("dynamic_modulus", "Pa", "apparent spring constant over area at zero tension"),
     Quantity("secant_modulus", "Pa", "stress over strain at the peak of the cycle", "002 eq 1"),
     Quantity("chord_modulus", "Pa", "end-to-end slope of a branch"),
-    Quantity("stroke_mean_modulus_difference", "Pa",
-             "ascending minus descending stroke-mean tangent modulus"),
-    Quantity("tension_loss_modulus", "Pa",
-             "tension lost over the cycle, over area and strain stroke"),
-    Quantity("identity_residual", "1",
-             "closed-cycle identity residual over the stroke-mean modulus"),
+    Quantity(
+        "stroke_mean_modulus_difference",
+        "Pa",
+        "ascending minus descending stroke-mean tangent modulus",
+    ),
+    Quantity(
+        "tension_loss_modulus", "Pa", "tension lost over the cycle, over area and strain stroke"
+    ),
+    Quantity(
+        "identity_residual", "1", "closed-cycle identity residual over the stroke-mean modulus"
+    ),
     Quantity("dissipation_spring_constant", "N", "dissipation spring constant", "003 K1"),
     Quantity("relaxation_time", "s", "relaxation time of the three-parameter line", "003 tau"),
     Quantity("quasi_static_spring_constant", "N", "slope of the slow pull", "003 K0"),
     # per strain bin
     Quantity("strain_bin", "1", "centre of the strain bin"),
-    Quantity("tangent_modulus", "Pa", "tangent modulus, trimmed branches, mean over the cycles",
-             "002 eq 2"),
+    Quantity(
+        "tangent_modulus",
+        "Pa",
+        "tangent modulus, trimmed branches, mean over the cycles",
+        "002 eq 2",
+    ),
     Quantity("tangent_modulus_untrimmed", "Pa", "tangent modulus, whole branches"),
-    Quantity("tangent_modulus_first_loading", "Pa",
-             "tangent modulus of the first loading of the record"),
+    Quantity(
+        "tangent_modulus_first_loading", "Pa", "tangent modulus of the first loading of the record"
+    ),
     Quantity("tangent_modulus_by_cycle", "Pa", "tangent modulus of one cycle, trimmed branches"),
     Quantity("branch_tension", "N", "mean tension of the branch in the bin"),
     # segments
@@ -99,8 +116,9 @@ _ROWS = (
     Quantity("mark_strain", "1", "strain of the free length read at the marks"),
     Quantity("mark_tension", "N", "mean tension while the marks were read"),
     Quantity("mark_strain_residual", "1", "strain by the method minus strain at the marks"),
-    Quantity("strain_slope_ratio", "1",
-             "strain slope of constant-fraction over that of the method"),
+    Quantity(
+        "strain_slope_ratio", "1", "strain slope of constant-fraction over that of the method"
+    ),
     Quantity("area", "m2", "cross-sectional area at zero tension"),
     Quantity("diameter", "m", "mean diameter before stretch"),
     Quantity("rated_break_strength", "N", "rated break strength", "003 Table 2"),

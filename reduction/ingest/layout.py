@@ -1,0 +1,146 @@
+"""Declared layouts: what a log file looks like, said by a person, never guessed.
+
+A layout names positions (``tension.1``), not specimens; a test says which specimen
+hangs at which position.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+
+from reduction.errors import SettingsError
+from reduction.units import Dimension, parse_quantity, scale_to_si
+
+__all__ = ["Channel", "Format", "Layout"]
+
+Format = Literal[
+    "delimited", "blocks", "spreadsheet", "tdms", "matlab", "hdf5", "parquet", "json"
+]
+
+_CHANNEL_DIMENSION: dict[str, Dimension] = {
+    "time": "time",
+    "crosshead_position": "length",
+    "tension": "force",
+    "strain": "strain",
+    "cycle_counter": "number",
+    "gauge_length": "length",
+    "eye_to_eye_length": "length",
+    "temperature": "temperature",
+}
+
+
+class Channel(BaseModel):
+    """One column of a log.
+
+    ``column`` is its name in the file, or its number from 1 where columns have no
+    name.  ``factor`` turns a voltage or count into ``unit`` and is 1 otherwise.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    column: str | int
+    unit: str = "1"
+    sign: Literal[1, -1] = 1
+    zero: str | None = None
+    """Reading at zero load, subtracted before the sign is applied, with its unit."""
+    datum: Literal["pin-to-pin", "displacement"] | None = None
+    reference_length: str | None = None
+    """Thimble-to-thimble length at displacement zero, with its unit."""
+    reference_tension: str | None = None
+    """Tension at which ``reference_length`` was read; slack where not given."""
+    standard_uncertainty: str | None = None
+    verified_range: tuple[str, str] | None = None
+    time_column: str | int | None = None
+    """The channel's own time stamps, where it has them."""
+    time_unit: str = "s"
+
+
+class Layout(BaseModel):
+    """What a log file looks like.  Rows count from 1, as an editor counts them."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    format: Format
+    # text
+    delimiter: str = ","
+    decimal: Literal[".", ","] = "."
+    thousands: Literal["", ",", ".", " ", "'"] = ""
+    encoding: str = "utf-8"
+    """A byte-order mark at the start of a file is always accepted."""
+    comment: str = ""
+    """Lines that begin with this are kept as metadata; empty: there are none."""
+    quote: str = '"'
+    missing: tuple[str, ...] = ("", "NaN", "nan")
+    preamble_rows: int = Field(default=0, ge=0)
+    """Lines before the name row, comment lines included; kept as metadata."""
+    has_name_row: bool = True
+    has_unit_row: bool = False
+    """A unit row is checked against the units declared here."""
+    # blocks
+    block_marker: str = ""
+    """Blocks: text at the start of the line that opens a block of data."""
+    # spreadsheets
+    sheet: str | int = 1
+    """Spreadsheets: sheet by name, or by number from 1."""
+    # TDMS, MATLAB, HDF5
+    group: str = ""
+    """TDMS group, HDF5 group path, or MATLAB struct that holds the columns."""
+    matrix: str = ""
+    """MATLAB variable, HDF5 data set or JSON key of a matrix; columns are then numbers,
+    or names where ``matrix_names`` gives them."""
+    matrix_names: str = ""
+    """JSON key, MATLAB variable or HDF5 data set with the column names of ``matrix``."""
+    matrix_units: str = ""
+    """JSON key, MATLAB variable or HDF5 data set with the units of its columns."""
+    channels: dict[str, Channel]
+
+    @field_validator("channels", mode="before")
+    @classmethod
+    def _flatten(cls, value: object) -> object:
+        """TOML's ``tension.1 = {...}`` arrives nested; the key here is ``tension.1``."""
+        if not isinstance(value, dict):
+            return value
+        flat: dict[str, object] = {}
+        for name, entry in value.items():
+            if isinstance(entry, dict) and entry and all(str(k).isdigit() for k in entry):
+                flat.update({f"{name}.{k}": v for k, v in entry.items()})
+            else:
+                flat[str(name)] = entry
+        return flat
+
+    @model_validator(mode="after")
+    def _channels_make_sense(self) -> Layout:
+        for name, channel in self.channels.items():
+            dimension = self.dimension(name)
+            scale_to_si(channel.unit, dimension)
+            for text in (channel.zero, channel.standard_uncertainty, *(channel.verified_range or ())):
+                if text is not None:
+                    parse_quantity(text, dimension)
+            if channel.reference_length is not None:
+                parse_quantity(channel.reference_length, "length")
+            if channel.reference_tension is not None:
+                parse_quantity(channel.reference_tension, "force")
+        position = self.channels.get("crosshead_position")
+        if position is not None and position.datum is None:
+            raise SettingsError(
+                "the position channel has no datum",
+                found="crosshead_position without datum",
+                needed='datum = "pin-to-pin" (a length) or datum = "displacement"',
+                hint="A displacement also needs reference_length, read at slack or at a "
+                "stated reference_tension.",
+            )
+        return self
+
+    @staticmethod
+    def dimension(name: str) -> Dimension:
+        """What a channel has to be, from its name; `SettingsError` where it is not known."""
+        dimension = _CHANNEL_DIMENSION.get(name.split(".")[0])
+        if dimension is None:
+            raise SettingsError(
+                f"channel '{name}' is not known",
+                found=f"'{name}'",
+                needed="one of " + ", ".join(sorted(_CHANNEL_DIMENSION)),
+            )
+        return dimension

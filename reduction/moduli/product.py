@@ -1,0 +1,244 @@
+"""What the modulus stage hands on: curves on a strain grid, segments, checks, trends.
+
+Tension stands beside every modulus: a modulus alone leaves tension unknown by a
+constant.  Axis order is (specimen, ..., branch, bin); branch 0 ascends, 1 descends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from reduction.record import Bools, Floats, Integers, freeze_arrays
+
+__all__ = [
+    "AmplitudeSummary",
+    "CycleIdentity",
+    "ElastomerFit",
+    "ModulusCurves",
+    "PeakTrend",
+    "Ratio",
+    "Segments",
+    "Slips",
+]
+
+
+@dataclass(frozen=True)
+class ModulusCurves:
+    """Tangent modulus against strain.
+
+    Parameters
+    ----------
+    strain_bin : ndarray, shape (n_bins,)
+        Bin centres, one grid for the specimens of the test. [1]
+    strain_bin_bounds : ndarray, shape (n_bins, 2)
+        Edges. [1]
+    window : float
+        Width of the regression window. [1]
+    tangent_modulus, tangent_modulus_standard_uncertainty : ndarray, shape (n_specimens, 2, n_bins)
+        Mean over the cycles, trimmed branches; NaN where not supported. [Pa]
+    tangent_modulus_count : ndarray of int, same shape
+        Cycles in the mean. [1]
+    tangent_modulus_minimum, tangent_modulus_maximum : ndarray, same shape
+        Least and greatest over the cycles: the envelope. [Pa]
+    tangent_modulus_scatter : ndarray, same shape
+        Standard deviation over the cycles. [Pa]
+    tangent_modulus_untrimmed, tangent_modulus_untrimmed_standard_uncertainty : ndarray, same shape
+        The same with the ends. [Pa]
+    branch_tension, branch_tension_standard_uncertainty : ndarray, same shape
+        Mean tension of the branch at the bin centre. [N]
+    selected_cycle : ndarray of int, shape (n_selected,)
+        Numbers of the cycles whose curves are kept.
+    tangent_modulus_by_cycle, tangent_modulus_by_cycle_standard_uncertainty : ndarray
+        Shape (n_specimens, n_selected, 2, n_bins). [Pa]
+    """
+
+    strain_bin: Floats
+    strain_bin_bounds: Floats
+    window: float
+    tangent_modulus: Floats
+    tangent_modulus_standard_uncertainty: Floats
+    tangent_modulus_count: Integers
+    tangent_modulus_minimum: Floats
+    tangent_modulus_maximum: Floats
+    tangent_modulus_scatter: Floats
+    tangent_modulus_untrimmed: Floats
+    tangent_modulus_untrimmed_standard_uncertainty: Floats
+    branch_tension: Floats
+    branch_tension_standard_uncertainty: Floats
+    selected_cycle: Integers
+    tangent_modulus_by_cycle: Floats
+    tangent_modulus_by_cycle_standard_uncertainty: Floats
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Piecewise-linear moduli, the form of Tables 5 and 6 of WHOI-2005-10.
+
+    Every array has shape (n_specimens, 2, n_segments), NaN where a branch has
+    fewer segments.  ``criterion`` says how their number was chosen.
+    """
+
+    segment_modulus: Floats
+    segment_modulus_standard_uncertainty: Floats
+    segment_strain_low: Floats
+    segment_strain_high: Floats
+    segment_tension_low: Floats
+    segment_tension_high: Floats
+    criterion: str
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class CycleIdentity:
+    """Closed-cycle identity, checked on every cycle; arrays (n_specimens, n_cycles).
+
+    Stroke-mean modulus ascending minus descending equals the tension lost over
+    the cycle, over area and strain stroke.
+    """
+
+    stroke_mean_modulus_difference: Floats
+    tension_loss_modulus: Floats
+    identity_residual: Floats
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class AmplitudeSummary:
+    """Dynamic modulus, loss factor and energy of a test against mean strain and amplitude.
+
+    One value a specimen, shape (n_specimens,), mean over the cycles after break-in,
+    each with its standard uncertainty in ``uncertainty``.
+    """
+
+    mean_strain: Floats
+    strain_amplitude: Floats
+    frequency: Floats
+    dynamic_modulus: Floats
+    loss_factor: Floats
+    hysteresis_energy: Floats
+    uncertainty: dict[str, Floats]
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class PeakTrend:
+    """Peak tension and modulus against the logarithm of cycle number, shape (n_specimens,).
+
+    ``peak_tension_per_decade`` [N] and ``dynamic_modulus_per_decade`` [Pa] are
+    slopes against log10(cycle number); ``peak_tension_change`` [1] is last over first - 1.
+    """
+
+    peak_tension_per_decade: Floats
+    peak_tension_per_decade_standard_uncertainty: Floats
+    dynamic_modulus_per_decade: Floats
+    dynamic_modulus_per_decade_standard_uncertainty: Floats
+    peak_tension_change: Floats
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class Slips:
+    """Steps of peak tension that steady creep does not explain, one row a step.
+
+    Parameters
+    ----------
+    specimen : tuple of str, length n_slips
+        Which specimen stepped.
+    slip_cycle : ndarray of int, shape (n_slips,)
+        First cycle after the step.
+    slip_cycle_low, slip_cycle_high : ndarray of int, shape (n_slips,)
+        Range of cycles in which the step lies.
+    slip_tension_step, slip_tension_step_standard_uncertainty : ndarray, shape (n_slips,)
+        Step of peak tension, negative for a loss. [N]
+    slip_length, slip_length_standard_uncertainty : ndarray, shape (n_slips,)
+        Splice length let out, from the step and the slope of tension on position. [m]
+    creep_per_cycle : ndarray, shape (n_specimens,)
+        Steady drift of peak tension in the last half of the test, steps taken out. [N]
+    """
+
+    specimen: tuple[str, ...]
+    slip_cycle: Integers
+    slip_cycle_low: Integers
+    slip_cycle_high: Integers
+    slip_tension_step: Floats
+    slip_tension_step_standard_uncertainty: Floats
+    slip_length: Floats
+    slip_length_standard_uncertainty: Floats
+    creep_per_cycle: Floats
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """Ratio of two specimens' (or two tests') modulus on one strain axis.
+
+    Arrays have shape (2, n_bins); the interval holds 95 %.
+    """
+
+    numerator: str
+    denominator: str
+    strain_bin: Floats
+    ratio: Floats
+    ratio_standard_uncertainty: Floats
+    ratio_low: Floats
+    ratio_high: Floats
+    is_different: Bools
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class ElastomerFit:
+    """A hyperelastic law fitted to a first loading.
+
+    Parameters
+    ----------
+    specimen, law : str
+        ``neo-hookean``, ``mooney-rivlin``, ``yeoh`` or ``ogden-2``.
+    parameters, standard_uncertainty : dict of str to float
+        Pa for moduli, 1 for exponents.
+    rms_stress : float
+        Root mean square residual. [Pa]
+    strain_low, strain_high : float
+        Range of the fit; the law says nothing outside. [1]
+    is_stable : bool
+        True where d(stress)/d(strain) stays positive over the fitted range and in
+        equibiaxial and pure-shear deformation of the same range.
+    aicc : float
+        Corrected Akaike criterion, lower is better. [1]
+    """
+
+    specimen: str
+    law: str
+    parameters: dict[str, float]
+    standard_uncertainty: dict[str, float]
+    rms_stress: float
+    strain_low: float
+    strain_high: float
+    is_stable: bool
+    aicc: float
+    notes: tuple[str, ...] = field(default=())

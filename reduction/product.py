@@ -1,0 +1,97 @@
+"""A reduced test: all that one log gave, ready for the archive.
+
+`reduction.pipeline` makes it, `reduction.archive` stores it; neither knows the other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from reduction.cycles.product import Cycles, Loops
+from reduction.holds.product import HoldResult
+from reduction.moduli.product import (
+    AmplitudeSummary,
+    CycleIdentity,
+    ElastomerFit,
+    ModulusCurves,
+    PeakTrend,
+    Ratio,
+    Segments,
+    Slips,
+)
+from reduction.moduli.stepwise import StepwiseResult
+from reduction.phases.standstill import Standstills
+from reduction.provenance import Source, Step
+from reduction.record import Floats, Record, Specimen
+from reduction.strain.model import StrainModel
+
+__all__ = ["History", "ReducedTest", "TestDescription"]
+
+
+@dataclass(frozen=True)
+class TestDescription:
+    """What the laboratory kept about a test; text as given, empty where not given.
+
+    ``attributes`` holds campaign-level attributes (title, institution, source,
+    references, license, and ``synthetic = "yes"`` where the data are synthetic) and
+    test-level ones (machine, load_cell, calibration_due, medium, temperature, ...).
+    """
+
+    __test__ = False  # a test of a tether, not of this software
+
+    campaign_id: str
+    test_id: str
+    kind: str
+    control: str
+    waveform: str
+    order: int | None
+    attributes: dict[str, str]
+
+
+@dataclass(frozen=True)
+class History:
+    """What each specimen had seen before this test, shape (n_specimens,) each."""
+
+    earlier_tests: tuple[tuple[str, ...], ...]
+    earlier_maximum_strain: Floats
+    earlier_maximum_tension: Floats
+    earlier_cycles: Floats
+
+
+@dataclass(frozen=True)
+class ReducedTest:
+    """One reduced test with all its specimens.
+
+    ``strain`` has shape (n_specimens, n_samples) [1].  Parts that the kind of test
+    does not give are None (or empty); `notes` are the quality notes a reader must see,
+    `steps` the history lines, `settings_json` every setting that was in force.
+    """
+
+    description: TestDescription
+    specimens: tuple[Specimen, ...]
+    record: Record
+    sources: tuple[Source, ...]
+    steps: tuple[Step, ...]
+    settings_json: str
+    notes: tuple[str, ...]
+    history: History | None = None
+    standstills: Standstills | None = None
+    phase: Floats | None = None
+    strain: Floats | None = None
+    strain_models: tuple[StrainModel, ...] = ()
+    cycles: Cycles | None = None
+    loops: Loops | None = None
+    curves: ModulusCurves | None = None
+    first_loading: ModulusCurves | None = None
+    segments: Segments | None = None
+    identity: CycleIdentity | None = None
+    amplitude: AmplitudeSummary | None = None
+    trend: PeakTrend | None = None
+    slips: Slips | None = None
+    ratio: Ratio | None = None
+    elastomers: tuple[ElastomerFit, ...] = ()
+    holds: tuple[HoldResult, ...] = ()
+    stress_at_strain: Floats | None = None
+    stress_at_strain_levels: tuple[float, ...] = ()
+    permanent_set: Floats | None = None
+    stepwise: StepwiseResult | None = None
