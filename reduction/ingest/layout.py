@@ -15,9 +15,7 @@ from reduction.units import Dimension, parse_quantity, scale_to_si
 
 __all__ = ["Channel", "Format", "Layout"]
 
-Format = Literal[
-    "delimited", "blocks", "spreadsheet", "tdms", "matlab", "hdf5", "parquet", "json"
-]
+Format = Literal["delimited", "blocks", "spreadsheet", "tdms", "matlab", "hdf5", "parquet", "json"]
 
 _CHANNEL_DIMENSION: dict[str, Dimension] = {
     "time": "time",
@@ -115,7 +113,11 @@ class Layout(BaseModel):
         for name, channel in self.channels.items():
             dimension = self.dimension(name)
             scale_to_si(channel.unit, dimension)
-            for text in (channel.zero, channel.standard_uncertainty, *(channel.verified_range or ())):
+            for text in (
+                channel.zero,
+                channel.standard_uncertainty,
+                *(channel.verified_range or ()),
+            ):
                 if text is not None:
                     parse_quantity(text, dimension)
             if channel.reference_length is not None:
