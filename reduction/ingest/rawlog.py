@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from reduction.provenance import Source
 from reduction.record import Bools, Floats, Integers
 
@@ -46,5 +48,4 @@ class RawLog:
 
     def missing(self, name: str) -> Bools:
         """Where a channel holds a declared missing mark, shape (n_rows,)."""
-        column = self.columns[name]
-        return column != column
+        return np.isnan(self.columns[name])
