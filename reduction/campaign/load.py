@@ -1,0 +1,293 @@
+"""campaign.toml and the files it names, to a `Campaign` in SI."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from reduction.campaign.marks import read_marks
+from reduction.campaign.model import (
+    CampaignFile,
+    Defaults,
+    SpecimenSection,
+    StepSection,
+    TestSection,
+)
+from reduction.campaign.numbers import apply_numbers
+from reduction.campaign.plan import Campaign, StepPlan, TestPlan
+from reduction.campaign.testtable import read_test_table
+from reduction.errors import LogError, SettingsError
+from reduction.record import Specimen, SpliceMarks
+from reduction.settings import CycleSettings, ReductionSettings, StrainSettings
+from reduction.units import parse_quantity
+
+__all__ = ["load_campaign"]
+
+_KEPT = (
+    "rate", "medium", "soak", "temperature", "machine", "load_cell", "calibration_due",
+    "operator", "procedure", "note",
+)  # fmt: skip
+
+
+def _in_toml(path: Path, problem: str, **kwargs: Any) -> SettingsError:
+    return SettingsError(f"{path}: {problem}", **kwargs)
+
+
+def _parse(path: Path) -> CampaignFile:
+    try:
+        with path.open("rb") as lines:
+            table = tomllib.load(lines)
+    except OSError as error:
+        raise _in_toml(
+            path, "the campaign cannot be read", found=error.strerror or str(error),
+            needed="a campaign.toml; `reduction init FOLDER` writes a first one",
+        ) from error  # fmt: skip
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise _in_toml(path, "the campaign is not TOML", found=str(error)) from error
+    try:
+        return CampaignFile.model_validate(table)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"])
+        found = "" if first["type"] == "missing" else repr(first["input"])[:200]
+        raise _in_toml(
+            path,
+            f"{error.error_count()} setting(s) cannot be used, first '{place}'",
+            found=found or None,
+            needed=first["msg"],
+            hint="`reduction schema` prints every key that is known.",
+        ) from error
+
+
+def _length(text: str, where: str, path: Path) -> float:
+    value = parse_quantity(text, "length")
+    if not value > 0:
+        raise _in_toml(path, f"{where} is not positive", found=text, needed="above zero")
+    return value
+
+
+def _specimen(path: Path, name: str, section: SpecimenSection) -> Specimen:
+    readings = (section.diameter,) if isinstance(section.diameter, str) else section.diameter
+    where = f"specimens.{name}.diameter"
+    stretched = tuple(
+        (parse_quantity(stretch, "strain"), _length(reading, where, path))
+        for stretch, at_stretch in section.stretched_diameter.items()
+        for reading in at_stretch
+    )
+    strength = section.rated_break_strength
+    gauge = section.gauge_length
+    return Specimen(
+        name=name,
+        kind=section.kind,
+        material=section.material,
+        condition=section.condition,
+        diameter=tuple(_length(reading, where, path) for reading in readings),
+        stretched_diameters=stretched,
+        rated_break_strength=None if strength is None else parse_quantity(strength, "force"),
+        rated_break_strength_source=section.rated_break_strength_source,
+        gauge_length=None
+        if gauge is None
+        else _length(gauge, f"specimens.{name}.gauge_length", path),
+        notes=(section.note,) if section.note else (),
+    )
+
+
+def _inside(path: Path, name: str) -> str:
+    """A file name that stays inside the campaign folder, or `SettingsError`."""
+    folder = path.parent.resolve()
+    target = (folder / name).resolve()
+    if not name or Path(name).is_absolute() or not target.is_relative_to(folder):
+        raise _in_toml(
+            path, "a file lies outside the campaign folder", found=repr(name),
+            needed="a path inside the folder of campaign.toml, links followed",
+        )  # fmt: skip
+    if not target.is_file():
+        raise LogError(path.parent / name, "the file is not there", needed=f"as {path} says")
+    return name
+
+
+def _range(path: Path, test: str, step: StepSection) -> dict[str, Any]:
+    if isinstance(step.start, int) and isinstance(step.end, int):
+        return {"time_range": None, "cycle_range": (step.start, step.end)}
+    if isinstance(step.start, str) and isinstance(step.end, str):
+        times = (parse_quantity(step.start, "time"), parse_quantity(step.end, "time"))
+        if times[0] < times[1]:
+            return {"time_range": times, "cycle_range": None}
+    raise _in_toml(
+        path, f"step '{step.name}' of test '{test}' has no range",
+        found=f"from {step.start!r} to {step.end!r}",
+        needed='two rising times with units ("1200 s") or two cycle numbers',
+    )  # fmt: skip
+
+
+def _plan(
+    path: Path,
+    name: str,
+    test: TestSection,
+    defaults: Defaults,
+    file: CampaignFile,
+) -> TestPlan:
+    def given(key: str) -> Any:
+        return getattr(test, key) if key in test.model_fields_set else getattr(defaults, key)
+
+    layout = given("layout")
+    pieces = (
+        ((test.file, layout),)
+        if isinstance(test.file, str)
+        else tuple((piece.file, piece.layout or layout) for piece in test.file)
+    )
+    for _, piece_layout in pieces:
+        if piece_layout not in file.layouts:
+            raise _in_toml(
+                path, f"test '{name}' has no layout", found=repr(piece_layout),
+                needed="one of [layouts]: " + (", ".join(file.layouts) or "there are none"),
+            )  # fmt: skip
+    specimens = given("specimens")
+    unknown = [entry for entry in specimens if entry not in file.specimens]
+    if unknown or not specimens:
+        raise _in_toml(
+            path, f"test '{name}' names no known specimen", found=", ".join(unknown) or "none",
+            needed="one of [specimens]: " + ", ".join(file.specimens),
+        )  # fmt: skip
+    strain = given("strain")
+    settings = ReductionSettings(
+        strain=StrainSettings(method=strain.method),
+        cycles=CycleSettings(
+            control=given("control"), waveform=given("waveform"), expected_cycles=test.n_cycles
+        ),
+    )
+    for table in (defaults.reduction, test.reduction):
+        try:
+            settings = apply_numbers(settings, table, control=given("control"))
+        except SettingsError as error:
+            raise _in_toml(path, f"test '{name}': {error}") from error
+    kind = test.kind or defaults.kind
+    attributes = {key: given(key) for key in _KEPT if given(key)}
+    attributes |= {key: getattr(test, key) for key in ("date", "rest") if getattr(test, key)}
+    return TestPlan(
+        id=name,
+        kind=kind,
+        files=tuple((_inside(path, entry), str(used)) for entry, used in pieces),
+        specimens=specimens,
+        order=test.order,
+        control=given("control"),
+        waveform=given("waveform"),
+        target_strain=test.target_strain,
+        attributes=attributes,
+        settings=settings,
+        part_of=test.part_of,
+        steps=tuple(
+            StepPlan(
+                name=step.name,
+                kind=step.kind or kind,
+                expected_cycles=step.n_cycles,
+                note=step.note,
+                **_range(path, name, step),
+            )
+            for step in test.steps
+        ),
+    )
+
+
+def _pool(path: Path, names: Iterable[str], specimens: Iterable[str]) -> dict[str, SpliceMarks]:
+    """All marks of each specimen over the campaign, from every marks file it names."""
+    pooled: dict[str, SpliceMarks] = {}
+    for name in dict.fromkeys(names):
+        for specimen, marks in read_marks(path.parent / _inside(path, name)).items():
+            if specimen not in specimens:
+                raise LogError(
+                    path.parent / name, "a mark names an unknown specimen", channel="specimen",
+                    found=repr(specimen), needed="one of " + ", ".join(specimens),
+                )  # fmt: skip
+            before = pooled.get(specimen)
+            if before is None:
+                pooled[specimen] = marks
+                continue
+            pooled[specimen] = replace(
+                before,
+                test=before.test + marks.test,
+                hold=before.hold + marks.hold,
+                near_toe=np.concatenate([before.near_toe, marks.near_toe]),
+                far_toe=np.concatenate([before.far_toe, marks.far_toe]),
+                far_thimble=np.concatenate([before.far_thimble, marks.far_thimble]),
+                reading_uncertainty=max(before.reading_uncertainty, marks.reading_uncertainty),
+            )
+    return pooled
+
+
+def load_campaign(path: Path) -> Campaign:
+    """Read campaign.toml, its test table and its marks, and check that they fit together.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The campaign.toml.
+
+    Returns
+    -------
+    campaign : Campaign
+        In SI; every file it names is there and lies inside its folder.
+
+    Raises
+    ------
+    SettingsError
+        If a key, a value or a unit cannot be used, with its place.
+    LogError
+        If a file that it names is missing or cannot be read.
+    """
+    file = _parse(path)
+    tests: dict[str, TestSection] = {}
+    table = file.tests if isinstance(file.tests, str) else file.campaign.tests
+    if table:
+        tests |= read_test_table(path.parent / _inside(path, table))
+    if not isinstance(file.tests, str):
+        twice = sorted(set(tests) & set(file.tests))
+        if twice:
+            raise _in_toml(
+                path, f"{len(twice)} test(s) stand both in {table} and in [tests], first {twice[0]}"
+            )
+        tests |= file.tests
+    if not tests:
+        raise _in_toml(path, "the campaign has no tests", needed="at least one [tests.NAME]")
+    plans = {name: _plan(path, name, test, file.defaults, file) for name, test in tests.items()}
+    for name, plan in plans.items():
+        if plan.part_of is not None and plan.part_of not in plans:
+            raise _in_toml(
+                path, f"test '{name}' is part of a test that the campaign lacks",
+                found=repr(plan.part_of), needed="one of " + ", ".join(plans),
+            )  # fmt: skip
+    marks_files = [
+        section.strain.marks for section in (file.defaults, *tests.values()) if section.strain.marks
+    ]
+    marks = _pool(path, marks_files, tuple(file.specimens))
+    for specimen, rows in marks.items():
+        unknown = sorted(set(rows.test) - set(plans))
+        if unknown:
+            raise _in_toml(
+                path, f"the marks of '{specimen}' name a test that the campaign lacks",
+                found=", ".join(unknown), needed="one of " + ", ".join(plans),
+            )  # fmt: skip
+    attributes = {
+        key: str(value)
+        for key, value in file.campaign.model_dump().items()
+        if key not in ("id", "tests", "synthetic") and value
+    }
+    if file.campaign.synthetic or "synthetic" in file.campaign.source.lower():
+        attributes["synthetic"] = "yes"
+    return Campaign(
+        path=path,
+        id=file.campaign.id,
+        attributes=attributes,
+        specimens={
+            name: _specimen(path, name, section) for name, section in file.specimens.items()
+        },
+        layouts=file.layouts,
+        tests=plans,
+        marks=marks,
+    )

@@ -1,0 +1,150 @@
+"""Tape readings at the splice toes: marks.csv to `SpliceMarks`, one a specimen."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from reduction.errors import LogError
+from reduction.record import SpliceMarks
+from reduction.units import scale_to_si
+
+__all__ = ["read_marks"]
+
+_LENGTHS = ("near_toe", "far_toe", "far_thimble")
+_SUFFIXES = {"ft": "ft", "in": "inch", "m": "m", "mm": "mm", "cm": "cm"}
+_HOLDS = ("slack", "min", "centre", "max")
+
+
+@dataclass
+class _Rows:
+    test: list[str] = field(default_factory=list)
+    hold: list[str] = field(default_factory=list)
+    lengths: list[tuple[float, float, float]] = field(default_factory=list)
+    decimals: list[float] = field(default_factory=list)
+
+
+def _columns(path: Path, header: list[str]) -> dict[str, tuple[int, float]]:
+    """Column index and factor to metre of each length."""
+    found: dict[str, tuple[int, float]] = {}
+    for index, name in enumerate(header):
+        stem, _, suffix = name.strip().rpartition("_")
+        if stem in _LENGTHS and suffix in _SUFFIXES:
+            if stem in found:
+                raise LogError(path, f"two columns hold {stem}", row=1, channel=name)
+            found[stem] = (index, scale_to_si(_SUFFIXES[suffix], "length")[0])
+    missing = [name for name in _LENGTHS if name not in found]
+    missing += [name for name in ("test", "specimen", "hold") if name not in header]
+    if missing:
+        raise LogError(
+            path,
+            "the marks file lacks a column",
+            row=1,
+            found=", ".join(header),
+            needed="test, specimen, hold, near_toe_ft, far_toe_ft, far_thimble_ft (or _in, _m, "
+            "_mm, _cm); missing: " + ", ".join(missing),
+        )
+    return found
+
+
+def _reading(path: Path, row: int, name: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise LogError(
+            path, "a mark is not a number", row=row, channel=name, found=repr(text),
+            needed="a length read from the near thimble",
+        )  # fmt: skip
+    return value
+
+
+def _check_hold(path: Path, row: int, hold: str) -> None:
+    if hold in _HOLDS:
+        return
+    try:
+        float(hold.rstrip("% "))
+    except ValueError:
+        raise LogError(
+            path, "a hold has no known name", row=row, channel="hold", found=repr(hold),
+            needed="slack, min, centre, max or a strain",
+        ) from None  # fmt: skip
+
+
+def read_marks(path: Path) -> dict[str, SpliceMarks]:
+    """Read a marks file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        CSV with test, specimen, hold and the three lengths, whose suffix is the unit.
+
+    Returns
+    -------
+    marks : dict of str to SpliceMarks
+        By specimen.  The reading uncertainty is that of the last digit written:
+        a hundredth of a foot is 0.01 ft / sqrt(12), twice for the two ends of the
+        tape, as a rectangular distribution. [m]
+
+    Raises
+    ------
+    LogError
+        With the row, if a column is missing or a reading is not a number.
+    DataError
+        If a row contradicts itself.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise LogError(path, "the marks file is not UTF-8 text", found=str(error)) from error
+    except OSError as error:
+        raise LogError(
+            path, "the marks file cannot be read", found=error.strerror or str(error)
+        ) from error
+    lines = csv.reader(text.splitlines())
+    header = [name.strip() for name in next(lines, [])]
+    columns = _columns(path, header)
+    where = {name: header.index(name) for name in ("test", "specimen", "hold")}
+    rows: dict[str, _Rows] = {}
+    for number, line in enumerate(lines, start=2):
+        if not any(cell.strip() for cell in line):
+            continue
+        if len(line) != len(header):
+            raise LogError(
+                path, "a row of marks has another number of cells than the header", row=number,
+                found=str(len(line)), needed=str(len(header)),
+            )  # fmt: skip
+        entry = rows.setdefault(line[where["specimen"]].strip(), _Rows())
+        hold = line[where["hold"]].strip()
+        _check_hold(path, number, hold)
+        entry.test.append(line[where["test"]].strip())
+        entry.hold.append(hold)
+        values = []
+        for name in _LENGTHS:
+            index, factor = columns[name]
+            cell = line[index].strip()
+            values.append(factor * _reading(path, number, header[index], cell))
+            decimals = len(cell.partition(".")[2])
+            entry.decimals.append(factor * 10.0**-decimals)
+        entry.lengths.append((values[0], values[1], values[2]))
+    if not rows:
+        raise LogError(path, "the marks file has no rows", needed="one row a reading")
+    marks = {}
+    for specimen, entry in rows.items():
+        table = np.array(entry.lengths)
+        marks[specimen] = SpliceMarks(
+            specimen=specimen,
+            test=tuple(entry.test),
+            hold=tuple(entry.hold),
+            near_toe=table[:, 0],
+            far_toe=table[:, 1],
+            far_thimble=table[:, 2],
+            # trailing zeros are dropped by spreadsheets, so the finest digit counts
+            reading_uncertainty=min(entry.decimals) / math.sqrt(12) * math.sqrt(2),
+        )
+    return marks

@@ -1,0 +1,168 @@
+"""What a user may write in campaign.toml, as pydantic models; `reduction schema` prints them.
+
+Values that carry a unit are text here ("21.5 ft"); `reduction.campaign.load` turns
+them into SI.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from reduction.ingest.layout import Layout
+
+__all__ = [
+    "CampaignFile",
+    "CampaignSection",
+    "Defaults",
+    "FilePiece",
+    "Identifier",
+    "SpecimenSection",
+    "StepSection",
+    "StrainSection",
+    "TestKind",
+    "TestSection",
+]
+
+TestKind = Literal[
+    "cyclic", "fatigue", "relaxation", "creep", "stepwise", "quasi-static", "tensile", "snap"
+]
+# a name becomes a file name, so it may hold nothing that a path or a shell reads
+Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.\-]{0,99}$")]
+Text = Annotated[str, StringConstraints(max_length=2000)]
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class CampaignSection(_Section):
+    """``[campaign]``: who, what and under which terms."""
+
+    id: Identifier
+    title: Text
+    institution: Text = ""
+    source: Text = ""
+    synthetic: bool = False
+    """True where no specimen was ever pulled; every product then says so."""
+    references: Text = ""
+    license: Text = ""
+    summary: Text = ""
+    comment: Text = ""
+    tests: Text = ""
+    """A CSV with one row a test, beside or instead of ``[tests.*]``."""
+
+
+class SpecimenSection(_Section):
+    """``[specimens.NAME]``: the specimen before its first test."""
+
+    kind: Literal["rubber tether", "stretch hose", "rope", "wire", "elastomer"]
+    material: Text = ""
+    construction: Text = ""
+    condition: Text = ""
+    diameter: tuple[str, ...] | str = ()
+    """Readings before stretch; the nominal area uses their mean."""
+    stretched_diameter: dict[str, tuple[str, ...]] = Field(default_factory=dict)
+    """Readings at a stretch, by stretch: ``{ "10 %" = ["0.997 in", "0.980 in"] }``."""
+    rated_break_strength: str | None = None
+    rated_break_strength_source: Text = ""
+    gauge_length: str | None = None
+    note: Text = ""
+
+
+class StrainSection(_Section):
+    """``strain = { method = "...", marks = "marks.csv" }``."""
+
+    method: (
+        Literal[
+            "marks",
+            "strain-ratio",
+            "tension-driven",
+            "constant-fraction",
+            "extensometer",
+            "gauge-length",
+        ]
+        | None
+    ) = None
+    marks: Text = ""
+
+
+class FilePiece(_Section):
+    """One file of a record in pieces."""
+
+    file: Text
+    layout: Identifier | None = None
+
+
+class _Kept(_Section):
+    """What a laboratory keeps about a test; goes into the product as written."""
+
+    layout: Identifier | None = None
+    specimens: tuple[Identifier, ...] = ()
+    control: Literal["position", "load"] = "position"
+    waveform: Literal["triangular", "sinusoidal", "other"] = "triangular"
+    rate: Text = ""
+    medium: Text = ""
+    """``dry``, ``wet``, ``soaked since ...``."""
+    soak: Text = ""
+    temperature: Text = ""
+    machine: Text = ""
+    load_cell: Text = ""
+    calibration_due: Text = ""
+    operator: Text = ""
+    procedure: Text = ""
+    note: Text = ""
+    strain: StrainSection = StrainSection()
+    reduction: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    """Numbers of `reduction.settings`, by group: ``reduction.cycles.trim_threshold = 0.95``."""
+
+
+class Defaults(_Kept):
+    """``[defaults]``: what every test has unless it says otherwise."""
+
+    kind: TestKind = "cyclic"
+
+
+class StepSection(_Section):
+    """``[[tests.ID.steps]]``: one step of a log that holds many."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    name: Text
+    start: str | int = Field(alias="from")
+    """A time with its unit, or a cycle number of the whole log."""
+    end: str | int = Field(alias="to")
+    kind: TestKind | None = None
+    target_strain: tuple[float, ...] = ()
+    n_cycles: int | None = Field(default=None, ge=1)
+    note: Text = ""
+
+
+class TestSection(_Kept):
+    """``[tests.ID]``: one test; keys that it leaves out come from ``[defaults]``."""
+
+    __test__ = False  # a test of a tether, not of this software
+
+    kind: TestKind | None = None
+    file: Text | tuple[FilePiece, ...]
+    order: int | None = None
+    """Place in the specimens' history."""
+    part_of: Identifier | None = None
+    """The test of which this log repeats a part; its cycles are not counted twice."""
+    date: Text = ""
+    rest: Text = ""
+    """Time at rest before this test."""
+    target_strain: tuple[float, ...] = ()
+    n_cycles: int | None = Field(default=None, ge=1)
+    steps: tuple[StepSection, ...] = ()
+
+
+class CampaignFile(_Section):
+    """The whole of campaign.toml."""
+
+    campaign: CampaignSection
+    specimens: dict[Identifier, SpecimenSection]
+    layouts: dict[Identifier, Layout] = Field(default_factory=dict)
+    defaults: Defaults = Defaults()
+    tests: dict[Identifier, TestSection] | Text = Field(default_factory=dict)
