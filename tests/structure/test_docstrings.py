@@ -1,0 +1,43 @@
+"""Every public physics function names its arguments, their units, and its source."""
+
+import importlib
+import inspect
+import pkgutil
+import re
+
+import pytest
+from numpydoc.docscrape import FunctionDoc
+
+import reduction
+
+PHYSICS = {"phases", "strain", "cycles", "moduli", "holds"}
+UNIT = re.compile(r"\[[^\]]+\]\.?$")
+
+
+def public_functions():
+    for info in pkgutil.walk_packages(reduction.__path__, "reduction."):
+        if info.name.split(".")[1] not in PHYSICS:
+            continue
+        module = importlib.import_module(info.name)
+        for name in getattr(module, "__all__", ()):
+            thing = getattr(module, name)
+            if inspect.isfunction(thing):
+                yield pytest.param(module, thing, id=f"{info.name}.{name}")
+
+
+@pytest.mark.parametrize(("module", "function"), list(public_functions()))
+def test_docstring_is_complete(module, function):
+    doc = FunctionDoc(function)
+    assert [p.name for p in doc["Parameters"]] == list(inspect.signature(function).parameters)
+    products = re.compile(r"Standstills|StrainModel|Cycles|Loops|Curves|Settings|Specimen|Marks")
+    for entry in [*doc["Parameters"], *doc["Returns"]]:
+        text = " ".join(entry.desc)
+        if "array" in entry.type or "float" in entry.type:
+            assert UNIT.search(text) or products.search(entry.type), (
+                f"{function.__name__}: {entry.name} ends without its unit: {text!r}"
+            )
+    assert doc["Raises"] or "Raises" in (inspect.getdoc(function) or ""), (
+        f"{function.__name__} has no Raises section"
+    )
+    assert doc["Examples"], f"{function.__name__} has no example"
+    assert doc["References"] or "References" in (module.__doc__ or ""), "no source is named"
