@@ -18,7 +18,10 @@ __all__ = ["BRANCH_NAMES", "BRANCH_VALUES", "PHASE_VALUES", "QUANTITIES", "Quant
 
 @dataclass(frozen=True)
 class Quantity:
-    """One quantity: code name, SI unit, what it means, and its symbol in the source."""
+    """One quantity: code name, SI unit, what it means, and its symbol in the source.
+
+    An empty unit marks text: a label is not measured.
+    """
 
     name: str
     unit: str
@@ -32,8 +35,8 @@ BRANCH_VALUES = {"none": 0, "ascending": 1, "descending": 2}
 BRANCH_NAMES = ("ascending", "descending")
 
 _ROWS = (
-    # per sample
-    Quantity("time", "s", "elapsed time", standard_name="time"),
+    # per sample; no standard name for time: the table's wants an epoch, a test has none
+    Quantity("time", "s", "elapsed time"),
     Quantity("crosshead_position", "m", "crosshead position, thimble to thimble", "002 sec 3.2"),
     Quantity("crosshead_displacement", "m", "crosshead displacement from the reference length"),
     Quantity("tension", "N", "tension", "002, 003 T"),
@@ -49,7 +52,19 @@ _ROWS = (
         "quality of time and crosshead position",
         standard_name="quality_flag",
     ),
+    Quantity("measured_strain", "1", "nominal strain by an extensometer"),
+    Quantity("machine_cycle_number", "1", "cycle number by the machine's own counter"),
     # per cycle
+    Quantity("cycle", "1", "cycle number"),
+    Quantity("cycle_first_sample", "1", "index of the first sample of the cycle, from 0"),
+    Quantity("cycle_last_sample", "1", "index of the last sample of the cycle, from 0"),
+    Quantity("branch_first_sample", "1", "index of the first sample of the branch, from 0"),
+    Quantity("branch_last_sample", "1", "index of the last sample of the branch, from 0"),
+    Quantity("crosshead_rate", "m s-1", "crosshead rate on the plateau of the branch"),
+    Quantity("tension_rate", "N s-1", "tension rate on the plateau of the branch"),
+    Quantity("position_band", "m", "smallest range of position that makes a reversal"),
+    Quantity("tension_band", "N", "smallest range of tension that makes a reversal"),
+    Quantity("cycles_counted_by", "", "how the cycles were counted"),
     Quantity("frequency", "Hz", "cycle frequency", "003 f"),
     Quantity("cycle_start_time", "s", "elapsed time at the start of the cycle"),
     Quantity("mean_tension", "N", "mean of peak and valley tension", "003 T_m"),
@@ -87,8 +102,34 @@ _ROWS = (
     Quantity("dissipation_spring_constant", "N", "dissipation spring constant", "003 K1"),
     Quantity("relaxation_time", "s", "relaxation time of the three-parameter line", "003 tau"),
     Quantity("quasi_static_spring_constant", "N", "slope of the slow pull", "003 K0"),
+    # mean over the cycles of a test after break-in
+    Quantity("test_mean_strain", "1", "mean strain of the cycles, mean over the test"),
+    Quantity("test_strain_amplitude", "1", "strain amplitude, mean over the test"),
+    Quantity("test_frequency", "Hz", "cycle frequency, mean over the test"),
+    Quantity("test_dynamic_modulus", "Pa", "dynamic modulus, mean over the test"),
+    Quantity("test_loss_factor", "1", "loss factor, mean over the test"),
+    Quantity("test_hysteresis_energy", "J m-1", "hysteresis energy of a cycle, mean over the test"),
+    Quantity("peak_tension_per_decade", "N", "change of peak tension per decade of cycles"),
+    Quantity("dynamic_modulus_per_decade", "Pa", "change of dynamic modulus per decade of cycles"),
+    Quantity("peak_tension_change", "1", "peak tension of the last cycle over the first, minus 1"),
     # per strain bin
     Quantity("strain_bin", "1", "centre of the strain bin"),
+    Quantity("strain_bin_bounds", "1", "edges of the strain bin"),
+    Quantity("strain_window", "1", "width of the regression window of the tangent modulus"),
+    Quantity("branch_name", "", "branch of the cycle"),
+    Quantity("selected_cycle", "1", "number of a cycle whose curves are kept"),
+    Quantity("first_loading_strain_bin", "1", "centre of the strain bin of the first loading"),
+    Quantity(
+        "first_loading_strain_bin_bounds", "1", "edges of the strain bin of the first loading"
+    ),
+    Quantity("branch_tension_first_loading", "N", "tension of the first loading in the bin"),
+    Quantity("ratio_strain_bin", "1", "centre of the strain bin of the modulus ratio"),
+    Quantity("modulus_ratio", "1", "tangent modulus of one specimen over that of another"),
+    Quantity("modulus_ratio_low", "1", "lower end of the 95 % interval of the modulus ratio"),
+    Quantity("modulus_ratio_high", "1", "upper end of the 95 % interval of the modulus ratio"),
+    Quantity("modulus_ratio_is_different", "1", "whether the interval leaves out 1"),
+    Quantity("ratio_numerator", "", "specimen above the line of the modulus ratio"),
+    Quantity("ratio_denominator", "", "specimen below the line of the modulus ratio"),
     Quantity(
         "tangent_modulus",
         "Pa",
@@ -102,31 +143,88 @@ _ROWS = (
     Quantity("tangent_modulus_by_cycle", "Pa", "tangent modulus of one cycle, trimmed branches"),
     Quantity("branch_tension", "N", "mean tension of the branch in the bin"),
     # segments
+    Quantity("segment", "1", "number of the segment, from the lowest strain"),
+    Quantity("segment_criterion", "", "how the number of segments was chosen"),
     Quantity("segment_modulus", "Pa", "slope of a piecewise-linear segment", "002 Tables 5, 6"),
     Quantity("segment_strain_low", "1", "lower strain end of the segment"),
     Quantity("segment_strain_high", "1", "upper strain end of the segment"),
     Quantity("segment_tension_low", "N", "tension at the lower end of the segment"),
     Quantity("segment_tension_high", "N", "tension at the upper end of the segment"),
+    Quantity("strain_level", "1", "stated elongation"),
     Quantity("stress_at_strain", "Pa", "nominal stress at a stated elongation"),
+    # elastomer laws
+    Quantity("elastomer_specimen", "", "specimen of the elastomer fit"),
+    Quantity("elastomer_law", "", "hyperelastic law"),
+    Quantity("elastomer_rms_stress", "Pa", "root mean square residual of the elastomer fit"),
+    Quantity("elastomer_strain_low", "1", "lower end of the strain range of the fit"),
+    Quantity("elastomer_strain_high", "1", "upper end of the strain range of the fit"),
+    Quantity("elastomer_is_stable", "1", "whether the fitted law is stable over its range"),
+    Quantity("elastomer_aicc", "1", "corrected Akaike criterion of the fit, lower is better"),
+    Quantity("elastomer_parameter_fit", "1", "number of the fit that the parameter belongs to"),
+    Quantity("elastomer_parameter_name", "", "name of the parameter of the law"),
+    Quantity("elastomer_modulus", "Pa", "parameter of the law that is a modulus"),
+    Quantity("elastomer_exponent", "1", "parameter of the law that is an exponent"),
     # splices and specimens
     Quantity("free_length", "m", "splice toe to splice toe"),
     Quantity("relaxed_free_length", "m", "splice toe to splice toe at zero tension", "002 Table 3"),
     Quantity("relaxed_splice_length", "m", "both splices together at zero tension"),
     Quantity("splice_strain", "1", "nominal strain of both splices together"),
+    Quantity("mark_specimen", "", "specimen whose splice marks were read"),
+    Quantity("mark_test", "", "test in which the splice marks were read"),
+    Quantity("mark_hold", "", "hold in which the splice marks were read"),
+    Quantity("mark_position", "m", "far thimble from the near thimble at the marks"),
     Quantity("mark_strain", "1", "strain of the free length read at the marks"),
     Quantity("mark_tension", "N", "mean tension while the marks were read"),
     Quantity("mark_strain_residual", "1", "strain by the method minus strain at the marks"),
     Quantity(
         "strain_slope_ratio", "1", "strain slope of constant-fraction over that of the method"
     ),
+    Quantity("strain_method", "", "how crosshead position becomes strain"),
+    Quantity("strain_marks_from", "", "where the splice marks of the strain method come from"),
+    Quantity("strain_position_low", "m", "lower end of the marked range of position"),
+    Quantity("strain_position_high", "m", "upper end of the marked range of position"),
+    Quantity("strain_tension_low", "N", "lower end of the tension range of the marks"),
+    Quantity("strain_tension_high", "N", "upper end of the tension range of the marks"),
+    Quantity("coefficient_name", "", "coefficient of the strain method"),
+    Quantity("coefficient_name_other", "", "coefficient of the strain method, second axis"),
+    Quantity("strain_coefficient_correlation", "1", "correlation of two strain coefficients"),
+    Quantity("splice_compliance", "1", "strain of the splices at a tension of 1 N, c of c F**n"),
+    Quantity("splice_exponent", "1", "exponent n of tension in the splice strain c F**n"),
+    Quantity("specimen", "", "specimen"),
+    Quantity("specimen_kind", "", "kind of specimen"),
+    Quantity("specimen_material", "", "material of the specimen"),
+    Quantity("specimen_condition", "", "condition of the specimen before the test"),
+    Quantity("diameter_reading", "m", "diameter reading before stretch"),
+    Quantity("stretched_diameter", "m", "diameter reading on the stretched specimen"),
+    Quantity("stretched_diameter_strain", "1", "strain at which a stretched diameter was read"),
+    Quantity("rated_break_strength_source", "", "where the rated break strength is stated"),
+    Quantity("declared_gauge_length", "m", "gauge length at zero tension as declared"),
     Quantity("area", "m2", "cross-sectional area at zero tension"),
     Quantity("diameter", "m", "mean diameter before stretch"),
     Quantity("rated_break_strength", "N", "rated break strength", "003 Table 2"),
     Quantity("earlier_maximum_strain", "1", "greatest strain in the specimen's earlier tests"),
     Quantity("earlier_maximum_tension", "N", "greatest tension in the specimen's earlier tests"),
     Quantity("earlier_cycles", "1", "cycles in the specimen's earlier tests"),
+    Quantity("earlier_tests", "", "the specimen's earlier tests, oldest first"),
     Quantity("permanent_set", "1", "strain left at zero tension after the test"),
+    # standstills
+    Quantity("standstill_start_time", "s", "elapsed time at the start of the standstill"),
+    Quantity("standstill_end_time", "s", "elapsed time at the end of the standstill"),
+    Quantity("standstill_position", "m", "mean crosshead position of the standstill"),
+    Quantity("standstill_tension", "N", "mean tension of the standstill"),
+    Quantity("standstill_is_rest", "1", "whether every specimen is slack"),
+    Quantity("standstill_position_tolerance", "m", "range of position allowed in a standstill"),
+    Quantity("slack_tension", "N", "tension at or below which a standstill is a rest"),
     # holds
+    Quantity("hold", "1", "number of the hold"),
+    Quantity("hold_specimen", "", "specimen of the hold"),
+    Quantity("hold_kind", "", "relaxation or creep"),
+    Quantity("hold_criterion", "", "how the number of Prony terms was chosen"),
+    Quantity("hold_refusal", "", "numbers of the hold that are refused, and why"),
+    Quantity("hold_time", "s", "time after the end of the ramp"),
+    Quantity("tension_at_time", "N", "tension at a stated time after the ramp"),
+    Quantity("strain_at_time", "1", "strain at a stated time after the ramp"),
+    Quantity("prony_term", "1", "number of the Prony term"),
     Quantity("hold_start_time", "s", "elapsed time at the start of the hold"),
     Quantity("hold_duration", "s", "length of the hold"),
     Quantity("hold_strain", "1", "mean strain in the hold"),
@@ -139,12 +237,32 @@ _ROWS = (
     Quantity("prony_time", "s", "relaxation time of a Prony term"),
     Quantity("long_time_tension", "N", "tension the Prony series tends to"),
     # steps
-    Quantity("gauge_length", "m", "distance between gauge marks at zero tension", "002 Table 4"),
+    Quantity("gauge_length", "m", "distance between the gauge marks at the step", "002 Table 4"),
+    Quantity("relaxed_gauge_length", "m", "gauge length at zero tension, as recovered"),
+    Quantity("clock", "", "clock time of the reading, as printed"),
+    Quantity("printed_strain", "1", "elongation as recorded"),
+    Quantity("step_flag", "1", "quality of the reading"),
+    Quantity("interval_strain", "1", "strain in the middle of two readings"),
+    Quantity("interval_modulus", "Pa", "slope of stress on strain between two readings"),
+    Quantity("interval_branch", "1", "branch between two readings"),
     Quantity("eye_to_eye_length", "m", "eye-to-eye length", "002 Table 4"),
     # slips
+    Quantity("slip_specimen", "", "specimen that stepped"),
     Quantity("slip_cycle", "1", "first cycle after a step"),
+    Quantity("slip_cycle_low", "1", "first cycle in which the step may lie"),
+    Quantity("slip_cycle_high", "1", "last cycle in which the step may lie"),
+    Quantity("n_slips", "1", "number of steps found"),
+    Quantity("creep_per_cycle", "N", "steady drift of peak tension per cycle, steps taken out"),
     Quantity("slip_tension_step", "N", "step of peak tension"),
     Quantity("slip_length", "m", "splice length let out by the step"),
+    # what is known about the record
+    Quantity("note", "", "quality note"),
+    Quantity("note_stage", "", "stage that gave the note"),
+    Quantity("channel", "", "channel of the log"),
+    Quantity("quality_mask", "", "mask of the quality flag"),
+    Quantity("n_rows_read", "1", "data rows in the raw files"),
+    Quantity("n_rows_kept", "1", "rows kept"),
+    Quantity("n_flagged", "1", "rows flagged"),
 )
 QUANTITIES = {row.name: row for row in _ROWS}
 
