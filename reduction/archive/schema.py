@@ -1,0 +1,326 @@
+"""Every variable an archive may have: one table, and nothing else is written.
+
+Which variables a file has depends on what the test gave; a part that a test does not
+give is absent, not filled.  Dimensions:
+
+=============================  ============================================================
+dimension                      one entry for
+=============================  ============================================================
+``specimen``                   each specimen; text coordinate ``specimen``
+``sample``                     each row of the log; auxiliary coordinate ``time``
+``standstill``                 each interval in which the crosshead stands still
+``cycle``                      each whole cycle; coordinate ``cycle`` (1, 2, ...)
+``branch_name``                ascending, descending; text coordinate ``branch_name``
+``strain_bin``                 each strain bin; ``strain_bin`` with ``strain_bin_bounds``
+``first_loading_strain_bin``   the same for the first loading of the record
+``ratio_strain_bin``           the same for the ratio of two specimens
+``selected_cycle``             each cycle whose own curve is kept
+``segment``                    each piecewise-linear segment, from the lowest strain
+``strain_level``               each stated elongation
+``coefficient_name``           each coefficient of the strain methods in the file
+``mark``                       each reading of the splice marks (``mark_specimen``, ...)
+``reading``                    each diameter reading, ``stretched_reading`` when stretched
+``slip``                       each step of a splice (``slip_specimen``, ...)
+``hold``                       each hold and specimen (``hold_specimen``, ...)
+``hold_time``, ``prony_term``  each stated time after the ramp; each term of a Prony series
+``elastomer_fit``              each law and specimen
+``elastomer_parameter``        each parameter; ``elastomer_parameter_fit`` counts fits from 1
+``step``, ``interval``         each reading of a stepwise test; between two readings
+``channel``, ``quality_mask``  each channel of the log; each mask of the quality flags
+``note``                       each quality note (``note``, ``note_stage``)
+``bound``                      lower and upper edge of a cell
+=============================  ============================================================
+
+A stepwise test has ``time``, ``tension``, ``strain`` and ``branch`` along ``step`` and no
+``sample``.  The coefficients of the strain methods are variables of their own along
+``specimen`` (``relaxed_free_length``, ``splice_exponent``, ...), each with its standard
+uncertainty; ``strain_coefficient_correlation`` completes their covariance.
+
+References
+----------
+.. [1] CF Conventions 1.11, Eaton et al., 2023.
+"""
+
+from __future__ import annotations
+
+from itertools import chain
+
+from reduction.archive.variable import Variable, count, flag, label, mask, measured, stated
+from reduction.record import Quality
+from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES
+
+__all__ = ["COEFFICIENTS", "QUALITY_MASKS", "SCHEMA", "SCHEMA_VERSION", "STEPWISE", "schema_of"]
+
+SCHEMA_VERSION = "1"
+"""Changes when a name, dimension or meaning changes; additions leave it as it is."""
+
+QUALITY_MASKS = {(mask_.name or "").lower(): int(mask_) for mask_ in Quality}
+_NO_YES = {"no": 0, "yes": 1}
+_STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
+
+READING = "a reading: its uncertainty is that of the channel"
+CLOCK = "a reading of the clock"
+BOUND = "bound"
+SETTING = "setting"
+STATED = "stated by the laboratory"
+AXIS = "axis of the curve"
+CHECK = "residual of a check"
+CRITERION = "criterion of a fit"
+MEAN_READING = "mean of readings: its uncertainty is that of the channel"
+NOT_EVALUATED = "not evaluated"
+
+COEFFICIENTS = (
+    "relaxed_free_length",
+    "relaxed_splice_length",
+    "splice_compliance",
+    "splice_exponent",
+)
+"""Coefficients that a strain method may have, each along ``specimen``."""
+
+_S = ("specimen",)
+_C = ("specimen", "cycle")
+_CB = ("cycle", "branch_name")
+_B = ("specimen", "branch_name", "strain_bin")
+_F = ("specimen", "branch_name", "first_loading_strain_bin")
+_BC = ("specimen", "selected_cycle", "branch_name", "strain_bin")
+_G = ("specimen", "branch_name", "segment")
+_R = ("branch_name", "ratio_strain_bin")
+
+_ROWS = chain(
+    # coordinates
+    label("specimen", _S),
+    label("branch_name", ("branch_name",)),
+    stated("time", ("sample",), CLOCK),
+    count("cycle", ("cycle",)),
+    count("selected_cycle", ("selected_cycle",)),
+    count("segment", ("segment",)),
+    count("hold", ("hold",)),
+    count("prony_term", ("prony_term",)),
+    stated("hold_time", ("hold_time",), SETTING),
+    stated("strain_level", ("strain_level",), SETTING),
+    stated("strain_bin", ("strain_bin",), AXIS, bounds="strain_bin_bounds"),
+    stated("strain_bin_bounds", ("strain_bin", "bound"), BOUND),
+    stated(
+        "first_loading_strain_bin",
+        ("first_loading_strain_bin",),
+        AXIS,
+        bounds="first_loading_strain_bin_bounds",
+    ),
+    stated("first_loading_strain_bin_bounds", ("first_loading_strain_bin", "bound"), BOUND),
+    stated("ratio_strain_bin", ("ratio_strain_bin",), AXIS),
+    label("coefficient_name", ("coefficient_name",)),
+    label("coefficient_name_other", ("coefficient_name_other",)),
+    label("channel", ("channel",)),
+    label("quality_mask", ("quality_mask",)),
+    # specimens
+    label("specimen_kind", _S),
+    label("specimen_material", _S),
+    label("specimen_condition", _S),
+    stated("diameter", _S, "mean of the diameter readings; see diameter_reading"),
+    stated("diameter_reading", ("specimen", "reading"), STATED),
+    stated("stretched_diameter", ("specimen", "stretched_reading"), STATED),
+    stated("stretched_diameter_strain", ("specimen", "stretched_reading"), STATED),
+    stated("area", _S, "from the diameter; see diameter_reading"),
+    stated("rated_break_strength", _S, STATED),
+    label("rated_break_strength_source", _S),
+    stated("declared_gauge_length", _S, STATED),
+    label("earlier_tests", _S),
+    stated("earlier_maximum_strain", _S, "bound: greatest value seen"),
+    stated("earlier_maximum_tension", _S, "bound: greatest value seen"),
+    stated("earlier_cycles", _S, "count"),
+    # samples
+    measured(
+        "crosshead_position",
+        ("sample",),
+        uncertainty_dims=(),
+        ancillary=("crosshead_position_quality_flag",),
+    ),
+    measured(
+        "crosshead_displacement",
+        ("sample",),
+        uncertainty_dims=(),
+        ancillary=("crosshead_position_quality_flag",),
+    ),
+    mask("crosshead_position_quality_flag", ("sample",), QUALITY_MASKS),
+    measured("tension", ("specimen", "sample"), uncertainty_dims=_S, ancillary=("quality_flag",)),
+    mask("quality_flag", ("specimen", "sample"), QUALITY_MASKS),
+    stated("strain", ("specimen", "sample"), READING, ancillary=("quality_flag",)),
+    stated("measured_strain", ("specimen", "sample"), READING),
+    stated("nominal_stress", ("specimen", "sample"), READING, ancillary=("quality_flag",)),
+    flag("phase", ("sample",), PHASE_VALUES),
+    count("cycle_number", ("sample",)),
+    count("machine_cycle_number", ("sample",)),
+    flag("branch", ("sample",), BRANCH_VALUES),
+    # standstills
+    stated("standstill_start_time", ("standstill",), CLOCK),
+    stated("standstill_end_time", ("standstill",), CLOCK),
+    stated("standstill_position", ("standstill",), MEAN_READING),
+    stated("standstill_tension", ("specimen", "standstill"), MEAN_READING),
+    flag("standstill_is_rest", ("standstill",), _NO_YES),
+    stated("standstill_position_tolerance", (), SETTING),
+    stated("slack_tension", (), SETTING),
+    # strain methods
+    label("strain_method", _S),
+    label("strain_marks_from", _S),
+    chain.from_iterable(measured(name, _S) for name in COEFFICIENTS),
+    stated(
+        "strain_coefficient_correlation",
+        ("specimen", "coefficient_name", "coefficient_name_other"),
+        "is part of an uncertainty",
+    ),
+    stated("strain_position_low", _S, BOUND),
+    stated("strain_position_high", _S, BOUND),
+    stated("strain_tension_low", _S, BOUND),
+    stated("strain_tension_high", _S, BOUND),
+    stated("strain_slope_ratio", _S, NOT_EVALUATED),
+    label("mark_specimen", ("mark",)),
+    label("mark_test", ("mark",)),
+    label("mark_hold", ("mark",)),
+    stated("mark_position", ("mark",), "a tape reading"),
+    stated("mark_strain", ("mark",), "from tape readings"),
+    stated("mark_tension", ("mark",), MEAN_READING),
+    stated("mark_strain_residual", ("mark",), CHECK),
+    # cycles
+    label("cycles_counted_by"),
+    stated("position_band", (), SETTING),
+    stated("tension_band", (), SETTING),
+    count("cycle_first_sample", ("cycle",)),
+    count("cycle_last_sample", ("cycle",)),
+    count("branch_first_sample", _CB),
+    count("branch_last_sample", _CB),
+    stated("crosshead_rate", _CB, NOT_EVALUATED),
+    stated("tension_rate", _CB, NOT_EVALUATED),
+    stated("cycle_start_time", _C, CLOCK),
+    chain.from_iterable(
+        measured(name, _C)
+        for name in (
+            "frequency",
+            "mean_tension",
+            "tension_amplitude",
+            "mean_strain",
+            "strain_amplitude",
+            "peak_tension",
+            "valley_tension",
+            "apparent_spring_constant",
+            "hysteresis_energy",
+            "storage_spring_constant",
+            "loss_spring_constant",
+            "loss_factor",
+            "fundamental_energy_share",
+        )
+    ),
+    stated("stroke_mean_modulus_difference", _C, "one side of a check"),
+    stated("tension_loss_modulus", _C, "one side of a check"),
+    stated("identity_residual", _C, CHECK),
+    chain.from_iterable(
+        measured(name, _S)
+        for name in (
+            "test_mean_strain",
+            "test_strain_amplitude",
+            "test_frequency",
+            "test_dynamic_modulus",
+            "test_loss_factor",
+            "test_hysteresis_energy",
+            "peak_tension_per_decade",
+            "dynamic_modulus_per_decade",
+        )
+    ),
+    stated("peak_tension_change", _S, NOT_EVALUATED),
+    # curves
+    stated("strain_window", (), SETTING),
+    measured("tangent_modulus", _B, "_count", "_minimum", "_maximum", "_scatter"),
+    measured("tangent_modulus_untrimmed", _B),
+    measured("branch_tension", _B),
+    measured("tangent_modulus_by_cycle", _BC),
+    measured("tangent_modulus_first_loading", _F),
+    measured("branch_tension_first_loading", _F),
+    measured("segment_modulus", _G),
+    stated("segment_strain_low", _G, BOUND),
+    stated("segment_strain_high", _G, BOUND),
+    stated("segment_tension_low", _G, BOUND),
+    stated("segment_tension_high", _G, BOUND),
+    label("segment_criterion"),
+    stated("stress_at_strain", ("specimen", "strain_level"), NOT_EVALUATED),
+    stated("permanent_set", _S, NOT_EVALUATED),
+    # the ratio of two specimens
+    label("ratio_numerator"),
+    label("ratio_denominator"),
+    measured("modulus_ratio", _R),
+    stated("modulus_ratio_low", _R, BOUND),
+    stated("modulus_ratio_high", _R, BOUND),
+    flag("modulus_ratio_is_different", _R, _NO_YES),
+    # slips
+    count("n_slips", _S),
+    label("slip_specimen", ("slip",)),
+    count("slip_cycle", ("slip",)),
+    count("slip_cycle_low", ("slip",)),
+    count("slip_cycle_high", ("slip",)),
+    measured("slip_tension_step", ("slip",)),
+    measured("slip_length", ("slip",)),
+    stated("creep_per_cycle", _S, NOT_EVALUATED),
+    # elastomer laws
+    label("elastomer_specimen", ("elastomer_fit",)),
+    label("elastomer_law", ("elastomer_fit",)),
+    stated("elastomer_rms_stress", ("elastomer_fit",), "is itself a measure of spread"),
+    stated("elastomer_strain_low", ("elastomer_fit",), BOUND),
+    stated("elastomer_strain_high", ("elastomer_fit",), BOUND),
+    flag("elastomer_is_stable", ("elastomer_fit",), _NO_YES),
+    stated("elastomer_aicc", ("elastomer_fit",), CRITERION),
+    count("elastomer_parameter_fit", ("elastomer_parameter",)),
+    label("elastomer_parameter_name", ("elastomer_parameter",)),
+    measured("elastomer_modulus", ("elastomer_parameter",)),
+    measured("elastomer_exponent", ("elastomer_parameter",)),
+    # holds
+    label("hold_specimen", ("hold",)),
+    label("hold_kind", ("hold",)),
+    stated("hold_start_time", ("hold",), CLOCK),
+    stated("hold_duration", ("hold",), CLOCK),
+    stated("hold_strain", ("hold",), MEAN_READING),
+    stated("hold_initial_tension", ("hold",), MEAN_READING),
+    stated("hold_final_tension", ("hold",), MEAN_READING),
+    measured("relaxation_drop", ("hold",)),
+    measured("relaxation_rate_per_decade", ("hold",)),
+    measured("creep_rate_per_decade", ("hold",)),
+    stated("tension_at_time", ("hold", "hold_time"), MEAN_READING),
+    stated("strain_at_time", ("hold", "hold_time"), MEAN_READING),
+    measured("prony_tension", ("hold", "prony_term")),
+    measured("prony_time", ("hold", "prony_term")),
+    measured("long_time_tension", ("hold",)),
+    label("hold_criterion", ("hold",)),
+    label("hold_refusal", ("hold",)),
+    # steps
+    label("clock", ("step",)),
+    stated("gauge_length", ("step",), "a tape reading"),
+    stated("eye_to_eye_length", ("step",), "a tape reading"),
+    stated("printed_strain", ("step",), STATED),
+    mask("step_flag", ("step",), _STEP_MASKS),
+    stated("secant_modulus", ("step",), NOT_EVALUATED),
+    measured("relaxed_gauge_length", ()),
+    stated("interval_strain", ("interval",), "middle of two readings"),
+    measured("interval_modulus", ("interval",)),
+    flag("interval_branch", ("interval",), BRANCH_VALUES),
+    # the record and what is known about it
+    count("n_rows_read", ()),
+    count("n_rows_kept", ()),
+    count("n_flagged", ("channel", "quality_mask")),
+    label("note", ("note",)),
+    label("note_stage", ("note",)),
+)
+SCHEMA: dict[str, Variable] = {row.name: row for row in _ROWS}
+STEPWISE: dict[str, Variable] = {
+    row.name: row
+    for row in chain(
+        stated("time", ("step",), CLOCK),
+        stated("tension", ("step",), "weights as stated"),
+        stated("strain", ("step",), "from tape readings", ancillary=("step_flag",)),
+        flag("branch", ("step",), BRANCH_VALUES),
+    )
+}
+"""Names that stand along ``step`` in a stepwise test."""
+
+
+def schema_of(*, is_stepwise: bool) -> dict[str, Variable]:
+    """Return the variables of a record, or of a stepwise test."""
+    if not is_stepwise:
+        return SCHEMA
+    return SCHEMA | STEPWISE
