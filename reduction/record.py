@@ -25,6 +25,7 @@ __all__ = [
     "Record",
     "Specimen",
     "SpliceMarks",
+    "StepReadings",
     "freeze_arrays",
 ]
 
@@ -246,3 +247,27 @@ class Record:
     def n_samples(self) -> int:
         """Number of rows kept."""
         return int(self.time.shape[0])
+
+
+@dataclass(frozen=True)
+class StepReadings:
+    """Readings of a stepwise test in SI, one row a weight; arrays have shape (n_steps,).
+
+    ``clock`` is the text of the log; ``printed_strain`` the elongation as recorded,
+    ``eye_to_eye_length`` and it NaN where the log lacks them.
+    """
+
+    clock: tuple[str, ...]
+    time: Floats
+    tension: Floats
+    length: Floats
+    eye_to_eye_length: Floats
+    printed_strain: Floats
+    length_standard_uncertainty: float = float("nan")
+    tension_standard_uncertainty: float = float("nan")
+    metadata: dict[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)

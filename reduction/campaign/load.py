@@ -168,6 +168,8 @@ def _plan(
         except SettingsError as error:
             raise _in_toml(path, f"test '{name}': {error}") from error
     kind = test.kind or defaults.kind
+    if len({step.name.replace(" ", "-") for step in test.steps}) < len(test.steps):
+        raise _in_toml(path, f"two steps of test '{name}' have one name")
     attributes = {key: given(key) for key in _KEPT if given(key)}
     attributes |= {key: getattr(test, key) for key in ("date", "rest") if getattr(test, key)}
     return TestPlan(

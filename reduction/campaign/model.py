@@ -29,7 +29,8 @@ TestKind = Literal[
     "cyclic", "fatigue", "relaxation", "creep", "stepwise", "quasi-static", "tensile", "snap"
 ]
 # a name becomes a file name, so it may hold nothing that a path or a shell reads
-Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.\-]{0,99}$")]
+Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_\-]{0,99}$")]
+StepName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_ \-]{0,99}$")]
 Text = Annotated[str, StringConstraints(max_length=2000)]
 
 
@@ -129,7 +130,7 @@ class StepSection(_Section):
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
-    name: Text
+    name: StepName
     start: str | int = Field(alias="from")
     """A time with its unit, or a cycle number of the whole log."""
     end: str | int = Field(alias="to")
