@@ -62,6 +62,7 @@ class History:
 class ReducedTest:
     """One reduced test with all its specimens.
 
+    ``record`` is None for a stepwise test, which has readings (`stepwise`) and no log.
     ``strain`` has shape (n_specimens, n_samples) [1].  Parts that the kind of test
     does not give are None (or empty); `notes` are the quality notes a reader must see,
     `steps` the history lines, `settings_json` every setting that was in force.
@@ -69,7 +70,7 @@ class ReducedTest:
 
     description: TestDescription
     specimens: tuple[Specimen, ...]
-    record: Record
+    record: Record | None
     sources: tuple[Source, ...]
     steps: tuple[Step, ...]
     settings_json: str

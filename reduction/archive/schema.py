@@ -69,13 +69,22 @@ CRITERION = "criterion of a fit"
 MEAN_READING = "mean of readings: its uncertainty is that of the channel"
 NOT_EVALUATED = "not evaluated"
 
-COEFFICIENTS = (
-    "relaxed_free_length",
-    "relaxed_splice_length",
-    "splice_compliance",
-    "splice_exponent",
-)
-"""Coefficients that a strain method may have, each along ``specimen``."""
+COEFFICIENTS = {
+    "relaxed_free_length": "relaxed_free_length",
+    "relaxed_splice_length": "relaxed_splice_length",
+    "splice_compliance": "splice_compliance",
+    "splice_exponent": "splice_exponent",
+    "splice_strain_ratio": "splice_strain_ratio",
+    "free_length_intercept": "free_length_intercept",
+    "free_length_slope": "free_length_slope",
+    "free_fraction": "free_fraction",
+    "reference_position": "reference_position",
+    "gauge_length": "strain_gauge_length",
+}
+"""Coefficient of a strain method to its name here, along ``specimen``.
+
+They differ where the name has another meaning in a product.
+"""
 
 _S = ("specimen",)
 _C = ("specimen", "cycle")
@@ -162,7 +171,7 @@ _ROWS = chain(
     # strain methods
     label("strain_method", _S),
     label("strain_marks_from", _S),
-    chain.from_iterable(measured(name, _S) for name in COEFFICIENTS),
+    chain.from_iterable(measured(name, _S) for name in COEFFICIENTS.values()),
     stated(
         "strain_coefficient_correlation",
         ("specimen", "coefficient_name", "coefficient_name_other"),

@@ -1,0 +1,85 @@
+"""Global attributes: what the file is, where it came from, what was done to it.
+
+Every attribute is text and none is a list: a list of one does not survive netCDF.
+Several raw files stand one a line, and so do the stages in ``history``.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+
+from reduction.archive.schema import SCHEMA_VERSION
+from reduction.errors import ArchiveError
+from reduction.product import ReducedTest
+
+__all__ = ["CONVENTIONS", "global_attributes"]
+
+CONVENTIONS = "CF-1.11 ACDD-1.3"
+_SOFTWARE = "mooring-reduction"
+_KEYWORDS = "mooring, tension test, elastic modulus, hysteresis"
+_LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
+def global_attributes(test: ReducedTest, *, version: str, command: str) -> dict[str, str]:
+    """Return the global attributes in a fixed order; empty ones are left out."""
+    about = test.description
+    given = dict(about.attributes)
+    names = " and ".join(one.name for one in test.specimens)
+    title = given.pop("title", f"Campaign {about.campaign_id}")
+    source = given.pop("source", "")
+    if given.get("synthetic") == "yes":
+        # a reader who sees only the title or only the source has to see it too
+        title = title if "synthetic" in title.lower() else f"{title} (synthetic data)"
+        source = source if "synthetic" in source.lower() else f"synthetic; {source}".rstrip("; ")
+    own = {
+        "Conventions": CONVENTIONS,
+        "schema_version": SCHEMA_VERSION,
+        "title": title,
+        "summary": given.pop(
+            "summary", f"Reduced {about.kind} test {about.test_id} of specimen {names}."
+        ),
+        "keywords": given.pop("keywords", _KEYWORDS),
+        "source": source,
+        "id": f"{about.campaign_id}/{about.test_id}",
+        "campaign": about.campaign_id,
+        "test": about.test_id,
+        "test_kind": about.kind,
+        "control": about.control,
+        "waveform": about.waveform,
+        "test_order": "" if about.order is None else str(about.order),
+        "raw_file": "\n".join(one.name for one in test.sources),
+        "raw_file_sha256": "\n".join(one.sha256 for one in test.sources),
+        "raw_file_bytes": "\n".join(str(one.size) for one in test.sources),
+        "raw_metadata": "" if test.record is None else _as_json(test.record.metadata),
+        "settings": test.settings_json,
+        "command": command,
+        "history": "\n".join(step.line(version) for step in test.steps),
+        "software": _SOFTWARE,
+        "software_version": version,
+        "processing_level": "reduced",
+    }
+    _refuse_names(given, own)
+    return {name: text for name, text in (own | given).items() if text}
+
+
+def _as_json(metadata: dict[str, str]) -> str:
+    return json.dumps(metadata, ensure_ascii=False) if metadata else ""
+
+
+def _refuse_names(given: dict[str, str], own: dict[str, str]) -> None:
+    taken = sorted(set(given) & set(own))
+    if taken:
+        raise ArchiveError(
+            "attributes of the test have names that the archive keeps for itself",
+            found=", ".join(taken),
+            hint="Give them another name in campaign.toml.",
+        )
+    illegal = sorted(name for name in given if not _LEGAL.fullmatch(name))
+    if illegal:
+        raise ArchiveError(
+            "attributes of the test have names that CF does not allow",
+            found=", ".join(illegal),
+            needed="letters, digits and underscores, a letter first",
+            hint="Give them another name in campaign.toml.",
+        )

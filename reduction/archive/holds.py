@@ -1,0 +1,79 @@
+"""Standstills, and the holds that were reduced among them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from reduction.archive.values import Values, numbers, pad, texts
+from reduction.holds.product import HoldResult
+from reduction.phases.standstill import Standstills
+from reduction.record import Floats
+
+__all__ = ["hold_values", "standstill_values"]
+
+_PLAIN = (
+    "hold_start_time",
+    "hold_duration",
+    "hold_strain",
+    "hold_initial_tension",
+    "hold_final_tension",
+    "relaxation_drop",
+    "relaxation_drop_standard_uncertainty",
+    "long_time_tension",
+    "long_time_tension_standard_uncertainty",
+)
+_PRONY = (
+    "prony_tension",
+    "prony_tension_standard_uncertainty",
+    "prony_time",
+    "prony_time_standard_uncertainty",
+)
+
+
+def standstill_values(standstills: Standstills) -> Values:
+    """Return every interval in which the crosshead stands still."""
+    return {
+        "standstill_start_time": standstills.start_time,
+        "standstill_end_time": standstills.end_time,
+        "standstill_position": standstills.mean_position,
+        "standstill_tension": standstills.mean_tension,
+        "standstill_is_rest": standstills.is_rest,
+        "standstill_position_tolerance": np.array(standstills.position_tolerance),
+        "slack_tension": np.array(standstills.slack_tension),
+    }
+
+
+def hold_values(holds: Sequence[HoldResult]) -> Values:
+    """Return one row a hold and specimen, ragged parts padded with NaN."""
+    values: Values = {
+        "hold": np.arange(1, len(holds) + 1),
+        "hold_specimen": texts([one.specimen for one in holds]),
+        "hold_kind": texts([one.kind for one in holds]),
+        "hold_criterion": texts([one.criterion for one in holds]),
+        "hold_refusal": texts(["; ".join(one.refusals) for one in holds]),
+    }
+    for name in _PLAIN:
+        values[name] = numbers([getattr(one, name) for one in holds])
+    for kind in ("relaxation", "creep"):
+        # share of tension and gain of strain are two quantities, so two names
+        chosen = [one.kind == kind for one in holds]
+        for suffix in ("", "_standard_uncertainty"):
+            rate = numbers([getattr(one, f"rate_per_decade{suffix}") for one in holds])
+            values[f"{kind}_rate_per_decade{suffix}"] = np.where(chosen, rate, np.nan)
+    times = np.unique(np.concatenate([np.empty(0), *(one.times for one in holds)]))
+    values["hold_time"] = times
+    for name in ("tension_at_time", "strain_at_time"):
+        values[name] = _on_common_times(holds, name, times)
+    for name in _PRONY:
+        values[name] = pad([getattr(one, name) for one in holds])
+    values["prony_term"] = np.arange(1, values["prony_time"].shape[1] + 1)
+    return values
+
+
+def _on_common_times(holds: Sequence[HoldResult], name: str, times: Floats) -> Floats:
+    table = np.full((len(holds), times.size), np.nan)
+    for row, one in zip(table, holds, strict=True):
+        row[np.searchsorted(times, one.times)] = getattr(one, name)
+    return table
