@@ -89,10 +89,10 @@ def to_dataset(test: ReducedTest, *, version: str, command: str) -> xr.Dataset:
 def _all_values(test: ReducedTest) -> Values:
     names = tuple(one.name for one in test.specimens)
     values = specimen_values(test.specimens) | note_values(test)
-    if test.record is not None:
-        values |= row_account(test.record) | sample_values(test, test.record)
     if test.stepwise is not None:
         values |= stepwise_values(test.stepwise)
+    elif test.record is not None:
+        values |= row_account(test.record) | sample_values(test, test.record)
     if test.history is not None:
         values |= history_values(test.history)
     if test.strain_models:

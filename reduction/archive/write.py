@@ -1,4 +1,4 @@
-"""Writing an archive: checked before it gets its name, so that a bad file is never seen."""
+"""Writing products: an archive is checked before it gets its name, so a bad one is never seen."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from reduction.archive.check import check_archive
 from reduction.archive.whole import whole_file
 from reduction.errors import ArchiveError
 
-__all__ = ["write_archive"]
+__all__ = ["write_archive", "write_whole"]
 
 
 def write_archive(dataset: xr.Dataset, path: Path) -> None:
@@ -31,20 +31,51 @@ def write_archive(dataset: xr.Dataset, path: Path) -> None:
     try:
         with whole_file(path) as part:
             dataset.to_netcdf(part, format="NETCDF4", engine="netcdf4")
-            findings = check_archive(part)
-            if findings:
-                raise ArchiveError(
-                    f"{path.name} does not follow CF and is not kept",
-                    found="; ".join(findings[:5]),
-                    needed="no finding",
-                    n_findings=len(findings),
-                )
+            _refuse_faults(part, path.name)
     except ArchiveError:
         raise
-    except (OSError, RuntimeError, ValueError) as error:
-        # the netCDF library reports a full disk as RuntimeError
+    except (OSError, RuntimeError) as error:
+        raise _not_written(path, error) from error
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a text file in UTF-8, line ends as they are in ``text``, whole or not at all.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file; one that is there is replaced at the very end, or kept.
+    text : str
+        All of it.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    try:
+        with whole_file(path) as part:
+            part.write_text(text, encoding="utf-8", newline="")
+    except OSError as error:
+        raise _not_written(path, error) from error
+
+
+def _refuse_faults(part: Path, name: str) -> None:
+    findings = check_archive(part)
+    if findings:
         raise ArchiveError(
-            f"{path.name} cannot be written",
-            found=str(error),
-            hint="What was there before is kept. Check the folder and the space on the disk.",
-        ) from error
+            f"{name} does not follow CF and is not kept",
+            found="; ".join(findings[:5]),
+            needed="no finding",
+            hint="This is a defect of the software; the file before is kept.",
+            n_findings=len(findings),
+        )
+
+
+def _not_written(path: Path, error: Exception) -> ArchiveError:
+    # the netCDF library reports a full disk as RuntimeError, without the name of the file
+    return ArchiveError(
+        f"{path.name} cannot be written",
+        found=getattr(error, "strerror", None) or str(error),
+        hint="What was there before is kept. Check the folder and the space on the disk.",
+    )
