@@ -40,6 +40,8 @@ DIMENSIONS: dict[Dimension, str] = {
 _PINT_SI = {"m2": "m**2", "m s-1": "m/s", "N s-1": "N/s", "1": "dimensionless"}
 _US = {"m": "ft", "N": "lbf", "Pa": "psi", "m2": "in2", "J m-1": "lbf", "m s-1": "ft s-1"}
 _US_PINT = {"in2": "in**2", "ft s-1": "ft/s"}
+# as test machines write them, where pint has no such name
+_SPELLINGS = {"Sec": "s", "SEC": "s", "Secs": "s", "lb": "pound", "IN": "in", "KN": "kN"}
 _QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
 
 
@@ -53,6 +55,7 @@ def _registry() -> pint.UnitRegistry[float]:
 
 def _pint_text(unit: str) -> str:
     text = unit.strip()
+    text = _SPELLINGS.get(text, text)
     if text in ("", "1", "-"):
         return "dimensionless"
     # the degree, square and dot signs that test machines write

@@ -1,0 +1,79 @@
+"""What each specimen had seen before a test, from the order of its tests."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from reduction.batch.survey import Survey
+from reduction.product import History
+from reduction.strain.fit import free_length_strain_of
+from reduction.strain.model import StrainModel
+
+__all__ = ["history_of"]
+
+
+def _greatest_strain(survey: Survey, name: str, model: StrainModel) -> float:
+    """Strain where the position was greatest; the extremes of both coincide in a pull."""
+    position, tension, _ = survey.greatest[name]
+    strain = free_length_strain_of(
+        model, position=np.array([position]), tension=np.array([tension])
+    )
+    return float(strain[0])
+
+
+def history_of(
+    survey: Survey,
+    surveys: Sequence[Survey],
+    models: Mapping[tuple[str, str], StrainModel],
+) -> History | None:
+    """Earlier maximum strain and tension and cumulative cycles of each specimen.
+
+    Parameters
+    ----------
+    survey : Survey
+        The test; one that is a part of another has the history of that one.
+    surveys : sequence of Survey
+        All tests of the campaign.
+    models : mapping of (test, specimen) to StrainModel
+        How position becomes strain.
+
+    Returns
+    -------
+    history : History or None
+        None where the test has no place in the order.
+    """
+    by_test = {entry.plan.id: entry for entry in surveys}
+    order = survey.plan.order
+    if survey.plan.part_of in by_test:
+        order = by_test[survey.plan.part_of].plan.order
+    if order is None:
+        return None
+    tests: list[tuple[str, ...]] = []
+    strain, tension, cycles = [], [], []
+    for name in survey.plan.specimens:
+        earlier = [
+            entry
+            for entry in surveys
+            if entry.plan.order is not None
+            and entry.plan.order < order
+            and entry.plan.part_of is None
+            and name in entry.plan.specimens
+        ]
+        seen = [entry for entry in earlier if name in entry.greatest]
+        strains = [
+            _greatest_strain(entry, name, models[entry.plan.id, name])
+            for entry in seen
+            if (entry.plan.id, name) in models
+        ]
+        tests.append(tuple(entry.plan.id for entry in earlier))
+        strain.append(float(np.max(strains)) if strains else float("nan"))
+        tension.append(max((entry.greatest[name][2] for entry in seen), default=float("nan")))
+        cycles.append(float(sum(entry.n_cycles for entry in earlier)))
+    return History(
+        earlier_tests=tuple(tests),
+        earlier_maximum_strain=np.array(strain),
+        earlier_maximum_tension=np.array(tension),
+        earlier_cycles=np.array(cycles),
+    )

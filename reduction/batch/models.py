@@ -1,0 +1,66 @@
+"""Strain models of a campaign: the marks of a specimen pooled over its tests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from reduction.batch.survey import Survey
+from reduction.campaign.plan import Campaign
+from reduction.errors import ReductionError
+from reduction.record import Floats, SpliceMarks
+from reduction.strain.fit import fit_strain_model
+from reduction.strain.model import StrainModel
+
+__all__ = ["fit_strain_models"]
+
+
+def _pooled_tension(marks: SpliceMarks, surveys: Sequence[Survey]) -> Floats:
+    """One tension a mark, in the order of the marks; NaN where its test could not be read."""
+    tension = np.full(len(marks.test), np.nan)
+    of_test = np.array(marks.test)
+    for survey in surveys:
+        measured = survey.mark_tension.get(marks.specimen)
+        if measured is not None:
+            tension[of_test == survey.plan.id] = measured
+    return tension
+
+
+def fit_strain_models(
+    campaign: Campaign, surveys: Sequence[Survey]
+) -> tuple[dict[tuple[str, str], StrainModel], dict[str, ReductionError]]:
+    """Fit the strain model of each specimen in each test.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        With the pooled marks.
+    surveys : sequence of Survey
+        With the tension at the marks.
+
+    Returns
+    -------
+    models : dict of (test, specimen) to StrainModel
+        Tests whose log could not be read are left out.
+    errors : dict of test to ReductionError
+        Tests that have no way from position to strain.
+    """
+    tensions = {name: _pooled_tension(marks, surveys) for name, marks in campaign.marks.items()}
+    models: dict[tuple[str, str], StrainModel] = {}
+    errors: dict[str, ReductionError] = {}
+    for survey in surveys:
+        if survey.error is not None or survey.plan.kind == "stepwise":
+            continue
+        for name in survey.plan.specimens:
+            try:
+                models[survey.plan.id, name] = fit_strain_model(
+                    campaign.specimens[name],
+                    test_id=survey.plan.id,
+                    marks=campaign.marks.get(name),
+                    mark_tension=tensions.get(name),
+                    settings=survey.plan.settings.strain,
+                )
+            except ReductionError as error:
+                errors[survey.plan.id] = error
+    return models, errors

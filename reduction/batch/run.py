@@ -1,0 +1,346 @@
+"""A campaign from its logs to its products; each test fails or succeeds by itself."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from reduction import __version__
+from reduction.archive.dataset import to_dataset
+from reduction.archive.open import open_archive
+from reduction.archive.write import write_archive, write_whole
+from reduction.batch.history import history_of
+from reduction.batch.models import fit_strain_models
+from reduction.batch.status import Status, TestStatus, status_csv
+from reduction.batch.survey import Survey, located_again, survey_campaign
+from reduction.campaign.plan import Campaign
+from reduction.errors import ArchiveError, ReductionError, SettingsError
+from reduction.ingest.quality import account_rows
+from reduction.pipeline import reduce_steps, reduce_test
+from reduction.product import History, ReducedTest, TestDescription
+from reduction.report.page import write_report
+from reduction.strain.model import StrainModel
+from reduction.tables.write import write_tables
+from reduction.units import UnitSystem
+
+__all__ = ["CampaignResult", "check_campaign", "run_campaign"]
+
+Progress = Callable[[str, str], None]
+
+
+@dataclass(frozen=True)
+class CampaignResult:
+    """What a run did: one status a test, and what it wrote."""
+
+    tests: tuple[TestStatus, ...]
+    processed: Path
+    report: Path | None
+    stray: tuple[str, ...]
+
+    @property
+    def exit_status(self) -> int:
+        """The highest seen."""
+        return max((test.exit_status for test in self.tests), default=0)
+
+
+def _selected(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
+    """The surveys that were asked for; a test's name stands for all its steps."""
+    if not tests:
+        return list(surveys)
+    known = {survey.plan.id for survey in surveys}
+    known |= {name.rpartition(".")[0] for name in known if "." in name}
+    unknown = sorted(set(tests) - known)
+    if unknown:
+        raise SettingsError(
+            "--test names a test that the campaign lacks",
+            found=", ".join(unknown),
+            needed="one of " + ", ".join(sorted(known)),
+        )
+    return [
+        survey
+        for survey in surveys
+        if survey.plan.id in tests or survey.plan.id.rpartition(".")[0] in tests
+    ]
+
+
+def _settings_json(
+    campaign: Campaign, survey: Survey, models: Sequence[StrainModel], history: History | None
+) -> str:
+    """Every setting that was in force, so that a product says how it can be made again."""
+    plan = survey.plan
+    document: dict[str, Any] = {
+        "kind": plan.kind,
+        "control": plan.control,
+        "waveform": plan.waveform,
+        "target_strain": plan.target_strain,
+        "part_of": plan.part_of,
+        "reduction": asdict(plan.settings),
+        "layouts": {
+            layout: campaign.layouts[layout].model_dump(exclude_defaults=True)
+            for _, layout in plan.files
+        },
+        "specimens": {name: asdict(campaign.specimens[name]) for name in plan.specimens},
+        "strain": {
+            model.specimen: {
+                "method": model.method,
+                "coefficients": model.coefficients,
+                "marks": [
+                    list(row)
+                    for row in zip(
+                        model.mark_test,
+                        model.mark_hold,
+                        model.mark_position.tolist(),
+                        model.mark_tension.tolist(),
+                        strict=True,
+                    )
+                ],
+            }
+            for model in models
+        },
+        "history": None
+        if history is None
+        else {
+            "earlier_tests": history.earlier_tests,
+            "earlier_maximum_strain": history.earlier_maximum_strain.tolist(),
+            "earlier_maximum_tension": history.earlier_maximum_tension.tolist(),
+            "earlier_cycles": history.earlier_cycles.tolist(),
+        },
+    }
+    return json.dumps(document, sort_keys=True, ensure_ascii=False)
+
+
+def _description(campaign: Campaign, survey: Survey) -> TestDescription:
+    plan = survey.plan
+    attributes = campaign.attributes | plan.attributes
+    if plan.part_of is not None:
+        attributes["part_of"] = plan.part_of
+    if plan.target_strain:
+        attributes["target_strain"] = " to ".join(f"{value:g}" for value in plan.target_strain)
+    return TestDescription(
+        campaign_id=campaign.id,
+        test_id=plan.id,
+        kind=plan.kind,
+        control=plan.control,
+        waveform=plan.waveform,
+        order=plan.order,
+        attributes=attributes,
+    )
+
+
+def _is_unchanged(path: Path, survey: Survey, settings: str) -> bool:
+    """Same raw hash, same settings, same version: the product stands as it is."""
+    if not path.exists():
+        return False
+    try:
+        with open_archive(path) as archive:
+            return bool(
+                archive.attrs.get("settings") == settings
+                and archive.attrs.get("software_version") == __version__
+                and archive.attrs.get("raw_file_sha256")
+                == "\n".join(source.sha256 for source in survey.sources)
+            )
+    except ArchiveError:
+        return False  # an archive that cannot be read is made again
+
+
+def _found(survey: Survey) -> dict[str, Any]:
+    """What `check` prints of a test, beside rows and cycles."""
+    if survey.located is None:
+        return {}
+    record = survey.located.record
+    return {
+        "standstills": survey.located.standstills.n_standstills,
+        "flags": {
+            channel: masks for channel, masks in account_rows(record).n_flagged.items() if masks
+        },
+        "notes": list(record.notes),
+    }
+
+
+def _status(
+    survey: Survey,
+    status: Status,
+    *,
+    error: ReductionError | None = None,
+    message: str = "",
+    seconds: float = 0.0,
+) -> TestStatus:
+    return TestStatus(
+        test=survey.plan.id,
+        status=status,
+        exit_status=0 if error is None else error.exit_status,
+        message=message if error is None else str(error),
+        n_rows=survey.n_rows,
+        n_cycles=survey.n_cycles,
+        raw_sha256=" ".join(source.sha256 for source in survey.sources),
+        seconds=seconds,
+        found=_found(survey),
+    )
+
+
+def check_campaign(
+    campaign: Campaign, *, tests: Sequence[str] = (), progress: Progress | None = None
+) -> tuple[list[TestStatus], dict[tuple[str, str], StrainModel]]:
+    """Read and validate everything, write nothing.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    tests : sequence of str
+        Only these; all where empty.
+    progress : callable, optional
+        Called with a stage and a test id.
+
+    Returns
+    -------
+    statuses : list of TestStatus
+        ``no_work`` (nothing was reduced) or ``failed``.
+    models : dict of (test, specimen) to StrainModel
+        How position would become strain.
+    """
+    surveys = survey_campaign(campaign, progress=progress)
+    models, errors = fit_strain_models(campaign, surveys)
+    statuses = []
+    for survey in _selected(surveys, tests):
+        error = survey.error or errors.get(survey.plan.id)
+        statuses.append(_status(survey, "no_work" if error is None else "failed", error=error))
+    return statuses, models
+
+
+def _reduce(
+    campaign: Campaign,
+    survey: Survey,
+    models: Sequence[StrainModel],
+    history: History | None,
+    settings: str,
+) -> ReducedTest:
+    description = _description(campaign, survey)
+    specimens = tuple(campaign.specimens[name] for name in survey.plan.specimens)
+    if survey.steps is not None:
+        return reduce_steps(
+            survey.steps,
+            description=description,
+            specimens=specimens,
+            sources=survey.sources,
+            settings_json=settings,
+        )
+    located = located_again(campaign, survey)
+    return reduce_test(
+        located,
+        description=description,
+        specimens=specimens,
+        models=models,
+        history=history,
+        sources=survey.sources,
+        settings=survey.plan.settings,
+        settings_json=settings,
+    )
+
+
+def run_campaign(
+    campaign: Campaign,
+    *,
+    processed: Path,
+    reports: Path,
+    clock: Callable[[], float],
+    tests: Sequence[str] = (),
+    force: bool = False,
+    command: str = "",
+    units: UnitSystem = "si",
+    progress: Progress | None = None,
+) -> CampaignResult:
+    """Reduce a campaign: archives, tables, status, report.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    processed, reports : pathlib.Path
+        Folders of the products and of the report; the campaign's id is added.
+    clock : callable
+        Seconds, for the status table only; no product depends on it.
+    tests : sequence of str
+        Only these; all where empty.
+    force : bool
+        Redo tests whose raw files, settings and version have not changed.
+    command : str
+        For the product's ``command`` attribute, without paths.
+    units : {"si", "us"}
+        What the report shows; files are SI.
+    progress : callable, optional
+        Called with a stage and a test id.
+
+    Returns
+    -------
+    result : CampaignResult
+        A failed test is a row in it, not an exception; its older product is kept.
+
+    Raises
+    ------
+    SettingsError
+        If ``tests`` names a test that the campaign lacks.
+    ArchiveError
+        If the folder or a table cannot be written.
+    """
+    folder = processed / campaign.id
+    surveys = survey_campaign(campaign, progress=progress)
+    chosen = _selected(surveys, tests)
+    models, errors = fit_strain_models(campaign, surveys)
+    statuses: list[TestStatus] = []
+    for survey in chosen:
+        name = survey.plan.id
+        path = folder / f"{name}.nc"
+        start = clock()
+        error = survey.error or errors.get(name)
+        if error is not None:
+            statuses.append(_status(survey, "failed", error=error))
+            continue
+        if progress is not None:
+            progress("reduce", name)
+        of_test = [
+            models[name, entry] for entry in survey.plan.specimens if (name, entry) in models
+        ]
+        history = history_of(survey, surveys, models)
+        settings = _settings_json(campaign, survey, of_test, history)
+        if not force and _is_unchanged(path, survey, settings):
+            statuses.append(_status(survey, "unchanged", seconds=clock() - start))
+            continue
+        try:
+            product = _reduce(campaign, survey, of_test, history, settings)
+            write_archive(to_dataset(product, version=__version__, command=command), path)
+        except Exception as failure:
+            # a campaign goes on after a failed test, even where the failure is a defect here
+            if not isinstance(failure, ReductionError):
+                failure = ReductionError(
+                    f"internal error, a defect of this program: {type(failure).__name__}: {failure}"
+                )
+            statuses.append(_status(survey, "failed", error=failure, seconds=clock() - start))
+            continue
+        survey.located = None  # its record is in the archive now
+        statuses.append(
+            _status(
+                survey,
+                "reduced_with_notes" if product.notes else "reduced",
+                message=product.notes[0] if product.notes else "",
+                seconds=clock() - start,
+            )
+        )
+    if progress is not None:
+        progress("tables", campaign.id)
+    ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
+    archives = [path for path in ours if path.exists()]
+    report = None
+    if archives:
+        write_tables(archives, folder / "tables")
+        write_whole(folder / "status.csv", status_csv(statuses))
+        if progress is not None:
+            progress("report", campaign.id)
+        report = write_report(folder, reports / campaign.id, units=units)
+    elif statuses:
+        write_whole(folder / "status.csv", status_csv(statuses))
+    stray = sorted(path.name for path in folder.glob("*.nc") if path not in ours)
+    return CampaignResult(tuple(statuses), folder, report, tuple(stray))

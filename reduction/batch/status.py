@@ -1,0 +1,76 @@
+"""One row a test: what became of it."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+__all__ = ["Status", "TestStatus", "status_csv"]
+
+Status = Literal["reduced", "reduced_with_notes", "unchanged", "no_work", "failed"]
+_COLUMNS = ("test", "status", "exit_status", "message", "raw_sha256", "seconds")
+
+
+@dataclass(frozen=True)
+class TestStatus:
+    """What became of one test.
+
+    Parameters
+    ----------
+    test : str
+        Its id.
+    status : Status
+        ``no_work`` where the campaign asked for something else.
+    exit_status : int
+        As the command line defines it.
+    message : str
+        The error, or the most serious note.
+    n_rows, n_cycles : int
+        Rows of the log; whole cycles found.
+    raw_sha256 : str
+        Hashes of its raw files, parted by blanks.
+    seconds : float
+        Wall time; not part of any product.
+    found : dict
+        What `check` prints: rate, gaps, flags.
+    """
+
+    __test__ = False  # a test of a tether, not of this software
+
+    test: str
+    status: Status
+    exit_status: int
+    message: str
+    n_rows: int
+    n_cycles: int
+    raw_sha256: str
+    seconds: float
+    found: dict[str, Any]
+
+    def document(self) -> dict[str, Any]:
+        """The entry of ``tests`` in the JSON answer."""
+        entry = asdict(self)
+        entry["id"] = entry.pop("test")
+        return entry
+
+
+def status_csv(rows: Sequence[TestStatus]) -> str:
+    """Text of status.csv, one row a test."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\r\n")
+    writer.writerow(_COLUMNS)
+    for row in rows:
+        writer.writerow(
+            [
+                row.test,
+                row.status,
+                row.exit_status,
+                row.message,
+                row.raw_sha256,
+                f"{row.seconds:.3f}",
+            ]
+        )
+    return text.getvalue()

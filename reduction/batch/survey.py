@@ -1,0 +1,210 @@
+"""The first pass over a campaign: what each test holds, before any is reduced.
+
+The marks of a specimen are pooled over its tests, and a test's history is what came
+before it; so every log is read and located once, and only then reduced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from reduction.campaign.plan import Campaign, StepPlan, TestPlan
+from reduction.errors import DataError, ReductionError
+from reduction.ingest.record_of_test import read_record
+from reduction.ingest.steps import read_step_readings
+from reduction.pipeline import Located, locate
+from reduction.provenance import Source
+from reduction.record import Floats, Record, SpliceMarks, StepReadings
+from reduction.strain.fit import measure_mark_tension
+
+__all__ = ["Survey", "located_again", "read_test", "survey_campaign"]
+
+# records larger than this together are read again rather than kept between the passes
+KEPT_SAMPLES = 10_000_000
+
+
+@dataclass
+class Survey:
+    """One test after the first pass.
+
+    ``mark_tension`` holds, by specimen, one tension [N] for each pooled mark that was
+    read in this test, in the order of the marks.  ``greatest`` holds, by specimen, the
+    position [m] and tension [N] where the position is greatest, and the greatest tension.
+    """
+
+    plan: TestPlan
+    sources: tuple[Source, ...] = ()
+    located: Located | None = None
+    steps: StepReadings | None = None
+    n_rows: int = 0
+    n_cycles: int = 0
+    mark_tension: dict[str, Floats] = field(default_factory=dict)
+    greatest: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    error: ReductionError | None = None
+
+
+def _slice(record: Record, first: int, stop: int) -> Record:
+    """The rows from ``first`` up to ``stop``, as a record of its own."""
+    part = slice(first, stop)
+    return replace(
+        record,
+        time=record.time[part],
+        crosshead_position=record.crosshead_position[part],
+        tension=record.tension[:, part],
+        quality_flag=record.quality_flag[:, part],
+        crosshead_position_quality_flag=record.crosshead_position_quality_flag[part],
+        measured_strain=None if record.measured_strain is None else record.measured_strain[:, part],
+        cycle_counter=None if record.cycle_counter is None else record.cycle_counter[part],
+        n_rows_read=stop - first,
+    )
+
+
+def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
+    """The rows of one step of a log."""
+    if step.time_range is not None:
+        low, high = step.time_range
+        inside = np.flatnonzero((record.time >= low) & (record.time <= high))
+        if inside.size == 0:
+            raise DataError(
+                f"step '{step.name}' of test '{plan.id}' holds no row of the log",
+                found=f"{record.time[0]:g} to {record.time[-1]:g} s in the log",
+                needed=f"rows from {low:g} to {high:g} s",
+            )
+        return _slice(record, int(inside[0]), int(inside[-1]) + 1)
+    whole = locate(record, kind="cyclic", settings=plan.settings)
+    first, last = step.cycle_range or (1, 1)
+    if whole.cycles is None or not 1 <= first <= last <= whole.cycles.n_cycles:
+        raise DataError(
+            f"step '{step.name}' of test '{plan.id}' asks for cycles that the log lacks",
+            found=f"cycles {first} to {last}",
+            needed=f"1 to {0 if whole.cycles is None else whole.cycles.n_cycles}",
+        )
+    return _slice(record, int(whole.cycles.first[first - 1]), int(whole.cycles.last[last - 1]) + 1)
+
+
+def _step_plan(plan: TestPlan, step: StepPlan) -> TestPlan:
+    cycles = replace(plan.settings.cycles, expected_cycles=step.expected_cycles)
+    note = {"step": step.name} | ({"step_note": step.note} if step.note else {})
+    return replace(
+        plan,
+        id=f"{plan.id}.{step.name.replace(' ', '-')}",
+        kind=step.kind,
+        settings=replace(plan.settings, cycles=cycles),
+        attributes=plan.attributes | note,
+        steps=(),
+    )
+
+
+def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
+    """Read one log and locate what it holds: one survey a test, or one a step.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        Where the files, layouts and specimens are.
+    plan : TestPlan
+        The test.
+
+    Returns
+    -------
+    surveys : list of Survey
+        With the records in memory.
+
+    Raises
+    ------
+    ReductionError
+        Whatever is wrong with the log or its data, with file, row and channel.
+    """
+    files = [(campaign.file(name), campaign.layouts[layout], name) for name, layout in plan.files]
+    if plan.kind == "stepwise":
+        readings, sources = read_step_readings(files, test_id=plan.id)
+        return [Survey(plan, sources, steps=readings, n_rows=readings.time.size)]
+    record, sources = read_record(
+        files, test_id=plan.id, specimens=plan.specimens, quality=plan.settings.quality
+    )
+    if not plan.steps:
+        return [_located(plan, record, sources)]
+    surveys = []
+    for step in plan.steps:
+        part = _step_plan(plan, step)
+        try:
+            record_of_step = replace(_step_record(record, step, plan), test_id=part.id)
+            surveys.append(_located(part, record_of_step, sources))
+        except ReductionError as error:
+            surveys.append(Survey(part, sources, n_rows=record.n_samples, error=error))
+    return surveys
+
+
+def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Survey:
+    located = locate(record, kind=plan.kind, settings=plan.settings)
+    survey = Survey(plan, sources, located, n_rows=record.n_samples)
+    survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
+    position = record.crosshead_position
+    if np.isfinite(position).any():
+        far = int(np.nanargmax(position))
+        for index, name in enumerate(plan.specimens):
+            tension = record.tension[index]
+            peak = float(np.nanmax(tension)) if np.isfinite(tension).any() else float("nan")
+            survey.greatest[name] = (float(position[far]), float(tension[far]), peak)
+    return survey
+
+
+def _measure_marks(survey: Survey, marks: dict[str, SpliceMarks]) -> None:
+    if survey.located is None:
+        return
+    for index, name in enumerate(survey.plan.specimens):
+        if name in marks and survey.plan.id in marks[name].test:
+            survey.mark_tension[name] = measure_mark_tension(
+                marks[name],
+                test_id=survey.plan.id,
+                standstills=survey.located.standstills,
+                specimen_index=index,
+            )
+
+
+def survey_campaign(
+    campaign: Campaign, *, progress: Callable[[str, str], None] | None = None
+) -> list[Survey]:
+    """Read and locate every test of a campaign.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    progress : callable, optional
+        Called with ("survey", test id) before each test.
+
+    Returns
+    -------
+    surveys : list of Survey
+        In the order of the campaign; a test that failed carries its error.
+    """
+    surveys: list[Survey] = []
+    kept = 0
+    for plan in campaign.tests.values():
+        if progress is not None:
+            progress("survey", plan.id)
+        try:
+            of_test = read_test(campaign, plan)
+            for survey in of_test:
+                _measure_marks(survey, campaign.marks)
+        except ReductionError as error:
+            of_test = [Survey(plan, error=error)]
+        for survey in of_test:
+            kept += survey.n_rows
+            if kept > KEPT_SAMPLES and len(campaign.tests) > 1:
+                survey.located = None
+        surveys.extend(of_test)
+    return surveys
+
+
+def located_again(campaign: Campaign, survey: Survey) -> Located | None:
+    """The record of a survey, read again where it was not kept."""
+    if survey.located is not None or survey.plan.kind == "stepwise":
+        return survey.located
+    whole = campaign.tests.get(survey.plan.id) or campaign.tests[survey.plan.id.rpartition(".")[0]]
+    again: Sequence[Survey] = read_test(campaign, whole)
+    return next(entry.located for entry in again if entry.plan.id == survey.plan.id)

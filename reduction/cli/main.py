@@ -1,0 +1,138 @@
+"""The command ``reduction``: options in, exit status out; the work is elsewhere.
+
+Heavy packages are imported inside the commands, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reduction import __version__
+from reduction.cli.outcome import Outcome, guarded
+
+__all__ = ["app"]
+
+app = typer.Typer(
+    name="reduction",
+    help="Reduces cyclic tension tests of compliant mooring elements.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+Json = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, SI.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Nothing but errors.")]
+Units = Annotated[str, typer.Option("--units", help="What is shown: si or us (psi, lbf, ft).")]
+CampaignPath = Annotated[Path, typer.Argument(metavar="CAMPAIGN.toml", show_default=False)]
+
+
+def _version(value: bool) -> None:
+    if value:
+        typer.echo(f"reduction {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def main(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print and exit.")
+    ] = False,
+) -> None:
+    """Reduces cyclic tension tests of compliant mooring elements."""
+
+
+@app.command()
+def init(
+    folder: Annotated[Path, typer.Argument(help="Folder of logs.", show_default=False)],
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a starter campaign into a folder of logs, for a person to complete."""
+    with guarded(Outcome(json=json, quiet=quiet)) as outcome:
+        from reduction.cli.starter import start_campaign
+
+        start_campaign(folder, outcome)
+
+
+@app.command()
+def sniff(
+    file: Annotated[Path, typer.Argument(help="An unknown log.", show_default=False)],
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Look at an unknown log and print a starter layout in TOML, to be confirmed."""
+    with guarded(Outcome(json=json, quiet=quiet)) as outcome:
+        from reduction.cli.starter import print_layout
+
+        print_layout(file, outcome)
+
+
+@app.command()
+def check(
+    campaign: CampaignPath,
+    test: Annotated[list[str] | None, typer.Option("--test", help="Only this test.")] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Read and validate everything, print what was found, write nothing."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.runs import check_campaign
+
+        check_campaign(campaign, tests=tuple(test or ()), outcome=outcome)
+
+
+@app.command()
+def run(
+    campaign: CampaignPath,
+    processed: Annotated[Path, typer.Option(help="Where products go.")] = Path("processed"),
+    reports: Annotated[Path, typer.Option(help="Where the report goes.")] = Path("reports"),
+    jobs: Annotated[int, typer.Option(min=1, help="Accepted; tests run one by one.")] = 1,
+    test: Annotated[list[str] | None, typer.Option("--test", help="Only this test.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Redo unchanged tests too.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Reduce a campaign: archive, tables and report."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.runs import run_campaign
+
+        run_campaign(
+            campaign,
+            processed=processed,
+            reports=reports,
+            tests=tuple(test or ()),
+            force=force,
+            outcome=outcome,
+        )
+
+
+@app.command()
+def report(
+    processed_dir: Annotated[
+        Path, typer.Argument(help="processed/CAMPAIGN, or processed/ for all.", show_default=False)
+    ],
+    reports: Annotated[Path, typer.Option(help="Where the report goes.")] = Path("reports"),
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Make the HTML report again, from the archives alone."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.runs import report_again
+
+        report_again(processed_dir, reports=reports, outcome=outcome)
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of campaign.toml."""
+    with guarded(Outcome(json=True)) as outcome:
+        from reduction.campaign.model import CampaignFile
+
+        outcome.answer(CampaignFile.model_json_schema())

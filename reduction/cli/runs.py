@@ -1,0 +1,159 @@
+"""The commands that read a campaign: check, run, report."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, cast
+
+from rich.console import Console
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from reduction.batch.run import check_campaign as check_tests
+from reduction.batch.run import run_campaign as run_tests
+from reduction.batch.status import TestStatus
+from reduction.campaign.load import load_campaign
+from reduction.cli.outcome import Outcome
+from reduction.errors import ArchiveError
+from reduction.report.page import write_report
+from reduction.strain.model import StrainModel
+from reduction.units import UnitSystem, display_unit
+
+__all__ = ["check_campaign", "report_again", "run_campaign"]
+
+ProgressCall = Callable[[str, str], None]
+
+
+@contextmanager
+def _progress(outcome: Outcome) -> Iterator[ProgressCall]:
+    """A line on standard error while a person waits; nothing where no terminal is."""
+    if outcome.quiet or outcome.json or not sys.stderr.isatty():
+        yield lambda stage, name: None
+        return
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("")
+        yield lambda stage, name: bar.update(task, description=f"{stage} {name}")
+
+
+def _show(outcome: Outcome, table: Table) -> None:
+    if not (outcome.json or outcome.quiet):
+        width = None if sys.stdout.isatty() else 160
+        Console(width=width, highlight=False).print(table)
+
+
+def _status_table(tests: Sequence[TestStatus]) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for heading in ("test", "status", "rows", "cycles", "message"):
+        table.add_column(heading, justify="right" if heading in ("rows", "cycles") else "left")
+    for test in tests:
+        # a message is text from files of strangers: no markup is read in it
+        message = test.message.replace("[", r"\[")
+        table.add_row(test.test, test.status, str(test.n_rows), str(test.n_cycles), message)
+    return table
+
+
+def _report_failures(outcome: Outcome, tests: Sequence[TestStatus]) -> None:
+    for test in tests:
+        if test.exit_status:
+            outcome.error(f"{test.test}: {test.message}")
+            outcome.raise_status(test.exit_status)
+
+
+def _model_lines(
+    models: dict[tuple[str, str], StrainModel], tests: Sequence[TestStatus], units: UnitSystem
+) -> Table:
+    table = Table(box=None, pad_edge=False)
+    length, factor = display_unit("m", units)
+    for heading in ("test", "specimen", "strain method", "marks", f"marked range [{length}]"):
+        table.add_column(heading)
+    shown = {test.test for test in tests}
+    for (test, specimen), model in models.items():
+        if test in shown:
+            low, high = factor * model.position_low, factor * model.position_high
+            table.add_row(
+                test, specimen, model.method, model.marks_from, f"{low:.3f} to {high:.3f}"
+            )
+    return table
+
+
+def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> None:
+    """Read and validate everything, print what was found, write nothing."""
+    units = cast("UnitSystem", outcome.units)
+    campaign = load_campaign(path)
+    with _progress(outcome) as progress:
+        statuses, models = check_tests(campaign, tests=tests, progress=progress)
+    _show(outcome, _status_table(statuses))
+    for test in statuses:
+        for channel, masks in test.found.get("flags", {}).items():
+            listed = ", ".join(f"{name} {count}" for name, count in masks.items())
+            outcome.say(f"  {test.test} {channel}: {listed}")
+        for note in test.found.get("notes", ()):
+            outcome.say(f"  {test.test}: {note}")
+    _show(outcome, _model_lines(models, statuses, units))
+    outcome.answer({"campaign": campaign.id, "tests": [test.document() for test in statuses]})
+    _report_failures(outcome, statuses)
+
+
+def run_campaign(
+    path: Path,
+    *,
+    processed: Path,
+    reports: Path,
+    tests: tuple[str, ...],
+    force: bool,
+    outcome: Outcome,
+) -> None:
+    """Reduce a campaign and say what became of each test."""
+    campaign = load_campaign(path)
+    with _progress(outcome) as progress:
+        result = run_tests(
+            campaign,
+            processed=processed,
+            reports=reports,
+            clock=time.perf_counter,
+            tests=tests,
+            force=force,
+            # paths, jobs and choices of tests are left out, so that equal inputs give equal bytes
+            command="reduction run campaign.toml",
+            units=cast("UnitSystem", outcome.units),
+            progress=progress,
+        )
+    _show(outcome, _status_table(result.tests))
+    for name in result.stray:
+        outcome.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
+    outcome.say(f"products: {result.processed}")
+    document: dict[str, Any] = {
+        "campaign": campaign.id,
+        "tests": [test.document() for test in result.tests],
+        "processed": str(result.processed),
+        "report": None if result.report is None else str(result.report),
+    }
+    if result.report is not None:
+        outcome.say(f"report:   {result.report}")
+    outcome.answer(document)
+    _report_failures(outcome, result.tests)
+
+
+def report_again(processed: Path, *, reports: Path, outcome: Outcome) -> None:
+    """Make the report of one campaign, or of all below a folder, from archives alone."""
+    folders = [processed] if any(processed.glob("*.nc")) else sorted(processed.glob("*/"))
+    folders = [folder for folder in folders if any(folder.glob("*.nc"))]
+    if not folders:
+        raise ArchiveError(
+            f"{processed}: no archive was found",
+            needed="a folder processed/CAMPAIGN with *.nc in it",
+            hint="`reduction run CAMPAIGN.toml` makes one.",
+        )
+    written = []
+    for folder in folders:
+        page = write_report(
+            folder, reports / folder.resolve().name, units=cast("UnitSystem", outcome.units)
+        )
+        outcome.say(f"report: {page}")
+        written.append(str(page))
+    outcome.answer({"reports": written})

@@ -1,0 +1,41 @@
+"""The commands for a first start: init and sniff.  What they print is for a person to confirm."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from reduction.cli.outcome import Outcome
+from reduction.errors import SettingsError
+from reduction.ingest.sniff import sniff_layout
+from reduction.ingest.starter import starter_campaign
+
+__all__ = ["print_layout", "start_campaign"]
+
+
+def print_layout(file: Path, outcome: Outcome) -> None:
+    """Print a proposed layout in TOML, and what in it is a guess."""
+    sniffed = sniff_layout(file)
+    outcome.say(sniffed.toml)
+    for remark in sniffed.remarks:
+        outcome.say(f"# {remark}")
+    outcome.answer({"layout": sniffed.toml, "remarks": list(sniffed.remarks)})
+
+
+def start_campaign(folder: Path, outcome: Outcome) -> None:
+    """Write campaign.toml and tests.csv into a folder of logs; never over an existing file."""
+    if not folder.is_dir():
+        raise SettingsError(f"{folder}: is not a folder", needed="a folder of logs")
+    texts = starter_campaign(folder)
+    standing = sorted(name for name in texts if (folder / name).exists())
+    if standing:
+        raise SettingsError(
+            f"{folder}: a campaign is there already",
+            found=", ".join(standing),
+            needed="a folder without these files",
+            hint="Move them away first; nothing is written over.",
+        )
+    for name, text in texts.items():
+        with (folder / name).open("x", encoding="utf-8", newline="") as file:
+            file.write(text)
+        outcome.say(f"wrote {folder / name}")
+    outcome.answer({"written": [str(folder / name) for name in texts]})

@@ -1,0 +1,213 @@
+"""campaign.toml, tests.csv and marks.csv: what is read, and what is refused with which words."""
+
+from pathlib import Path
+
+import pytest
+
+from reduction.campaign.load import load_campaign
+from reduction.campaign.marks import read_marks
+from reduction.errors import DataError, LogError, SettingsError
+
+ROOT = Path(__file__).parents[2]
+BASE = """
+[campaign]
+id = "c"
+title = "t"
+[specimens.a]
+kind = "rubber tether"
+diameter = ["1 inch", "1.2 inch"]
+[layouts.l]
+format = "delimited"
+[layouts.l.channels]
+time = { column = "t", unit = "s" }
+crosshead_position = { column = "p", unit = "ft", datum = "pin-to-pin" }
+tension.1 = { column = "f", unit = "lbf" }
+[defaults]
+layout = "l"
+specimens = ["a"]
+"""
+TEST = '[tests.T]\nfile = "T.csv"\n'
+MARKS = "test,specimen,hold,near_toe_ft,far_toe_ft,far_thimble_ft\nT,a,slack,2,10,12\n"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "T.csv").write_text("t,p,f\n0,1,2\n")
+    return tmp_path
+
+
+def load(folder, text):
+    path = folder / "campaign.toml"
+    path.write_text(text, encoding="utf-8")
+    return load_campaign(path)
+
+
+def test_defaults_fill_what_a_test_leaves_out(folder):
+    campaign = load(
+        folder,
+        BASE
+        + 'medium = "dry"\n[defaults.reduction.cycles]\ntrim_threshold = 0.9\n'
+        + TEST
+        + "order = 3\n",
+    )
+    plan = campaign.tests["T"]
+    assert plan.kind == "cyclic" and plan.specimens == ("a",) and plan.order == 3
+    assert plan.attributes["medium"] == "dry"
+    assert plan.settings.cycles.trim_threshold == 0.9
+    assert campaign.specimens["a"].mean_diameter == pytest.approx(1.1 * 0.0254)
+
+
+def test_a_test_overrides_the_defaults(folder):
+    text = BASE + TEST + '[tests.T.reduction.modulus]\nwindow = "12 %"\n'
+    assert load(folder, text).tests["T"].settings.modulus.window == pytest.approx(0.12)
+
+
+def test_tension_channels_are_read_from_nested_toml(folder):
+    channels = load(folder, BASE + TEST).layouts["l"].channels
+    assert set(channels) == {"time", "crosshead_position", "tension.1"}
+
+
+def test_one_row_a_test_in_a_table(folder):
+    (folder / "tests.csv").write_text(
+        "id,file,kind,order,target_strain,note\nT,T.csv,fatigue,2,0.75;1.25,slow\nU,T.csv,,,,\n"
+    )
+    campaign = load(folder, BASE.replace('title = "t"', 'title = "t"\ntests = "tests.csv"'))
+    assert campaign.tests["T"].kind == "fatigue"
+    assert campaign.tests["T"].target_strain == (0.75, 1.25)
+    assert campaign.tests["T"].attributes["note"] == "slow"
+    assert campaign.tests["U"].kind == "cyclic" and campaign.tests["U"].order is None
+
+
+def test_the_table_may_stand_in_place_of_the_sections(folder):
+    (folder / "tests.csv").write_text("id,file\nT,T.csv\n")
+    assert set(load(folder, 'tests = "tests.csv"\n' + BASE).tests) == {"T"}
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ("id,order\nT,1\n", r"tests.csv:1: .*no usable header; found id, order"),
+        ("id,file\nT,T.csv\nT,T.csv\n", r"tests.csv:3 \[id\]: a test stands twice; found 'T'"),
+        ("id,file,order\nT,T.csv,first\n", r"tests.csv:2 \[order\]: .*found 'first'"),
+        ("id,file\nT\n", r"tests.csv:2: .*another number of cells.*found 1; needed 2"),
+        ("id,file,colour\nT,T.csv,red\n", r"tests.csv:2 \[colour\]"),
+        ("id,file\n../T,T.csv\n", r"tests.csv:2 \[id\]"),
+    ],
+)
+def test_a_row_of_tests_that_cannot_be_used_is_named(folder, rows, message):
+    (folder / "tests.csv").write_text(rows)
+    with pytest.raises(LogError, match=message):
+        load(folder, 'tests = "tests.csv"\n' + BASE)
+
+
+def test_a_test_in_both_places_is_refused(folder):
+    (folder / "tests.csv").write_text("id,file\nT,T.csv\n")
+    text = BASE.replace('title = "t"', 'title = "t"\ntests = "tests.csv"') + TEST
+    with pytest.raises(SettingsError, match="stand both in tests.csv and in"):
+        load(folder, text)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("campaign = [", "the campaign is not TOML"),
+        ("[campaign]\nid = 'c'\n", r"setting\(s\) cannot be used, first 'campaign.title'"),
+        (BASE + TEST + "colour = 'red'\n", r"first 'tests.+colour'; found 'red'"),
+        (BASE, "the campaign has no tests"),
+        (BASE + '[tests."a/b"]\nfile = "T.csv"\n', "cannot be used"),
+        (BASE + TEST + "layout = 'm'\n", "test 'T' has no layout; found 'm'; needed one of"),
+        (BASE + TEST + "specimens = ['b']\n", "names no known specimen; found b"),
+        (BASE + '[tests.T]\nfile = "../T.csv"\n', "lies outside the campaign folder"),
+        (BASE + '[tests.T]\nfile = "/etc/passwd"\n', "lies outside the campaign folder"),
+        (BASE + '[tests.T]\nfile = "U.csv"\n', "U.csv: the file is not there"),
+        (BASE + TEST + "part_of = 'U'\n", "is part of a test that the campaign lacks"),
+        (BASE.replace("1 inch", "1 lbf") + TEST, "'lbf' is not a unit of length"),
+        (BASE.replace("1 inch", "-1 inch") + TEST, r"specimens.a.diameter is not positive"),
+        (BASE.replace('unit = "lbf"', 'unit = "ft"') + TEST, "is not a unit of force"),
+        (BASE.replace(', datum = "pin-to-pin"', "") + TEST, "the position channel has no datum"),
+        (BASE + TEST + "[tests.T.reduction.cycle]\n", "reduction.cycle is not a group"),
+        (BASE + TEST + "[tests.T.reduction.cycles]\nbnd = 1\n", "reduction.cycles.bnd is not a s"),
+        (BASE + TEST + "[tests.T.reduction.cycles]\nband = '1 lbf'\n", "not a unit of length"),
+        (BASE + TEST + "[tests.T.reduction.cycles]\nbreak_in_cycles = 1.5\n", "whole number"),
+        (BASE + TEST + "[tests.T.reduction.cycles]\ntrim_threshold = -1\n", "is negative"),
+        (BASE + TEST + "[tests.T.reduction.cycles]\ntrim_threshold = 'x'\n", "is not a number"),
+        (BASE + TEST + "[tests.T.reduction.modulus]\nstress_at_strain = 1\n", "is not a list"),
+        (BASE + TEST + "[[tests.T.steps]]\nname='s'\nfrom='2 s'\nto='1 s'\n", "has no range"),
+        (
+            BASE + TEST + 2 * "[[tests.T.steps]]\nname='s'\nfrom=1\nto=2\n",
+            "two steps of test 'T' have one name",
+        ),
+    ],
+)
+def test_a_campaign_that_cannot_be_used_says_where_and_why(folder, text, message):
+    with pytest.raises((SettingsError, LogError), match=message):
+        load(folder, text)
+
+
+def test_a_missing_campaign_says_how_to_start(tmp_path):
+    with pytest.raises(SettingsError, match="`reduction init FOLDER` writes a first one"):
+        load_campaign(tmp_path / "campaign.toml")
+
+
+def test_marks_of_all_tests_are_pooled_by_specimen(folder):
+    (folder / "marks.csv").write_text(MARKS + "T,a,max,2.5,20,23\n")
+    campaign = load(folder, BASE + "strain = { marks = 'marks.csv' }\n" + TEST)
+    marks = campaign.marks["a"]
+    assert marks.hold == ("slack", "max")
+    assert marks.free_length == pytest.approx([8 * 0.3048, 17.5 * 0.3048])
+    assert marks.splice_length == pytest.approx([4 * 0.3048, 5.5 * 0.3048])
+
+
+@pytest.mark.parametrize(
+    ("suffix", "metre"), [("ft", 0.3048), ("in", 0.0254), ("m", 1), ("mm", 1e-3), ("cm", 1e-2)]
+)
+def test_the_suffix_of_a_marks_column_is_its_unit(tmp_path, suffix, metre):
+    path = tmp_path / "marks.csv"
+    path.write_text(MARKS.replace("_ft", f"_{suffix}"))
+    assert read_marks(path)["a"].near_toe == pytest.approx([2 * metre])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("test,specimen,hold,near_toe_ft\n", "lacks a column.*missing: far_toe, far_thimble"),
+        (
+            MARKS.replace("10", "ten"),
+            r"marks.csv:2 \[far_toe_ft\]: a mark is not a number; found 'ten'",
+        ),
+        (MARKS.replace("slack", "somewhere"), r"marks.csv:2 \[hold\]: a hold has no known name"),
+        (MARKS.replace(",12", ""), r"marks.csv:2: .*found 5; needed 6"),
+        (MARKS.splitlines()[0] + "\n", "the marks file has no rows"),
+        (MARKS.replace("near_toe_ft", "near_toe_yd"), "missing: near_toe"),
+    ],
+)
+def test_marks_that_cannot_be_used_are_named(tmp_path, text, message):
+    path = tmp_path / "marks.csv"
+    path.write_text(text)
+    with pytest.raises(LogError, match=message):
+        read_marks(path)
+
+
+def test_a_mark_row_out_of_order_is_refused(tmp_path):
+    path = tmp_path / "marks.csv"
+    path.write_text(MARKS.replace("2,10,12", "10,2,12"))
+    with pytest.raises(DataError, match="contradict themselves, first test T, hold slack"):
+        read_marks(path)
+
+
+def test_marks_of_an_unknown_specimen_or_test_are_refused(folder):
+    text = BASE + "strain = { marks = 'marks.csv' }\n" + TEST
+    (folder / "marks.csv").write_text(MARKS.replace(",a,", ",b,"))
+    with pytest.raises(LogError, match="a mark names an unknown specimen; found 'b'"):
+        load(folder, text)
+    (folder / "marks.csv").write_text(MARKS.replace("T,a", "U,a"))
+    with pytest.raises(SettingsError, match="name a test that the campaign lacks; found U"):
+        load(folder, text)
+
+
+@pytest.mark.parametrize("name", ["tmt-synthetic", "buoy-technology-1997"])
+def test_the_campaigns_of_the_project_load(name):
+    campaign = load_campaign(ROOT / "raw" / name / "campaign.toml")
+    assert campaign.id == name
+    assert len(campaign.tests) == {"tmt-synthetic": 10, "buoy-technology-1997": 1}[name]
+    assert (campaign.attributes.get("synthetic") == "yes") == (name == "tmt-synthetic")

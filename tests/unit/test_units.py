@@ -1,0 +1,84 @@
+"""Units at the edge; factors are the international definitions, written out here."""
+
+import pytest
+
+from reduction.errors import SettingsError
+from reduction.units import display_unit, parse_quantity, scale_to_si
+
+POUND_FORCE = 0.45359237 * 9.80665
+
+
+@pytest.mark.parametrize(
+    ("unit", "dimension", "factor"),
+    [
+        ("lbf", "force", POUND_FORCE),
+        ("lb", "force", POUND_FORCE),
+        ("kip", "force", 1000 * POUND_FORCE),
+        ("kN", "force", 1e3),
+        ("mN", "force", 1e-3),
+        ("ft", "length", 0.3048),
+        ("inch", "length", 0.0254),
+        ("mm", "length", 1e-3),
+        ("psi", "stress", POUND_FORCE / 0.0254**2),
+        ("MPa", "stress", 1e6),
+        ("N/mm²", "stress", 1e6),
+        ("%", "strain", 0.01),
+        ("1", "strain", 1.0),
+        ("min", "time", 60.0),
+        ("Sec", "time", 1.0),
+        ("1/min", "frequency", 1 / 60),
+        ("deg", "angle", 3.141592653589793 / 180),
+    ],
+)
+def test_factor_to_si_is_the_defined_one(unit, dimension, factor):
+    assert scale_to_si(unit, dimension) == (pytest.approx(factor, rel=1e-14), 0.0)
+
+
+def test_temperature_carries_an_offset():
+    factor, offset = scale_to_si("degC", "temperature")
+    assert factor == pytest.approx(1.0) and offset == pytest.approx(273.15)
+
+
+def test_unknown_unit_is_refused_by_name():
+    with pytest.raises(SettingsError, match=r"unit 'furlongs_x' is not known; found 'furlongs_x'"):
+        scale_to_si("furlongs_x", "length")
+
+
+def test_unit_of_the_wrong_dimension_is_refused():
+    with pytest.raises(
+        SettingsError, match=r"unit 'ft' is not a unit of force.*needed a unit of f"
+    ):
+        scale_to_si("ft", "force")
+
+
+@pytest.mark.parametrize("text", ["12", "", "abc", "1.2.3 ft", "nan ft"])
+def test_a_text_without_a_number_or_a_unit_is_refused(text):
+    with pytest.raises(SettingsError, match="unit"):
+        parse_quantity(text, "length")
+
+
+def test_a_bare_number_is_a_strain_or_a_plain_number_only():
+    assert parse_quantity(0.75, "strain") == 0.75
+    with pytest.raises(SettingsError, match='needed text such as "0.75 m"'):
+        parse_quantity(0.75, "length")
+
+
+def test_share_of_break_strength_needs_a_break_strength():
+    assert parse_quantity("12 %RBS", "force", rated_break_strength=500.0) == pytest.approx(60.0)
+    assert parse_quantity("12 %MBL", "force", rated_break_strength=500.0) == pytest.approx(60.0)
+    with pytest.raises(SettingsError, match="but no break strength"):
+        parse_quantity("12 %RBS", "force")
+
+
+@pytest.mark.parametrize(
+    ("unit", "shown", "factor"),
+    [("Pa", "psi", 0.0254**2 / POUND_FORCE), ("m", "ft", 1 / 0.3048), ("s", "s", 1.0)],
+)
+def test_us_display_is_the_inverse_of_the_factor(unit, shown, factor):
+    assert display_unit(unit, "us") == (shown, pytest.approx(factor, rel=1e-14))
+    assert display_unit(unit, "si") == (unit, 1.0)
+
+
+def test_unknown_unit_system_is_refused():
+    with pytest.raises(SettingsError, match="needed si or us"):
+        display_unit("m", "imperial")
