@@ -1,0 +1,344 @@
+r"""Relaxation of tension at constant length: drop, rate per decade, tension at stated times.
+
+The ramp before a hold takes time, and the specimen relaxes during it.  To first order a
+ramp acts as a step at its centre (of the tension it adds), whatever the law of relaxation;
+what is left falls with the square of ramp time over elapsed time.  Rates therefore count
+time from that centre and leave out the first three ramp times.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of
+   Rubber Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst.,
+   Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+.. [2] L. J. Zapas and J. C. Phillips, "Simple shearing flows in polyisobutylene solutions,"
+   J. Res. Natl. Bur. Stand. 75A(1), 1971 (half of the ramp time as the zero of time).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.checks import as_finite, as_increasing, as_same_shape
+from reduction.errors import DataError
+from reduction.holds.blocks import Blocks, sample_noise
+from reduction.moduli.separable import lag_one_inflation
+from reduction.record import Floats
+
+__all__ = [
+    "RAMP_TIMES_LEFT_OUT",
+    "Ramp",
+    "Rate",
+    "end_mean",
+    "find_ramp",
+    "rate_per_decade",
+    "relaxation_drop",
+    "value_at_times",
+]
+
+RAMP_TIMES_LEFT_OUT = 3.0
+FEWEST_BLOCKS = 8
+SHORTEST_SPAN = 0.5
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """The ramp that led to a hold.
+
+    Parameters
+    ----------
+    start_time, end_time : float
+        First and last time of the motion. [s]
+    centre_time : float
+        Time at which a step would act as the ramp does. [s]
+    duration : float
+        Duration of the constant-rate ramp of the same centre and spread. [s]
+    stiffness : float
+        Slope of tension on position over the last half of the stroke. [N m-1]
+    """
+
+    start_time: float
+    end_time: float
+    centre_time: float
+    duration: float
+    stiffness: float
+
+
+@dataclass(frozen=True)
+class Rate:
+    """Slope of a series against the decimal logarithm of time.
+
+    Parameters
+    ----------
+    value, standard_uncertainty : float
+        Change per decade of time. [unit of the series]
+    elapsed_low, elapsed_high : float
+        Range of time from the centre of the ramp. [s]
+    """
+
+    value: float
+    standard_uncertainty: float
+    elapsed_low: float
+    elapsed_high: float
+
+
+def relaxation_drop(initial_tension: ArrayLike, final_tension: ArrayLike) -> Floats:
+    """Share of tension lost over a hold.
+
+    Parameters
+    ----------
+    initial_tension, final_tension : array_like, shape (...)
+        Tension at the start and at the end of the hold. [N]
+
+    Returns
+    -------
+    drop : ndarray, shape (...)
+        Positive for a loss. [1]
+
+    Raises
+    ------
+    DataError
+        If the shapes differ.
+
+    Notes
+    -----
+    Source: [1]_, sec. 4.1 and Figure 24, which print it as "creep".  NaN where the
+    initial tension is not positive.
+
+    Examples
+    --------
+    WHOI-2005-10: new tether in T-6, 400 lbf falls to 325 lbf in three minutes at 275 %.
+
+    >>> print(relaxation_drop(400.0, 325.0))
+    0.1875
+    """
+    initial, final = as_same_shape(initial_tension=initial_tension, final_tension=final_tension)
+    drop: Floats = 1 - final / np.where(initial > 0, initial, np.nan)
+    return drop
+
+
+def find_ramp(
+    time: ArrayLike, position: ArrayLike, tension: ArrayLike, *, band: float
+) -> Ramp | None:
+    r"""Last monotonic motion of a record that ends where a hold begins.
+
+    .. math:: t_c = t_1 - \int_{t_0}^{t_1} \frac{T - T_0}{T_1 - T_0} dt
+
+    is the centre of the tension that the ramp adds; the spread is its second moment.
+
+    Parameters
+    ----------
+    time : array_like, shape (n_samples,)
+        From any time before the ramp up to the first sample of the hold. [s]
+    position : array_like, shape (n_samples,)
+        Crosshead position. [m]
+    tension : array_like, shape (n_samples,)
+        Tension. [N]
+    band : float
+        A change of position within it is not motion. [m]
+
+    Returns
+    -------
+    ramp : Ramp or None
+        None where the record shows no motion before the hold. [s]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up or the time does not increase.
+
+    Notes
+    -----
+    The rule of the half ramp ([2]_) is the case of tension rising evenly.  A tension that
+    stiffens with stretch puts the centre later than that.  Where the ramp does not add
+    tension (unloading), the centre of position is taken.  Both moments are integrals of
+    the record, not of its differences, so noise does not enter them.
+
+    Examples
+    --------
+    >>> t = np.arange(0.0, 5.0)
+    >>> ramp = find_ramp(t, [0.0, 0.0, 1.0, 2.0, 3.0], [0.0, 0.0, 10.0, 20.0, 30.0], band=0.1)
+    >>> ramp.start_time, ramp.centre_time, ramp.duration, round(ramp.stiffness, 6)
+    (1.0, 2.5, 3.0, 10.0)
+    """
+    seconds = as_increasing("time", time)
+    seconds, place, load = as_same_shape(time=seconds, position=position, tension=tension)
+    away = place - place[-1]
+    distant = np.flatnonzero(np.abs(away) > band)
+    if distant.size == 0:
+        return None
+    # Backwards from the hold, positive in the direction from which the crosshead came.
+    back = (away * np.sign(away[distant[-1]]))[::-1]
+    turned = np.flatnonzero(np.maximum.accumulate(back) - back > band)
+    reach = back[: turned[0]] if turned.size else back
+    # The first sample within the band of the far end: a standstill there is no part of the ramp.
+    first = place.size - 1 - int(np.flatnonzero(reach >= reach.max() - band / 2)[0])
+    seconds, place, load = seconds[first:], place[first:], load[first:]
+    end = float(seconds[-1])
+    rise = load[-1] - load[0]
+    added = (load - load[0]) / rise if rise > 0 else (place - place[0]) / (place[-1] - place[0])
+    before = float(np.trapezoid(added, seconds))
+    left, step = end - seconds, np.diff(seconds)
+    # Exact where both factors are straight between samples: a ramp may have few of them.
+    middle = (left[1:] + left[:-1]) * (added[1:] + added[:-1]) / 2
+    square = float(step @ (left[1:] * added[1:] + left[:-1] * added[:-1] + 2 * middle)) / 3
+    centre = end - before
+    spread = max(0.0, square - before**2)
+    upper = np.abs(place - place[-1]) <= 0.5 * abs(place[-1] - place[0])
+    stroke = np.ptp(place[upper])
+    return Ramp(
+        start_time=float(seconds[0]),
+        end_time=end,
+        centre_time=min(end, max(float(seconds[0]), centre)),
+        duration=min(end - float(seconds[0]), float(np.sqrt(12 * spread))),
+        stiffness=float(np.polyfit(place[upper], load[upper], 1)[0]) if stroke > 0 else np.nan,
+    )
+
+
+def end_mean(values: ArrayLike, *, n_samples: int, at_end: bool) -> tuple[float, float]:
+    """Mean of a short stretch at one end of a series, with its standard uncertainty.
+
+    Parameters
+    ----------
+    values : array_like, shape (n,)
+        Series; NaN is left out. [any unit]
+    n_samples : int
+        Length of the stretch. [1]
+    at_end : bool
+        Take the last samples, not the first. [1]
+
+    Returns
+    -------
+    mean : float
+        Mean of the stretch. [unit of the series]
+    standard_uncertainty : float
+        Noise over the root of the count; where the noise is below half the step of the
+        digitizer, that step over the root of 12 as well (type A). [unit of the series]
+
+    Raises
+    ------
+    DataError
+        If fewer than two values are finite.
+
+    Examples
+    --------
+    >>> mean, _ = end_mean([5.0, 5.0, 4.0, 3.0, 3.0], n_samples=2, at_end=True)
+    >>> mean
+    3.0
+    """
+    series = np.asarray(values, dtype=np.float64)
+    series = series[np.isfinite(series)]
+    noise, quantum = sample_noise(series)
+    count = max(1, min(n_samples, series.size))
+    stretch = series[-count:] if at_end else series[:count]
+    variance = noise**2 / count + (quantum**2 / 12 if noise < quantum / 2 else 0.0)
+    return float(stretch.mean()), float(np.sqrt(variance))
+
+
+def rate_per_decade(blocks: Blocks, *, ramp_duration: float) -> Rate:
+    r"""Change of a series per decade of time, by regression on block means.
+
+    Parameters
+    ----------
+    blocks : Blocks
+        Means against the time from the centre of the ramp. [s], [unit of the series]
+    ramp_duration : float
+        Duration of the equivalent ramp; the first three of them are left out. [s]
+
+    Returns
+    -------
+    rate : Rate
+        Slope against log10(time); the uncertainty is type A, from the scatter of the block
+        means about the line, widened by their correlation, so it holds curvature too.
+        [unit of the series]
+
+    Raises
+    ------
+    DataError
+        If what is left spans less than half a decade or fewer than eight blocks.
+
+    Notes
+    -----
+    After three ramp times what the finite ramp does to a logarithmic relaxation is below
+    half a percent of its rate (:math:`1/24 \cdot 1/9`).
+
+    Examples
+    --------
+    >>> from reduction.holds.blocks import logarithmic_blocks
+    >>> t = np.arange(1.0, 1001.0)
+    >>> rate = rate_per_decade(logarithmic_blocks(t, 400 - 20 * np.log10(t)), ramp_duration=2.0)
+    >>> print(round(rate.value, 1))
+    -20.0
+    """
+    kept = blocks.elapsed >= RAMP_TIMES_LEFT_OUT * ramp_duration
+    elapsed, value, weight = blocks.elapsed[kept], blocks.value[kept], blocks.weight[kept]
+    span = float(np.log10(elapsed[-1] / elapsed[0])) if elapsed.size else 0.0
+    if elapsed.size < FEWEST_BLOCKS or span < SHORTEST_SPAN:
+        raise DataError(
+            f"the hold is too short for a rate per decade: {span:.2f} decades and {elapsed.size} "
+            f"blocks after {RAMP_TIMES_LEFT_OUT:g} ramp times of {ramp_duration:.3g} s",
+            needed=f"{SHORTEST_SPAN:g} decades and {FEWEST_BLOCKS} blocks",
+        )
+    x = np.log10(elapsed)
+    share = weight / weight.sum()
+    x = x - share @ x
+    y = value - share @ value
+    power = float(share @ (x * x))
+    slope = float(share @ (x * y)) / power
+    residual = np.sqrt(share) * (y - slope * x)
+    variance = float(residual @ residual) / (x.size - 2) * lag_one_inflation(residual) / power
+    return Rate(slope, float(np.sqrt(variance)), float(elapsed[0]), float(elapsed[-1]))
+
+
+def value_at_times(elapsed: ArrayLike, values: ArrayLike, times: ArrayLike) -> Floats:
+    """Series at stated times, each from a line through the samples within a tenth of it.
+
+    Parameters
+    ----------
+    elapsed : array_like, shape (n_samples,)
+        Time, increasing. [s]
+    values : array_like, shape (n_samples,)
+        Series. [any unit]
+    times : array_like, shape (n_times,)
+        Where it is wanted. [s]
+
+    Returns
+    -------
+    at_times : ndarray, shape (n_times,)
+        NaN where the series does not reach from before to after the time, or has a gap of
+        more than a fifth of the time there. [unit of the series]
+
+    Raises
+    ------
+    DataError
+        If the time does not increase or a value is not finite.
+
+    Examples
+    --------
+    >>> print(value_at_times([0.0, 1.0, 2.0, 3.0], [8.0, 6.0, 4.0, 2.0], [1.5, 5.0]))
+    [ 5. nan]
+    """
+    time = as_increasing("elapsed", elapsed)
+    time, series = as_same_shape(elapsed=time, values=as_finite("values", values))
+    found = np.full(np.shape(times), np.nan)
+    for index, wanted in enumerate(np.asarray(times, dtype=np.float64)):
+        after = int(np.searchsorted(time, wanted))
+        if after == time.size or (after == 0 and time[0] != wanted):
+            continue
+        first, last = np.searchsorted(time, [0.9 * wanted, 1.1 * wanted])
+        if last - first < 4:
+            # Too few samples for a line of their own: the two beside the time.
+            close = after == 0 or time[after] - time[after - 1] <= max(0.2 * wanted, _step(time))
+            found[index] = np.interp(wanted, time, series) if close else np.nan
+            continue
+        x, y = time[first:last] - wanted, series[first:last]
+        mean = x.mean()
+        slope = float((x - mean) @ y) / float((x - mean) @ (x - mean))
+        found[index] = y.mean() - slope * mean
+    return found
+
+
+def _step(time: Floats) -> float:
+    return float(np.median(np.diff(time))) * 1.5
