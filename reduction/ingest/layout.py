@@ -13,7 +13,9 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator, model_valida
 from reduction.errors import SettingsError
 from reduction.units import Dimension, parse_quantity, scale_to_si
 
-__all__ = ["Channel", "Format", "Layout"]
+__all__ = ["CLOCK", "Channel", "Format", "Layout"]
+
+CLOCK = "clock"
 
 Format = Literal["delimited", "blocks", "spreadsheet", "tdms", "matlab", "hdf5", "parquet", "json"]
 
@@ -40,6 +42,10 @@ class Channel(BaseModel):
 
     column: str | int
     unit: str = "1"
+    """Of time also ``clock``: text such as 0945 or 09:45:30, made elapsed seconds."""
+    factor: float = Field(default=1.0, gt=0)
+    unit_key: str = ""
+    """JSON: key of the text that states this channel's unit, checked against ``unit``."""
     sign: Literal[1, -1] = 1
     zero: str | None = None
     """Reading at zero load, subtracted before the sign is applied, with its unit."""
@@ -63,6 +69,7 @@ class Layout(BaseModel):
     format: Format
     # text
     delimiter: str = ","
+    """One character; a blank stands for any run of blanks and tabs."""
     decimal: Literal[".", ","] = "."
     thousands: Literal["", ",", ".", " ", "'"] = ""
     encoding: str = "utf-8"
@@ -92,6 +99,8 @@ class Layout(BaseModel):
     """JSON key, MATLAB variable or HDF5 data set with the column names of ``matrix``."""
     matrix_units: str = ""
     """JSON key, MATLAB variable or HDF5 data set with the units of its columns."""
+    sample_interval: str | None = None
+    """Time between rows, with its unit, of a log that has no time column."""
     channels: dict[str, Channel]
 
     @field_validator("channels", mode="before")
@@ -112,7 +121,9 @@ class Layout(BaseModel):
     def _channels_make_sense(self) -> Layout:
         for name, channel in self.channels.items():
             dimension = self.dimension(name)
-            scale_to_si(channel.unit, dimension)
+            if channel.unit != CLOCK or name != "time":
+                scale_to_si(channel.unit, dimension)
+            scale_to_si(channel.time_unit, "time")
             for text in (
                 channel.zero,
                 channel.standard_uncertainty,
@@ -124,6 +135,22 @@ class Layout(BaseModel):
                 parse_quantity(channel.reference_length, "length")
             if channel.reference_tension is not None:
                 parse_quantity(channel.reference_tension, "force")
+        if self.sample_interval is not None:
+            parse_quantity(self.sample_interval, "time")
+            if "time" in self.channels:
+                raise SettingsError(
+                    "a layout has both a time channel and a sample_interval",
+                    found=f"sample_interval {self.sample_interval}",
+                    needed="one of the two",
+                )
+        marks = [mark for mark in (self.delimiter, self.decimal, self.thousands) if mark]
+        if len(self.delimiter) != 1 or len(set(marks)) < len(marks):
+            raise SettingsError(
+                "the separators of a layout cannot be told apart",
+                found=f"delimiter {self.delimiter!r}, decimal {self.decimal!r}, "
+                f"thousands {self.thousands!r}",
+                needed="one character each, all different",
+            )
         position = self.channels.get("crosshead_position")
         if position is not None and position.datum is None:
             raise SettingsError(
