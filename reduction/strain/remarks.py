@@ -12,8 +12,9 @@ from __future__ import annotations
 from math import sqrt
 
 import numpy as np
+from scipy.stats import linregress
 
-from reduction.record import Bools, SpliceMarks
+from reduction.record import Bools, Floats, SpliceMarks
 from reduction.strain.calibration import line_slope
 from reduction.strain.evaluate import free_length_strain_of
 from reduction.strain.model import StrainModel
@@ -25,6 +26,13 @@ _SLOPE_NOTICE = 0.01
 # scatter and outliers, in standard uncertainties of a mark
 _SCATTER_NOTICE = 2.0
 _OUTLIER_NOTICE = 5.0
+# slack rows that can show a trend, and the chance that level ones show it
+_TREND_ROWS = 4
+_TREND_CHANCE = 0.01
+
+
+def _rms(residual: Floats) -> float:
+    return sqrt(float(np.mean(residual**2)))
 
 
 def _high_or_low(ratio: float) -> str:
@@ -61,7 +69,7 @@ def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tup
     if model.method == "constant-fraction":
         return ()
     residual = model.mark_strain_residual[is_stretched]
-    rms = sqrt(float(np.mean(residual**2)))
+    rms = _rms(residual)
     notes = []
     if expected > 0 and rms > _SCATTER_NOTICE * expected:
         notes.append(
@@ -82,20 +90,21 @@ def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tup
 
 
 def _on_slack(marks: SpliceMarks) -> tuple[str, ...]:
-    """Growth of the slack length from test to test: permanent set, or a splice let out."""
-    rows = np.flatnonzero(marks.is_slack)
-    length = marks.far_thimble[rows]
-    if rows.size < 2 or marks.reading_uncertainty == 0:
+    """Growth of the slack length from test to test: permanent set, or a splice let out.
+
+    A trend over the rows, since single readings scatter by more than their last digit.
+    """
+    length = marks.far_thimble[marks.is_slack]
+    if length.size < _TREND_ROWS or np.ptp(length) == 0:
         return ()
-    growth = float(length.max() - length.min())
-    # the range of n readings, four standard uncertainties and some for their number
-    if growth <= marks.reading_uncertainty * (3 + sqrt(2 * np.log(rows.size))):
+    trend = linregress(np.arange(length.size), length)
+    if trend.slope <= 0 or trend.pvalue > _TREND_CHANCE:
         return ()
-    low, high = rows[int(np.argmin(length))], rows[int(np.argmax(length))]
+    growth = trend.slope * (length.size - 1)
     return (
-        f"{marks.specimen}: the slack length is {1e3 * growth:.0f} mm greater in test "
-        f"{marks.test[high]} than in {marks.test[low]}, more than tape reading explains "
-        "(permanent set, or a splice let out); strain counts from the mean",
+        f"{marks.specimen}: the slack length grows by {1e3 * growth:.0f} mm "
+        f"({growth / length[0]:.1%}) from the first test to the last (permanent set, or a splice "
+        "let out); strain counts from the mean slack length",
     )
 
 
@@ -111,9 +120,13 @@ def _on_reading_time(
             - free_length_strain_of(model, position=position, tension=force)
         )[0]
     )
+    end, start = (
+        100 * _rms(entry.mark_strain_residual[is_stretched]) for entry in (model, at_start)
+    )
     return (
-        f"{model.specimen}: marks are taken to be read as a hold ends; read as it begins they "
-        f"would give a strain {100 * change:+.2f} points other at the highest marked tension",
+        f"{model.specimen}: marks are taken to be read as a hold ends, and then differ from the "
+        f"splice law by {end:.2f} points of strain rms; read as it begins, {start:.2f} points, and "
+        f"strain at the highest marked tension would be {100 * change:+.1f} points other",
     )
 
 
