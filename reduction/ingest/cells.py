@@ -1,0 +1,179 @@
+"""Cells of a sheet to numbers: quickly where all is well, exactly where it is not.
+
+A cell is a number, a declared missing mark, or an error.  The fast look takes columns
+that hold nothing but numbers and blanks straight from arrow.  Every other column is read
+cell by cell, because arrow would be given 1 for ``TRUE`` and 12 for the text ``12``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import fastexcel
+import numpy as np
+import python_calamine
+
+from reduction.errors import LogError
+from reduction.ingest.clock import clock_to_seconds
+from reduction.ingest.columns import Wanted, without_marks
+from reduction.ingest.layout import CLOCK, Layout
+from reduction.record import Bools, Floats
+
+__all__ = ["SheetCells", "read_cells"]
+
+_ERROR_CELL = re.compile(r"Error\((\w+)\)")
+_ERROR_MARKS = {
+    "NA": "#N/A",
+    "Div0": "#DIV/0!",
+    "Name": "#NAME?",
+    "Null": "#NULL!",
+    "Num": "#NUM!",
+    "Ref": "#REF!",
+    "Value": "#VALUE!",
+    "GettingData": "#GETTING_DATA",
+}
+
+
+@dataclass
+class SheetCells:
+    """Declared columns of a sheet, where they are blank, and the text of a clock."""
+
+    values: list[Floats] = field(default_factory=list)
+    blanks: list[Bools] = field(default_factory=list)
+    text: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+
+def _fast_columns(
+    workbook: fastexcel.ExcelReader,
+    sheet: int,
+    first: int,
+    places: Sequence[int],
+    wanted: Sequence[Wanted],
+    layout: Layout,
+) -> SheetCells | None:
+    """Columns that hold numbers and blanks (NaN) alone; None where one holds more."""
+    if any(want.unit == CLOCK for want in wanted):
+        return None
+    order = sorted(set(places))
+    try:
+        batch, errors = workbook.load_sheet(
+            sheet,
+            header_row=None,
+            skip_rows=first,
+            use_columns=order,
+            schema_sample_rows=None,
+            dtype_coercion="strict",
+        ).to_arrow_with_errors()
+    except (fastexcel.UnsupportedColumnTypeCombinationError, fastexcel.ColumnNotFoundError):
+        return None
+    if errors is not None or not {str(kind) for kind in batch.schema.types} <= {"double", "int64"}:
+        return None
+    columns = [column.to_numpy(zero_copy_only=False) for column in batch.columns]
+    values = [np.array(columns[order.index(place)], dtype=np.float64) for place in places]
+    return SheetCells(
+        [without_marks(column, layout) for column in values],
+        [np.isnan(column) for column in values],
+    )
+
+
+def _error_cells(
+    workbook: fastexcel.ExcelReader, sheet: int, first: int
+) -> dict[tuple[int, int], str]:
+    """Spreadsheet errors by row and column from 0; the exact path sees them as blanks."""
+    _, errors = workbook.load_sheet(
+        sheet, header_row=None, skip_rows=first, dtypes="float"
+    ).to_arrow_with_errors()
+    found = {}
+    for error in errors.errors if errors is not None else []:
+        match = _ERROR_CELL.search(error.detail)
+        if match is not None:
+            row, column = error.position
+            found[row, column] = _ERROR_MARKS.get(match[1], f"#{match[1]}")
+    return found
+
+
+def _clock_text(cell: object) -> str:
+    """Time of day as text; 945 is 09:45."""
+    if isinstance(cell, float) and cell.is_integer():
+        return f"{cell:04.0f}"
+    return cell.strip() if isinstance(cell, str) else str(cell)
+
+
+def _exact_columns(
+    path: Path,
+    workbook: fastexcel.ExcelReader,
+    sheet: int,
+    first: int,
+    places: Sequence[int],
+    wanted: Sequence[Wanted],
+    layout: Layout,
+) -> SheetCells:
+    """Columns cell by cell; `LogError` at the first that is neither number nor missing mark."""
+    rows = (
+        python_calamine.CalamineWorkbook.from_path(path)
+        .get_sheet_by_index(sheet)
+        .to_python(skip_empty_area=False)[first:]
+    )
+    errors = _error_cells(workbook, sheet, first)
+    found = SheetCells()
+    for place, want in zip(places, wanted, strict=True):
+        cells = [errors.get((first + index, place), row[place]) for index, row in enumerate(rows)]
+        found.blanks.append(
+            np.array([isinstance(cell, str) and not cell.strip() for cell in cells], dtype=bool)
+        )
+        if want.unit == CLOCK:
+            found.text[want.key] = tuple(_clock_text(cell) for cell in cells)
+            found.values.append(
+                clock_to_seconds(
+                    path,
+                    found.text[want.key],
+                    channel=str(want.column),
+                    missing=("", *layout.missing),
+                    row=None,
+                    first_row=first + 1,
+                )
+            )
+            continue
+        values = np.full(len(cells), np.nan)
+        for index, cell in enumerate(cells):
+            if type(cell) is float or type(cell) is int:  # a bool is no number
+                values[index] = cell
+            elif not isinstance(cell, str) or (cell.strip() and cell.strip() not in layout.missing):
+                raise LogError(
+                    path,
+                    "a cell does not hold a number",
+                    row=first + index + 1,
+                    channel=str(want.column),
+                    found=f"the text {cell!r}"
+                    if isinstance(cell, str)
+                    else f"{type(cell).__name__} {cell}",
+                    needed=f"a number in {want.unit}",
+                    hint="Make the cell a number, or add its text to the missing marks.",
+                )
+        found.values.append(without_marks(values, layout))
+    return found
+
+
+def read_cells(
+    path: Path,
+    workbook: fastexcel.ExcelReader,
+    sheet: int,
+    first: int,
+    places: Sequence[int],
+    wanted: Sequence[Wanted],
+    layout: Layout,
+) -> SheetCells:
+    """Declared columns of a sheet below its first rows; blanks and missing marks are NaN.
+
+    Raises
+    ------
+    LogError
+        With row and column of the first cell that is neither a number nor a missing mark.
+    """
+    cells = _fast_columns(workbook, sheet, first, places, wanted, layout)
+    if cells is None:
+        cells = _exact_columns(path, workbook, sheet, first, places, wanted, layout)
+    return cells

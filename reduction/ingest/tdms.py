@@ -1,0 +1,187 @@
+"""TDMS, the format of LabVIEW and of most National Instruments loggers.
+
+A channel's ``unit_string`` is checked against the declared unit.  A log without a time
+channel says its times by the waveform properties of its channels: the layout then
+declares the column ``wf_increment``, and time is ``wf_start_offset`` plus
+``wf_increment`` times the sample number.
+"""
+
+from __future__ import annotations
+
+import logging
+import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import nptdms  # type: ignore[import-untyped]
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.errors import LogError
+from reduction.ingest.columns import Wanted, check_unit, find_column, wanted_columns
+from reduction.ingest.layout import Layout
+from reduction.ingest.rawlog import RawLog
+from reduction.ingest.source import hash_source, unchanged
+from reduction.ingest.table import ColumnTable, read_columns
+from reduction.record import Floats
+
+__all__ = ["WAVEFORM_COLUMN", "open_tdms", "read_tdms", "tdms_group", "tdms_table"]
+
+WAVEFORM_COLUMN = "wf_increment"
+# npTDMS prints what this module turns into notes and errors
+logging.getLogger("nptdms").setLevel(logging.CRITICAL)
+
+
+@contextmanager
+def open_tdms(path: Path) -> Iterator[nptdms.TdmsFile]:
+    """Open a TDMS file; `LogError` where the file is none."""
+    try:
+        file = nptdms.TdmsFile.open(path)
+    except (ValueError, KeyError, TypeError, OSError, EOFError, struct.error, IndexError) as error:
+        raise LogError(
+            path, "the file is not TDMS", found=str(error)[:200], needed="a .tdms file"
+        ) from error
+    with file:
+        yield file
+
+
+def tdms_group(path: Path, file: nptdms.TdmsFile, group: str) -> nptdms.TdmsGroup:
+    """The named group, or the only one where no name is given."""
+    names = [entry.name for entry in file.groups()]
+    if not group and len(names) == 1:
+        return file[names[0]]
+    if group not in names:
+        raise LogError(
+            path,
+            f"there is no group '{group}'" if group else "the layout names no group",
+            found=", ".join(repr(name) for name in names) or "no groups",
+            needed="group in the layout, one of these",
+        )
+    return file[group]
+
+
+def tdms_table(group: nptdms.TdmsGroup) -> ColumnTable:
+    """Channels of a group as columns."""
+    channels = group.channels()
+
+    def load(place: int) -> NDArray[Any]:
+        return np.asarray(channels[place][:])
+
+    return ColumnTable(
+        names=tuple(channel.name for channel in channels),
+        units=tuple(str(channel.properties.get("unit_string", "")) for channel in channels),
+        load=load,
+        where=f"group '{group.name}'",
+    )
+
+
+def _waveform(path: Path, wanted: Wanted, channel: nptdms.TdmsChannel) -> tuple[Any, float, float]:
+    """Start, offset and increment of a channel's waveform."""
+    properties = channel.properties
+    increment = float(properties.get(WAVEFORM_COLUMN, 0.0))
+    if increment <= 0:
+        raise LogError(
+            path,
+            f"channel '{channel.name}' does not say its sampling interval",
+            channel=str(wanted.column),
+            found=f"properties {', '.join(properties) or 'none'}",
+            needed=f"{WAVEFORM_COLUMN} above zero, or a time channel",
+        )
+    check_unit(path, wanted, str(properties.get("wf_xunit_string", "")) or "s")
+    return properties.get("wf_start_time"), float(properties.get("wf_start_offset", 0)), increment
+
+
+def _waveform_times(
+    path: Path, layout: Layout, group: nptdms.TdmsGroup, table: ColumnTable
+) -> dict[str, Floats]:
+    """Times that the layout takes from waveform properties, by channel key.
+
+    ``time`` is that of the channels without own time stamps, which must agree; a channel
+    with ``time_column = "wf_increment"`` has its own, on the same zero where both state
+    their start.
+    """
+    if WAVEFORM_COLUMN in table.names:  # a channel of that name is read like any other
+        return {}
+    wanted = {want.key: want for want in wanted_columns(layout)}
+    channels = group.channels()
+
+    def waveform(key: str, clock: Wanted) -> tuple[tuple[Any, float, float], int]:
+        place = find_column(path, wanted[key], table.names, where=table.where)
+        return _waveform(path, clock, channels[place]), len(channels[place])
+
+    times: dict[str, Floats] = {}
+    zero = None
+    clock = wanted.get("time")
+    if clock is not None and clock.column == WAVEFORM_COLUMN:
+        shared = [
+            key for key, channel in layout.channels.items()
+            if key != "time" and channel.time_column is None
+        ]  # fmt: skip
+        found = {key: waveform(key, clock) for key in shared}
+        if len({properties for properties, _ in found.values()}) != 1:
+            raise LogError(
+                path,
+                "the channels have two time bases",
+                channel=WAVEFORM_COLUMN,
+                found=", ".join(
+                    f"{key} every {increment:g} s from {offset:g} s after {start}"
+                    for key, ((start, offset, increment), _) in found.items()
+                )
+                or "no channel without own time stamps",
+                needed="one start and one sampling interval",
+                hint=f'Give a channel of another rate time_column = "{WAVEFORM_COLUMN}".',
+            )
+        (zero, offset, increment), size = found[shared[0]]
+        times["time"] = offset + increment * np.arange(size, dtype=np.float64)
+    for key, channel in layout.channels.items():
+        if channel.time_column == WAVEFORM_COLUMN:
+            (start, offset, increment), size = waveform(key, wanted[f"{key}.time"])
+            if zero is not None and start is not None:
+                offset += float((start - zero) / np.timedelta64(1, "s"))
+            times[f"{key}.time"] = offset + increment * np.arange(size, dtype=np.float64)
+    return times
+
+
+def read_tdms(path: Path, layout: Layout, *, name: str) -> RawLog:
+    """Read the declared channels of one group; channel scaling in the file is applied.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    layout : Layout
+        ``group`` (may be left out where there is one), ``missing`` and the channels.
+    name : str
+        Name of the file for the product.
+
+    Returns
+    -------
+    log : RawLog
+        With the properties of file and group as metadata.
+
+    Raises
+    ------
+    LogError
+        If the file, the group or a channel cannot be used.
+    """
+    with unchanged(path):
+        source = hash_source(path, name)
+        with open_tdms(path) as file:
+            group = tdms_group(path, file, layout.group)
+            table = tdms_table(group)
+            made = _waveform_times(path, layout, group, table)
+            columns, n_rows = read_columns(path, layout, table, made)
+            properties = {**file.properties, **group.properties}
+            cut = file.file_status.incomplete_final_segment
+    return RawLog(
+        source=source,
+        columns=columns,
+        first_row=0,
+        n_rows_read=n_rows,
+        metadata={key: str(value) for key, value in properties.items()},
+        notes=("the file ends inside a block of data: the logger was stopped or cut off",)
+        if cut
+        else (),
+    )
