@@ -10,6 +10,7 @@ import csv
 import math
 import re
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,7 +28,7 @@ from reduction.record import Floats, Integers
 __all__ = ["TextRows", "count_lines", "line_starts", "read_fields", "split_line"]
 
 _PIECE = 1 << 17  # stays in the cache
-_ARROW_BLOCK = 1 << 22
+_WORKERS = 4
 _NEWLINE = 10
 
 
@@ -144,6 +145,10 @@ def read_fields(
         table, rows = None, _blank_to_empty(rows, layout)
     if table is None or has_thousands:
         table = _parse_as_text(rows, layout, n_fields, [place for _, place in wanted])
+    with ThreadPoolExecutor(_WORKERS) as workers:  # fresh memory is slow to touch
+        numbers = dict(
+            zip(wanted, workers.map(lambda one: _filled(table, one[1]), wanted), strict=True)
+        )
     for want, place in wanted:
         column = table.column(str(place))
         if want.unit == CLOCK:
@@ -157,16 +162,30 @@ def read_fields(
                 first_row=rows.first_row,
             )
             continue
-        if pa.types.is_string(column.type):
-            values = _second_look(rows, layout, want, column)
-        else:
-            values = column.to_numpy()
-            # arrow takes the words nan and inf for numbers; a log may not
-            if np.count_nonzero(np.isfinite(values)) != len(column) - column.null_count:
+        values = numbers[want, place]
+        if values is None:
+            if not pa.types.is_string(column.type):
                 column = _parse_as_text(rows, layout, n_fields, [place]).column(str(place))
-                values = _second_look(rows, layout, want, column)
+            values = _second_look(rows, layout, want, column)
         columns[want.key] = _without_marks(values, layout)
     return columns, text
+
+
+def _filled(table: pa.Table, place: int) -> Floats | None:
+    """Numbers of a parsed column, or None where it has to be looked at as text."""
+    column = table.column(str(place))
+    if pa.types.is_string(column.type):
+        return None
+    values = np.empty(len(column))
+    start = 0
+    for piece in column.chunks:
+        part = values[start : start + len(piece)]
+        part[:] = piece.to_numpy(zero_copy_only=False)
+        # arrow takes the words nan and inf for numbers; a log may not
+        if np.count_nonzero(np.isfinite(part)) != len(piece) - piece.null_count:
+            return None
+        start += len(piece)
+    return values
 
 
 def _parse(
@@ -176,7 +195,7 @@ def _parse(
     types = {str(place): pa.string() if place in as_text else pa.float64() for place in set(places)}
     return pa_csv.read_csv(
         pa.py_buffer(rows.text),
-        read_options=pa_csv.ReadOptions(column_names=names, block_size=_ARROW_BLOCK),
+        read_options=pa_csv.ReadOptions(column_names=names),
         parse_options=pa_csv.ParseOptions(
             delimiter=layout.delimiter, quote_char=layout.quote or False
         ),
