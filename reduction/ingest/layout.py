@@ -143,7 +143,9 @@ class Layout(BaseModel):
                     found=f"sample_interval {self.sample_interval}",
                     needed="one of the two",
                 )
-        marks = [mark for mark in (self.delimiter, self.decimal, self.thousands) if mark]
+        # an MTS file of blocks states its decimal mark itself
+        decimal = "" if self.format == "blocks" else self.decimal
+        marks = [mark for mark in (self.delimiter, decimal, self.thousands) if mark]
         if len(self.delimiter) != 1 or len(set(marks)) < len(marks):
             raise SettingsError(
                 "the separators of a layout cannot be told apart",

@@ -47,7 +47,8 @@ def check_units(
 
     A unit row must agree.  A unit in brackets at the end of a column's name must
     agree where it is a unit of the channel's dimension; other words in brackets are
-    part of the name.  A channel with a factor is not compared: the file has its volts.
+    part of the name.  Not compared are a channel with a factor, of which the file has
+    the volts, and a counter, whose unit may be any word.
 
     Raises
     ------
@@ -56,7 +57,7 @@ def check_units(
     """
     for want, place in wanted:
         channel = layout.channels[want.key.removesuffix(".time")]
-        if want.unit == CLOCK or channel.factor != 1:
+        if want.unit == CLOCK or channel.factor != 1 or want.dimension == "number":
             continue
         if unit_row is not None:
             check_unit(path, want, units[place] if place < len(units) else "", row=unit_row)
