@@ -191,7 +191,7 @@ def _choose(
             continue
         units = split_line(lines.text(opener + 2), layout) if layout.has_unit_row else []
         unit_row = opener + 3 if layout.has_unit_row else None
-        check_units(lines.path, layout, wanted, names=names, units=units, unit_row=unit_row)
+        check_units(lines.path, wanted, names=names, units=units, unit_row=unit_row)
         return number, wanted, names
     raise refusals[0]
 

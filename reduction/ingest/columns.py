@@ -186,12 +186,15 @@ def without_marks(values: NDArray[Any], layout: Layout) -> Floats:
 
     Marks are compared in the column's own precision: -99.9 of a float32 column is found.
     """
-    array = values.astype(np.float64)
+    marks = []
     for mark in layout.missing:
         try:
             value = float(mark.replace(layout.decimal, "."))
         except ValueError:
             continue
         if math.isfinite(value):
-            array[values == value] = np.nan
+            marks.append(value)
+    array = values.astype(np.float64, copy=bool(marks))
+    for value in marks:
+        array[values == value] = np.nan
     return array

@@ -7,7 +7,6 @@ as text, column by column, so that the first offending field can be named by its
 from __future__ import annotations
 
 import csv
-import math
 import re
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -21,7 +20,7 @@ import pyarrow.csv as pa_csv
 
 from reduction.errors import LogError
 from reduction.ingest.clock import clock_to_seconds
-from reduction.ingest.columns import Wanted
+from reduction.ingest.columns import Wanted, without_marks
 from reduction.ingest.layout import CLOCK, Layout
 from reduction.record import Floats, Integers
 
@@ -167,7 +166,7 @@ def read_fields(
             if not pa.types.is_string(column.type):
                 column = _parse_as_text(rows, layout, n_fields, [place]).column(str(place))
             values = _second_look(rows, layout, want, column)
-        columns[want.key] = _without_marks(values, layout)
+        columns[want.key] = without_marks(values, layout)
     return columns, text
 
 
@@ -271,15 +270,3 @@ def _second_look(rows: TextRows, layout: Layout, want: Wanted, column: pa.Chunke
         needed=f"a decimal number such as {sample} in {want.unit}, or a declared missing mark",
         hint="Add it to the missing marks of the layout where it means missing.",
     )
-
-
-def _without_marks(values: Floats, layout: Layout) -> Floats:
-    """NaN where a missing mark that is a number stands, however it is written (-9999.00)."""
-    for mark in layout.missing:
-        try:
-            value = float(mark.replace(layout.decimal, "."))
-        except ValueError:
-            continue
-        if math.isfinite(value):
-            values = np.where(values == value, np.nan, values)
-    return values

@@ -10,7 +10,7 @@ from pathlib import Path
 from reduction.errors import LogError, SettingsError
 from reduction.ingest.columns import Wanted, check_unit
 from reduction.ingest.fields import split_line
-from reduction.ingest.layout import CLOCK, Layout
+from reduction.ingest.layout import Layout
 from reduction.units import scale_to_si
 
 __all__ = ["check_units", "keep_line"]
@@ -36,7 +36,6 @@ def keep_line(metadata: dict[str, str], line: str, row: int, layout: Layout) -> 
 
 def check_units(
     path: Path,
-    layout: Layout,
     wanted: Sequence[tuple[Wanted, int]],
     *,
     names: Sequence[str],
@@ -56,8 +55,7 @@ def check_units(
         If the file contradicts the layout.
     """
     for want, place in wanted:
-        channel = layout.channels[want.key.removesuffix(".time")]
-        if want.unit == CLOCK or channel.factor != 1 or want.dimension == "number":
+        if not want.is_compared or want.dimension == "number":
             continue
         if unit_row is not None:
             check_unit(path, want, units[place] if place < len(units) else "", row=unit_row)

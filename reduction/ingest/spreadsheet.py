@@ -144,7 +144,6 @@ def read_spreadsheet(path: Path, layout: Layout, *, name: str) -> RawLog:
         ]
         check_units(
             path,
-            layout,
             list(zip(wanted, places, strict=True)),
             names=names,
             units=units,

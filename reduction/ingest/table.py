@@ -179,6 +179,6 @@ def read_columns(
         if table.units[place]:
             check_unit(path, wanted, table.units[place])
         else:  # a name such as "Force (kN)" may state it
-            check_units(path, layout, [(wanted, place)], names=table.names, units=(), unit_row=None)
+            check_units(path, [(wanted, place)], names=table.names, units=(), unit_row=None)
         columns[wanted.key] = to_floats(path, wanted, table.load(place), layout)
     return columns, check_lengths(path, columns)
