@@ -1,0 +1,138 @@
+"""JSON: a matrix of rows, with unit strings beside it."""
+
+from __future__ import annotations
+
+import json
+import math
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reduction.errors import LogError
+from reduction.ingest.columns import check_unit, wanted_columns
+from reduction.ingest.layout import Layout
+from reduction.ingest.rawlog import RawLog
+from reduction.ingest.source import decode, read_bytes, source_of
+from reduction.ingest.table import matrix_table, read_columns
+from reduction.record import Floats
+
+__all__ = ["read_json"]
+
+
+def read_json(path: Path, layout: Layout, *, name: str) -> RawLog:
+    """Read a JSON log: the matrix under the layout's ``matrix`` key, one list a row.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    layout : Layout
+        ``matrix``, where there are such keys ``matrix_names`` and ``matrix_units``, and
+        a channel's ``unit_key``.
+    name : str
+        File name relative to the campaign folder.
+
+    Returns
+    -------
+    log : RawLog
+        Declared columns; every other text or number of the file as metadata.
+
+    Raises
+    ------
+    LogError
+        If the file is no JSON, has no such key, states another unit, or a value of the
+        matrix is neither a number nor a declared missing mark.
+    """
+    raw = read_bytes(path)
+    try:
+        # the words NaN and Infinity are not JSON; here they are text like any other mark
+        content = json.loads(decode(path, raw, layout.encoding), parse_constant=str)
+    except json.JSONDecodeError as error:
+        raise LogError(
+            path, "the file is not JSON", row=error.lineno, found=error.msg, needed="a JSON object"
+        ) from error
+    rows = _entry(path, content, layout.matrix, "matrix")
+    table = matrix_table(
+        path,
+        _to_matrix(path, rows, layout),
+        where=f"'{layout.matrix}'",
+        names=_texts(path, content, layout.matrix_names, "matrix_names"),
+        units=_texts(path, content, layout.matrix_units, "matrix_units"),
+    )
+    for wanted in wanted_columns(layout):
+        channel = layout.channels.get(wanted.key)
+        if channel is not None and channel.unit_key:
+            stated = _entry(path, content, channel.unit_key, f"unit_key of {wanted.key}")
+            check_unit(path, wanted, str(stated))
+    columns, n_rows = read_columns(path, layout, table)
+    plain = {key: value for key, value in content.items() if not isinstance(value, (list, dict))}
+    return RawLog(
+        source=source_of(raw, name),
+        columns=columns,
+        first_row=0,
+        n_rows_read=n_rows,
+        metadata={key: str(value) for key, value in plain.items()},
+    )
+
+
+def _entry(path: Path, content: Any, key: str, setting: str) -> Any:
+    if not isinstance(content, dict) or key not in content:
+        there = ", ".join(repr(k) for k in content) if isinstance(content, dict) else "no object"
+        raise LogError(
+            path,
+            f"there is no key '{key}'",
+            found=there,
+            needed=f"the key that the layout gives as {setting}",
+        )
+    return content[key]
+
+
+def _texts(path: Path, content: Any, key: str, setting: str) -> tuple[str, ...] | None:
+    if not key:
+        return None
+    entry = _entry(path, content, key, setting)
+    if not isinstance(entry, list) or not all(isinstance(text, str) for text in entry):
+        raise LogError(
+            path, f"'{key}' is not a list of texts", found=type(entry).__name__, needed="texts"
+        )
+    return tuple(entry)
+
+
+def _to_matrix(path: Path, rows: Any, layout: Layout) -> Floats:
+    """Rows of numbers, shape (n_rows, n_columns); null and missing marks are NaN."""
+    if not isinstance(rows, list) or not all(isinstance(row, list) for row in rows):
+        raise LogError(
+            path,
+            f"'{layout.matrix}' is not a matrix",
+            found=type(rows).__name__,
+            needed="a list of rows, each a list of numbers",
+        )
+    widths = [len(row) for row in rows]
+    if len(set(widths)) > 1:
+        bad = next(index for index, width in enumerate(widths) if width != widths[0])
+        raise LogError(
+            path,
+            f"row {bad + 1} of '{layout.matrix}' has {widths[bad]} values, the first {widths[0]}",
+            needed=f"{widths[0]} values",
+        )
+    if not set(map(type, chain.from_iterable(rows))) <= {float, int}:
+        rows = [
+            [_number(path, value, index, layout) for value in row] for index, row in enumerate(rows)
+        ]
+    return np.array(rows, dtype=np.float64).reshape(len(rows), -1)
+
+
+def _number(path: Path, value: object, index: int, layout: Layout) -> float:
+    mark = "" if value is None else value
+    if isinstance(mark, str) and mark in layout.missing:
+        return math.nan
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value)
+    raise LogError(
+        path,
+        f"a value in row {index + 1} of '{layout.matrix}' is not a number",
+        found=repr(value),
+        needed="a number or a declared missing mark",
+    )

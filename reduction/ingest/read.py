@@ -1,0 +1,57 @@
+"""One door to every format."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from reduction.ingest.blocks import read_blocks
+from reduction.ingest.delimited import read_delimited
+from reduction.ingest.hdf5 import read_hdf5
+from reduction.ingest.layout import Format, Layout
+from reduction.ingest.matlab import read_matlab
+from reduction.ingest.matrix import read_json
+from reduction.ingest.parquet import read_parquet
+from reduction.ingest.rawlog import RawLog
+from reduction.ingest.source import unchanged
+from reduction.ingest.spreadsheet import read_spreadsheet
+from reduction.ingest.tdms import read_tdms
+
+__all__ = ["read_log"]
+
+_READERS: dict[Format, Callable[..., RawLog]] = {
+    "delimited": read_delimited,
+    "blocks": read_blocks,
+    "spreadsheet": read_spreadsheet,
+    "tdms": read_tdms,
+    "matlab": read_matlab,
+    "hdf5": read_hdf5,
+    "parquet": read_parquet,
+    "json": read_json,
+}
+
+
+def read_log(path: Path, layout: Layout, *, name: str) -> RawLog:
+    """Read a log in its declared layout.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    layout : Layout
+        What it looks like.
+    name : str
+        File name relative to the campaign folder.
+
+    Returns
+    -------
+    log : RawLog
+        Declared columns in the file's own units.
+
+    Raises
+    ------
+    LogError
+        If the file is not what the layout says, or changes while it is read.
+    """
+    with unchanged(path):
+        return _READERS[layout.format](path, layout, name=name)
