@@ -86,7 +86,7 @@ _ROWS = (
         "fundamental_energy_share", "1", "share of the loop energy that the fundamental carries"
     ),
     Quantity("dynamic_modulus", "Pa", "apparent spring constant over area at zero tension"),
-    Quantity("secant_modulus", "Pa", "stress over strain at the peak of the cycle", "002 eq 1"),
+    Quantity("secant_modulus", "Pa", "stress over strain", "002 eq 1"),
     Quantity("chord_modulus", "Pa", "end-to-end slope of a branch"),
     Quantity(
         "stroke_mean_modulus_difference",
@@ -269,6 +269,22 @@ _ROWS = (
     Quantity("n_rows_read", "1", "data rows in the raw files"),
     Quantity("n_rows_kept", "1", "rows kept"),
     Quantity("n_flagged", "1", "rows flagged"),
+    # columns that tables have beside the variables of the archives
+    Quantity("test", "", "test"),
+    Quantity("synthetic", "", "whether the data are synthetic, not measured"),
+    Quantity("n_cycles", "1", "number of whole cycles of the test"),
+    Quantity("strain_bin_low", "1", "lower edge of the strain bin"),
+    Quantity("strain_bin_high", "1", "upper edge of the strain bin"),
+    Quantity("envelope_minimum", "Pa", "least tangent modulus of the tests of the campaign"),
+    Quantity("envelope_minimum_test", "", "test with the least tangent modulus"),
+    Quantity("envelope_maximum", "Pa", "greatest tangent modulus of the tests of the campaign"),
+    Quantity("envelope_maximum_test", "", "test with the greatest tangent modulus"),
+    Quantity("n_tests", "1", "number of tests with a tangent modulus at this strain"),
+    Quantity("table", "", "file in which the column stands"),
+    Quantity("column", "", "column"),
+    Quantity("unit", "", "unit of the column"),
+    Quantity("meaning", "", "what the column holds"),
+    Quantity("no_uncertainty", "", "why the column has no standard uncertainty beside it"),
 )
 QUANTITIES = {row.name: row for row in _ROWS}
 

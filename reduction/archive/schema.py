@@ -49,14 +49,22 @@ from reduction.archive.variable import Variable, count, flag, label, mask, measu
 from reduction.record import Quality
 from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES
 
-__all__ = ["COEFFICIENTS", "QUALITY_MASKS", "SCHEMA", "SCHEMA_VERSION", "STEPWISE", "schema_of"]
+__all__ = [
+    "COEFFICIENTS",
+    "QUALITY_MASKS",
+    "SCHEMA",
+    "SCHEMA_VERSION",
+    "STEPWISE",
+    "STEP_MASKS",
+    "schema_of",
+]
 
 SCHEMA_VERSION = "1"
 """Changes when a name, dimension or meaning changes; additions leave it as it is."""
 
 QUALITY_MASKS = {(mask_.name or "").lower(): int(mask_) for mask_ in Quality}
 _NO_YES = {"no": 0, "yes": 1}
-_STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
+STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
 
 READING = "a reading: its uncertainty is that of the channel"
 CLOCK = "a reading of the clock"
@@ -67,7 +75,7 @@ AXIS = "axis of the curve"
 CHECK = "residual of a check"
 CRITERION = "criterion of a fit"
 MEAN_READING = "mean of readings: its uncertainty is that of the channel"
-NOT_EVALUATED = "not evaluated"
+NOT_EVALUATED = "not evaluated by this version"
 
 COEFFICIENTS = {
     "relaxed_free_length": "relaxed_free_length",
@@ -302,7 +310,7 @@ _ROWS = chain(
     stated("gauge_length", ("step",), "a tape reading"),
     stated("eye_to_eye_length", ("step",), "a tape reading"),
     stated("printed_strain", ("step",), STATED),
-    mask("step_flag", ("step",), _STEP_MASKS),
+    mask("step_flag", ("step",), STEP_MASKS),
     stated("secant_modulus", ("step",), NOT_EVALUATED),
     measured("relaxed_gauge_length", ()),
     stated("interval_strain", ("interval",), "middle of two readings"),

@@ -1,0 +1,325 @@
+"""Which tables there are, and which variables of an archive each one lays out in rows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.schema import SCHEMA, schema_of
+from reduction.archive.variable import Variable, count, label, stated
+from reduction.tables.column import Column, uncertainty_of
+
+__all__ = ["SYNTHETIC", "TABLES", "TEST", "Table"]
+
+TEST = Column("test", label("test")[0])
+SYNTHETIC = Column("synthetic", label("synthetic")[0])
+_OWN = {
+    row.name: row
+    for row in [
+        *count("n_cycles", ()),
+        *stated("strain_bin_low", ("strain_bin",), "bound"),
+        *stated("strain_bin_high", ("strain_bin",), "bound"),
+    ]
+}
+
+
+def _as_it_is(dataset: xr.Dataset) -> xr.Dataset:
+    return dataset
+
+
+@dataclass(frozen=True)
+class Table:
+    """One file of tables: a row for each combination of the entries of ``dims``.
+
+    Parameters
+    ----------
+    name : str
+        File name without suffix.
+    dims : tuple of str
+        Slowest first; a dimension with a coordinate gives a column.
+    variables : tuple of str
+        Of the archive, in order; ``column=variable`` gives it another name here. A
+        measured one is followed by its standard uncertainty.
+    needs : tuple of str
+        A row is written where one of these is known.
+    prepare : callable
+        What has to be done to the archive first.
+    is_stepwise : bool
+        True where the names are those of a stepwise test.
+    """
+
+    name: str
+    dims: tuple[str, ...]
+    variables: tuple[str, ...]
+    needs: tuple[str, ...]
+    prepare: Callable[[xr.Dataset], xr.Dataset] = _as_it_is
+    is_stepwise: bool = False
+
+    @property
+    def columns(self) -> list[Column]:
+        """Every column, the test first and the word on synthetic data last."""
+        schema = schema_of(is_stepwise=self.is_stepwise) | _OWN
+        columns = [TEST]
+        for item in (*(dim for dim in self.dims if dim in schema), *self.variables):
+            name, _, source = item.partition("=")
+            column = _column(name, schema[source or name])
+            columns += [column, uncertainty_of(column)] if _is_measured(column) else [column]
+        return [*columns, SYNTHETIC]
+
+
+def _column(name: str, variable: Variable) -> Column:
+    # the axis is `branch_name`, since `branch` is a flag of the samples
+    return Column("branch" if name == "branch_name" else name, variable)
+
+
+def _is_measured(column: Column) -> bool:
+    return column.variable.has_uncertainty
+
+
+def _with_edges(dataset: xr.Dataset) -> xr.Dataset:
+    edges = dataset["strain_bin_bounds"]
+    return dataset.assign(strain_bin_low=edges[:, 0], strain_bin_high=edges[:, 1])
+
+
+def _with_cycle_count(dataset: xr.Dataset) -> xr.Dataset:
+    return dataset.assign(n_cycles=dataset.sizes.get("cycle", 0))
+
+
+def _with_fit_of_parameter(dataset: xr.Dataset) -> xr.Dataset:
+    """Repeat what is said of a fit beside each of its parameters."""
+    fit = dataset["elastomer_parameter_fit"].values - 1
+    of_fit = [name for name in dataset.variables if dataset[name].dims == ("elastomer_fit",)]
+    return dataset.assign(
+        {name: ("elastomer_parameter", np.asarray(dataset[name].values)[fit]) for name in of_fit}
+    )
+
+
+def _with_its_one_specimen(dataset: xr.Dataset) -> xr.Dataset:
+    return dataset.isel(specimen=0)
+
+
+_PER_CYCLE = tuple(
+    name
+    for name, row in SCHEMA.items()
+    if row.dims == ("specimen", "cycle") and not name.endswith("_standard_uncertainty")
+)
+_IDENTITY = ("stroke_mean_modulus_difference", "tension_loss_modulus", "identity_residual")
+_TREND = ("peak_tension_per_decade", "dynamic_modulus_per_decade", "peak_tension_change")
+_AMPLITUDE = tuple(
+    name
+    for name in SCHEMA
+    if name.startswith("test_") and not name.endswith("_standard_uncertainty")
+)
+_COEFFICIENTS = tuple(
+    name
+    for name, row in SCHEMA.items()
+    if row.has_uncertainty and row.dims == ("specimen",) and name not in (*_AMPLITUDE, *_TREND)
+)
+
+TABLES = (
+    Table(
+        "moduli",
+        ("specimen", "branch_name", "segment"),
+        (
+            "segment_tension_low",
+            "segment_tension_high",
+            "segment_strain_low",
+            "segment_strain_high",
+            "segment_modulus",
+            "n_cycles",
+            "strain_method",
+            "segment_criterion",
+        ),
+        ("segment_modulus",),
+        _with_cycle_count,
+    ),
+    Table("cycles", ("specimen", "cycle"), _PER_CYCLE, _PER_CYCLE),
+    Table(
+        "tangent_modulus",
+        ("specimen", "branch_name", "strain_bin"),
+        (
+            "strain_bin_low",
+            "strain_bin_high",
+            "tangent_modulus",
+            "tangent_modulus_count",
+            "tangent_modulus_minimum",
+            "tangent_modulus_maximum",
+            "tangent_modulus_scatter",
+            "tangent_modulus_untrimmed",
+            "branch_tension",
+        ),
+        ("tangent_modulus", "tangent_modulus_untrimmed"),
+        _with_edges,
+    ),
+    Table(
+        "first_loading",
+        ("specimen", "branch_name", "first_loading_strain_bin"),
+        ("tangent_modulus_first_loading", "branch_tension_first_loading"),
+        ("tangent_modulus_first_loading",),
+    ),
+    Table(
+        "relaxation",
+        ("hold",),
+        (
+            "specimen=hold_specimen",
+            "hold_kind",
+            "hold_start_time",
+            "hold_duration",
+            "hold_strain",
+            "hold_initial_tension",
+            "hold_final_tension",
+            "relaxation_drop",
+            "relaxation_rate_per_decade",
+            "creep_rate_per_decade",
+            "long_time_tension",
+            "hold_criterion",
+            "hold_refusal",
+        ),
+        ("hold",),
+    ),
+    Table(
+        "relaxation_times",
+        ("hold", "hold_time"),
+        ("specimen=hold_specimen", "hold_kind", "tension_at_time", "strain_at_time"),
+        ("tension_at_time", "strain_at_time"),
+    ),
+    Table(
+        "prony",
+        ("hold", "prony_term"),
+        ("specimen=hold_specimen", "hold_kind", "prony_tension", "prony_time"),
+        ("prony_tension",),
+    ),
+    Table(
+        "splice",
+        ("mark",),
+        (
+            "specimen=mark_specimen",
+            "mark_test",
+            "mark_hold",
+            "mark_position",
+            "mark_strain",
+            "mark_tension",
+            "mark_strain_residual",
+        ),
+        ("mark_test",),
+    ),
+    Table(
+        "splice_coefficients",
+        ("specimen",),
+        (
+            "strain_method",
+            "strain_marks_from",
+            "strain_position_low",
+            "strain_position_high",
+            "strain_tension_low",
+            "strain_tension_high",
+            "strain_slope_ratio",
+            *_COEFFICIENTS,
+        ),
+        ("strain_method",),
+    ),
+    Table("amplitude", ("specimen",), _AMPLITUDE, _AMPLITUDE),
+    Table(
+        "slips",
+        ("slip",),
+        (
+            "specimen=slip_specimen",
+            "slip_cycle",
+            "slip_cycle_low",
+            "slip_cycle_high",
+            "slip_tension_step",
+            "slip_length",
+        ),
+        ("slip_cycle",),
+    ),
+    Table("identity", ("specimen", "cycle"), _IDENTITY, _IDENTITY),
+    Table(
+        "history",
+        ("specimen",),
+        ("earlier_tests", "earlier_maximum_strain", "earlier_maximum_tension", "earlier_cycles"),
+        ("earlier_tests",),
+    ),
+    Table(
+        "trend",
+        ("specimen",),
+        (*_TREND, "n_slips", "creep_per_cycle"),
+        (*_TREND, "n_slips"),
+    ),
+    Table(
+        "elastomer",
+        ("elastomer_parameter",),
+        (
+            "specimen=elastomer_specimen",
+            "elastomer_law",
+            "elastomer_parameter_name",
+            "elastomer_modulus",
+            "elastomer_exponent",
+            "elastomer_rms_stress",
+            "elastomer_strain_low",
+            "elastomer_strain_high",
+            "elastomer_is_stable",
+            "elastomer_aicc",
+        ),
+        ("elastomer_parameter_name",),
+        _with_fit_of_parameter,
+    ),
+    Table(
+        "stress_at_strain",
+        ("specimen", "strain_level"),
+        ("stress_at_strain",),
+        ("stress_at_strain",),
+    ),
+    Table("permanent_set", ("specimen",), ("permanent_set",), ("permanent_set",)),
+    Table(
+        "comparison",
+        ("branch_name", "ratio_strain_bin"),
+        (
+            "ratio_numerator",
+            "ratio_denominator",
+            "modulus_ratio",
+            "modulus_ratio_low",
+            "modulus_ratio_high",
+            "modulus_ratio_is_different",
+        ),
+        ("modulus_ratio",),
+    ),
+    Table(
+        "stepwise",
+        ("step",),
+        (
+            "specimen",
+            "clock",
+            "time",
+            "tension",
+            "gauge_length",
+            "eye_to_eye_length",
+            "printed_strain",
+            "strain",
+            "branch",
+            "step_flag",
+            "secant_modulus",
+            "relaxed_gauge_length",
+        ),
+        ("clock",),
+        _with_its_one_specimen,
+        is_stepwise=True,
+    ),
+    Table(
+        "stepwise_moduli",
+        ("interval",),
+        ("specimen", "interval_branch", "interval_strain", "interval_modulus"),
+        ("interval_modulus",),
+        _with_its_one_specimen,
+        is_stepwise=True,
+    ),
+    Table("notes", ("note",), ("note_stage",), ("note",)),
+    Table(
+        "rows",
+        ("channel", "quality_mask"),
+        ("n_rows_read", "n_rows_kept", "n_flagged"),
+        ("n_flagged",),
+    ),
+)

@@ -1,0 +1,88 @@
+"""Tables of a campaign, made from its archives alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from reduction.archive.open import open_archive
+from reduction.archive.variable import label
+from reduction.archive.write import write_whole
+from reduction.tables.column import Cell, Column, csv_text
+from reduction.tables.definitions import TABLES
+from reduction.tables.envelope import ENVELOPE_COLUMNS, Curve, curves_of, envelope_rows
+from reduction.tables.rows import table_rows
+
+__all__ = ["write_tables"]
+
+_Place = tuple[float, list[tuple[int, str]]]
+_ABOUT = tuple(
+    Column(name, label(name)[0])
+    for name in ("table", "column", "unit", "meaning", "no_uncertainty")
+)
+
+
+def write_tables(archives: Sequence[Path], folder: Path) -> list[Path]:
+    """Write every table that the archives fill, and columns.csv, which explains them.
+
+    Parameters
+    ----------
+    archives : sequence of pathlib.Path
+        Archives of one campaign; the rows stand in the order of the tests' places in
+        the specimens' history, then of their names.
+    folder : pathlib.Path
+        Where the tables go.
+
+    Returns
+    -------
+    paths : list of pathlib.Path
+        The files, in a fixed order. A table without rows is not written; one that an
+        earlier run wrote and this one does not fill is removed once all is written.
+
+    Raises
+    ------
+    ArchiveError
+        If an archive cannot be opened or a table cannot be written.
+    """
+    columns = {table.name: tuple(table.columns) for table in TABLES}
+    columns["envelope"] = ENVELOPE_COLUMNS
+    rows = _all_rows(archives)
+    filled = [name for name in columns if rows[name]]
+    rows["columns"] = [
+        [f"{name}.csv", *column.description]
+        for name, listed in [*((name, columns[name]) for name in filled), ("columns", _ABOUT)]
+        for column in listed
+    ]
+    columns["columns"] = _ABOUT
+    paths = []
+    for name in [*filled, "columns"]:
+        path = folder / f"{name}.csv"
+        write_whole(path, csv_text([column.header for column in columns[name]], rows[name]))
+        paths.append(path)
+    for name in columns:
+        if folder / f"{name}.csv" not in paths:
+            (folder / f"{name}.csv").unlink(missing_ok=True)
+    return paths
+
+
+def _place(attributes: dict[str, Any]) -> _Place:
+    """Place in the history, tests without one last; then the name, T-2 before T-10."""
+    name = re.split(r"(\d+)", attributes["test"])
+    digits = [(int(part), "") if part.isdigit() else (-1, part) for part in name]
+    return float(attributes.get("test_order", "inf")), digits
+
+
+def _all_rows(archives: Sequence[Path]) -> dict[str, list[list[Cell]]]:
+    tests: list[tuple[_Place, dict[str, list[list[Cell]]], list[Curve]]] = []
+    for path in archives:
+        with open_archive(path) as archive:
+            of_test = {table.name: table_rows(archive, table) for table in TABLES}
+            tests.append((_place(archive.attrs), of_test, list(curves_of(archive))))
+    tests.sort(key=lambda entry: entry[0])
+    rows = {
+        table.name: [row for _, of_test, _ in tests for row in of_test[table.name]]
+        for table in TABLES
+    }
+    return rows | {"envelope": envelope_rows([curve for _, _, own in tests for curve in own])}
