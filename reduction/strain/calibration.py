@@ -18,25 +18,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize_scalar
 
 from reduction.checks import as_finite, as_positive, as_same_shape
-from reduction.errors import DataError, FitError
+from reduction.errors import DataError
 from reduction.record import Floats, freeze_arrays
 
 __all__ = [
-    "EXPONENT_BOUNDS",
     "Calibration",
     "fit_free_length_line",
-    "fit_splice_law",
     "fit_splice_ratio",
+    "larger_variance",
     "line_slope",
     "relaxed_lengths",
 ]
-
-EXPONENT_BOUNDS = (0.3, 1.9)
-"""Exponents between which a splice law is looked for: a friction-locked splice
-stiffens with tension (below 1), one that beds in and then slides softens (above 1)."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +59,33 @@ class Calibration:
         freeze_arrays(self)
 
 
-def _larger_variance(stated: float, residual: Floats, n_values: int) -> float:
-    """Variance the readings imply, or that of the residuals where it is larger."""
+def larger_variance(stated: float, residual: Floats, n_values: int) -> float:
+    """Variance that readings imply, or that of the residuals where it is larger.
+
+    Parameters
+    ----------
+    stated : float
+        From the tape. [SI]
+    residual : ndarray, shape (n_marks,)
+        Of a fit. [SI]
+    n_values : int
+        Coefficients the fit used up.
+
+    Returns
+    -------
+    variance : float
+        ``stated`` alone where no mark is left over. [SI]
+
+    Raises
+    ------
+    DataError
+        Never.
+
+    Examples
+    --------
+    >>> print(larger_variance(1.0, np.array([2.0, -2.0, 0.0]), 1))
+    4.0
+    """
     spare = residual.size - n_values
     return max(stated, float(residual @ residual) / spare) if spare > 0 else stated
 
@@ -211,7 +230,7 @@ def fit_free_length_line(
     slope = line_slope(length, free)
     intercept = float(free.mean()) - slope * centre
     residual = intercept + slope * length - free
-    variance = _larger_variance(reading_uncertainty**2 * (2 + slope**2), residual, 2)
+    variance = larger_variance(reading_uncertainty**2 * (2 + slope**2), residual, 2)
     covariance = variance * np.array(
         [
             [1 / free.size + centre**2 / spread, -centre / spread],
@@ -291,7 +310,7 @@ def fit_splice_ratio(
     variance = reading_uncertainty**2 * float(
         np.sum(2 * by_toe**2 + (by_y / relaxed_splice_length) ** 2)
     )
-    variance = max(variance, _larger_variance(0.0, residual, 1) / total)
+    variance = max(variance, larger_variance(0.0, residual, 1) / total)
     sensitivity = np.array(
         [
             [
@@ -301,124 +320,3 @@ def fit_splice_ratio(
         ]
     )
     return Calibration(np.array([ratio]), np.array([[variance]]), sensitivity, residual)
-
-
-def fit_splice_law(
-    splice_length: ArrayLike,
-    tension: ArrayLike,
-    *,
-    relaxed_splice_length: float,
-    reading_uncertainty: float,
-    exponent: float | None = None,
-) -> Calibration:
-    r"""Power law of splice strain on tension.
-
-    .. math:: \ell_s (1 + c F^n)
-
-    Parameters
-    ----------
-    splice_length : array_like, shape (n_marks,)
-        Both splices together, stretched rows. [m]
-    tension : array_like, shape (n_marks,)
-        While each row was read. [N]
-    relaxed_splice_length : float
-        From `relaxed_lengths`. [m]
-    reading_uncertainty : float
-        Standard uncertainty of one tape reading. [m]
-    exponent : float, optional
-        Held at this value; None: fitted, within `EXPONENT_BOUNDS`. [1]
-
-    Returns
-    -------
-    calibration : Calibration
-        ``splice_compliance`` [N**-n] and ``splice_exponent`` [1].
-
-    Raises
-    ------
-    DataError
-        If there are fewer rows than coefficients, or a tension is not positive.
-    FitError
-        If the splices do not lengthen with tension, or the exponent runs to a bound.
-
-    Notes
-    -----
-    Rows have equal weight: each splice length is three readings of one tape.  The
-    compliance is linear and solved for; the exponent is found by a bounded search
-    in one dimension, so that there is no starting value to depend on.
-
-    Examples
-    --------
-    Three splices of 1.2 m that strain by 0.002 times the square root of tension:
-
-    >>> force = np.array([100.0, 400.0, 900.0])
-    >>> law = fit_splice_law(1.2 * (1 + 0.002 * np.sqrt(force)), force,
-    ...                      relaxed_splice_length=1.2, reading_uncertainty=1e-3)
-    >>> print(law.values.round(5))
-    [0.002 0.5 ]
-    """
-    as_positive("relaxed_splice_length", relaxed_splice_length)
-    splice, force = as_same_shape(
-        splice_length=as_positive("splice_length", splice_length),
-        tension=as_positive("tension", tension),
-    )
-    n_values = 1 if exponent is not None else 2
-    if splice.size < n_values:
-        raise DataError(
-            "a splice law needs more marks",
-            found=f"{splice.size} stretched rows with a tension",
-            needed=f"at least {n_values}",
-        )
-    strain = splice / relaxed_splice_length - 1
-    # tension over its geometric mean: keeps compliance and exponent apart in the fit
-    reference = float(np.exp(np.mean(np.log(force))))
-    relative = force / reference
-
-    def compliance(trial: float) -> tuple[float, Floats]:
-        power = relative**trial
-        best = float(power @ strain) / float(power @ power)
-        return best, best * power - strain
-
-    if exponent is None:
-        search = minimize_scalar(
-            lambda trial: float(np.sum(compliance(trial)[1] ** 2)),
-            bounds=EXPONENT_BOUNDS,
-            method="bounded",
-            options={"xatol": 1e-9},
-        )
-        exponent = float(search.x)
-    at_reference, strain_residual = compliance(exponent)
-    if at_reference <= 0:
-        raise FitError(
-            "the splices do not lengthen with tension",
-            found=f"mean splice strain {float(strain.mean()):.4f}",
-            needed="longer splices under tension than slack",
-            n_marks=splice.size,
-        )
-    if n_values == 2 and min(abs(exponent - bound) for bound in EXPONENT_BOUNDS) < 1e-3:
-        raise FitError(
-            "the exponent of the splice law runs to the edge of its range",
-            found=f"{exponent:.3f}",
-            needed="between {} and {}".format(*EXPONENT_BOUNDS),
-            hint="The marks do not follow a power law of tension; use marks or strain-ratio.",
-            n_marks=splice.size,
-        )
-    power = relative**exponent
-    design = relaxed_splice_length * np.stack([power, at_reference * power * np.log(relative)])
-    design = design[:n_values]
-    inverse = np.linalg.inv(design @ design.T)
-    residual = relaxed_splice_length * strain_residual
-    variance = _larger_variance(3 * reading_uncertainty**2, residual, n_values)
-    covariance, sensitivity = np.zeros((2, 2)), np.zeros(2)
-    covariance[:n_values, :n_values] = variance * inverse
-    # d(splice length)/d(relaxed splice length) is the stretch of the splice
-    sensitivity[:n_values] = -inverse @ design @ (1 + at_reference * power)
-    # from the compliance at the reference tension to that at 1 N
-    scale = reference**-exponent
-    to_si = np.array([[scale, -at_reference * scale * np.log(reference)], [0.0, 1.0]])
-    sensitivity = to_si @ sensitivity
-    return Calibration(
-        np.array([at_reference * scale, exponent]),
-        to_si @ covariance @ to_si.T,
-        np.stack([np.zeros(2), sensitivity], axis=1),
-        residual,
-    )

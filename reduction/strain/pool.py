@@ -20,12 +20,12 @@ from reduction.settings import StrainMethod
 from reduction.strain.calibration import (
     Calibration,
     fit_free_length_line,
-    fit_splice_law,
     fit_splice_ratio,
     line_slope,
     relaxed_lengths,
 )
 from reduction.strain.evaluate import free_length_strain_of
+from reduction.strain.law import fit_splice_law
 from reduction.strain.model import StrainModel
 from reduction.strain.splice import free_length_fraction
 
