@@ -1,17 +1,13 @@
 r"""Relaxation of tension at constant length: drop, rate per decade, tension at stated times.
 
-The ramp before a hold takes time, and the specimen relaxes during it.  To first order a
-ramp acts as a step at its centre (of the tension it adds), whatever the law of relaxation;
-what is left falls with the square of ramp time over elapsed time.  Rates therefore count
-time from that centre and leave out the first three ramp times.
+The specimen relaxes during the ramp, too.  Rates therefore count time from the centre of
+the ramp (`reduction.holds.ramp`) and leave out the first three ramp times.
 
 References
 ----------
 .. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of
    Rubber Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst.,
    Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
-.. [2] L. J. Zapas and J. C. Phillips, "Simple shearing flows in polyisobutylene solutions,"
-   J. Res. Natl. Bur. Stand. 75A(1), 1971 (half of the ramp time as the zero of time).
 """
 
 from __future__ import annotations
@@ -29,10 +25,8 @@ from reduction.record import Floats
 
 __all__ = [
     "RAMP_TIMES_LEFT_OUT",
-    "Ramp",
     "Rate",
     "end_mean",
-    "find_ramp",
     "rate_per_decade",
     "relaxation_drop",
     "value_at_times",
@@ -41,29 +35,6 @@ __all__ = [
 RAMP_TIMES_LEFT_OUT = 3.0
 FEWEST_BLOCKS = 8
 SHORTEST_SPAN = 0.5
-
-
-@dataclass(frozen=True)
-class Ramp:
-    """The ramp that led to a hold.
-
-    Parameters
-    ----------
-    start_time, end_time : float
-        First and last time of the motion. [s]
-    centre_time : float
-        Time at which a step would act as the ramp does. [s]
-    duration : float
-        Duration of the constant-rate ramp of the same centre and spread. [s]
-    stiffness : float
-        Slope of tension on position over the last half of the stroke. [N m-1]
-    """
-
-    start_time: float
-    end_time: float
-    centre_time: float
-    duration: float
-    stiffness: float
 
 
 @dataclass(frozen=True)
@@ -117,84 +88,6 @@ def relaxation_drop(initial_tension: ArrayLike, final_tension: ArrayLike) -> Flo
     initial, final = as_same_shape(initial_tension=initial_tension, final_tension=final_tension)
     drop: Floats = 1 - final / np.where(initial > 0, initial, np.nan)
     return drop
-
-
-def find_ramp(
-    time: ArrayLike, position: ArrayLike, tension: ArrayLike, *, band: float
-) -> Ramp | None:
-    r"""Last monotonic motion of a record that ends where a hold begins.
-
-    .. math:: t_c = t_1 - \int_{t_0}^{t_1} \frac{T - T_0}{T_1 - T_0} dt
-
-    is the centre of the tension that the ramp adds; the spread is its second moment.
-
-    Parameters
-    ----------
-    time : array_like, shape (n_samples,)
-        From any time before the ramp up to the first sample of the hold. [s]
-    position : array_like, shape (n_samples,)
-        Crosshead position. [m]
-    tension : array_like, shape (n_samples,)
-        Tension. [N]
-    band : float
-        A change of position within it is not motion. [m]
-
-    Returns
-    -------
-    ramp : Ramp or None
-        None where the record shows no motion before the hold. [s]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up or the time does not increase.
-
-    Notes
-    -----
-    The rule of the half ramp ([2]_) is the case of tension rising evenly.  A tension that
-    stiffens with stretch puts the centre later than that.  Where the ramp does not add
-    tension (unloading), the centre of position is taken.  Both moments are integrals of
-    the record, not of its differences, so noise does not enter them.
-
-    Examples
-    --------
-    >>> t = np.arange(0.0, 5.0)
-    >>> ramp = find_ramp(t, [0.0, 0.0, 1.0, 2.0, 3.0], [0.0, 0.0, 10.0, 20.0, 30.0], band=0.1)
-    >>> ramp.start_time, ramp.centre_time, ramp.duration, round(ramp.stiffness, 6)
-    (1.0, 2.5, 3.0, 10.0)
-    """
-    seconds = as_increasing("time", time)
-    seconds, place, load = as_same_shape(time=seconds, position=position, tension=tension)
-    away = place - place[-1]
-    distant = np.flatnonzero(np.abs(away) > band)
-    if distant.size == 0:
-        return None
-    # Backwards from the hold, positive in the direction from which the crosshead came.
-    back = (away * np.sign(away[distant[-1]]))[::-1]
-    turned = np.flatnonzero(np.maximum.accumulate(back) - back > band)
-    reach = back[: turned[0]] if turned.size else back
-    # The first sample within the band of the far end: a standstill there is no part of the ramp.
-    first = place.size - 1 - int(np.flatnonzero(reach >= reach.max() - band / 2)[0])
-    seconds, place, load = seconds[first:], place[first:], load[first:]
-    end = float(seconds[-1])
-    rise = load[-1] - load[0]
-    added = (load - load[0]) / rise if rise > 0 else (place - place[0]) / (place[-1] - place[0])
-    before = float(np.trapezoid(added, seconds))
-    left, step = end - seconds, np.diff(seconds)
-    # Exact where both factors are straight between samples: a ramp may have few of them.
-    middle = (left[1:] + left[:-1]) * (added[1:] + added[:-1]) / 2
-    square = float(step @ (left[1:] * added[1:] + left[:-1] * added[:-1] + 2 * middle)) / 3
-    centre = end - before
-    spread = max(0.0, square - before**2)
-    upper = np.abs(place - place[-1]) <= 0.5 * abs(place[-1] - place[0])
-    stroke = np.ptp(place[upper])
-    return Ramp(
-        start_time=float(seconds[0]),
-        end_time=end,
-        centre_time=min(end, max(float(seconds[0]), centre)),
-        duration=min(end - float(seconds[0]), float(np.sqrt(12 * spread))),
-        stiffness=float(np.polyfit(place[upper], load[upper], 1)[0]) if stroke > 0 else np.nan,
-    )
 
 
 def end_mean(values: ArrayLike, *, n_samples: int, at_end: bool) -> tuple[float, float]:

@@ -1,0 +1,170 @@
+"""Strain left at zero tension after a test, where the record comes back to slack.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of
+   Rubber Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst.,
+   Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.checks import as_positive, as_same_shape
+from reduction.record import Floats
+
+__all__ = ["permanent_set", "slack_position"]
+
+FEWEST_SAMPLES = 3
+REACH = 4.0
+
+
+def slack_position(
+    position: ArrayLike, tension: ArrayLike, *, slack_tension: float
+) -> tuple[float, float]:
+    """Position at which tension crosses the slack tension on one loading or unloading.
+
+    Parameters
+    ----------
+    position : array_like, shape (n_samples,)
+        Crosshead position over the crossing. [m]
+    tension : array_like, shape (n_samples,)
+        Tension, from about zero to a few times the slack tension or back. [N]
+    slack_tension : float
+        The tension that counts as slack. [N]
+
+    Returns
+    -------
+    crossing : float
+        By a straight line through the samples between one and four times the slack
+        tension; NaN where there are fewer than three or they do not rise with position. [m]
+    crossing_standard_uncertainty : float
+        From the scatter about the line (type A); NaN for three samples. [m]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up or the slack tension is not positive.
+
+    Notes
+    -----
+    Below the slack tension a tether hangs in a curve and tension says nothing of length,
+    so samples there are left out.
+
+    Examples
+    --------
+    >>> x = np.linspace(0, 1, 101)
+    >>> crossing, _ = slack_position(x, 100 * np.clip(x - 0.2, 0, None), slack_tension=5.0)
+    >>> round(crossing, 6)
+    0.25
+    """
+    as_positive("slack_tension", slack_tension)
+    place, load = as_same_shape(position=position, tension=tension)
+    used = (load >= slack_tension) & (load <= REACH * slack_tension) & np.isfinite(place)
+    x, y = place[used], load[used] - slack_tension
+    if x.size < FEWEST_SAMPLES or np.ptp(x) == 0:
+        return np.nan, np.nan
+    # Position on tension: the noise of tension is small against its range here, and the
+    # crossing is then the constant term.
+    design = np.stack([np.ones_like(y), y], axis=1)
+    (crossing, slope), *_ = np.linalg.lstsq(design, x)
+    if not slope > 0:
+        return np.nan, np.nan
+    if x.size == FEWEST_SAMPLES:
+        return float(crossing), np.nan
+    residual = x - design @ [crossing, slope]
+    covariance = np.linalg.inv(design.T @ design) * (residual @ residual) / (x.size - 2)
+    return float(crossing), float(np.sqrt(covariance[0, 0]))
+
+
+def permanent_set(
+    position: ArrayLike,
+    tension: ArrayLike,
+    *,
+    slack_tension: float,
+    relaxed_free_length: ArrayLike,
+) -> tuple[Floats, Floats, tuple[str, ...]]:
+    r"""Strain left at slack after the test, from the record alone.
+
+    .. math:: s = (x_{last} - x_{first}) / \ell_0
+
+    with the position at which tension first rises through the slack tension, the position
+    at which it last falls through it, and the relaxed free length.
+
+    Parameters
+    ----------
+    position : array_like, shape (n_samples,)
+        Crosshead position, length or displacement. [m]
+    tension : array_like, shape (n_specimens, n_samples)
+        Tension. [N]
+    slack_tension : float
+        Tension at or below which a specimen is slack. [N]
+    relaxed_free_length : array_like, shape (n_specimens,)
+        Free length at zero tension before the test; NaN where not known. [m]
+
+    Returns
+    -------
+    permanent_set : ndarray, shape (n_specimens,)
+        NaN where the record does not begin or does not end slack. [1]
+    permanent_set_standard_uncertainty : ndarray, shape (n_specimens,)
+        Type A. [1]
+    reasons : tuple of str, length n_specimens
+        Why a number is missing; empty where it is not. [text]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up or the slack tension is not positive.
+
+    Notes
+    -----
+    [1]_, sec. 2.3.4, reports "a permanent elongation of 2-3%" after deployment at 200 %.
+    The number here is the set at the moment of unloading: it holds delayed elasticity that
+    a rest would give back, and any length let out by a slipped splice.  Where the next
+    test of the specimen begins slack, its first crossing minus this first crossing is the
+    set after rest.
+
+    Examples
+    --------
+    >>> up, down = np.linspace(0, 2, 201), np.linspace(2, 0, 201)
+    >>> x = np.concatenate([up, down])
+    >>> load = 100 * np.clip(np.concatenate([up - 0.2, down - 0.25]), 0, None)
+    >>> left, _, _ = permanent_set(x, [load], slack_tension=5.0, relaxed_free_length=[2.0])
+    >>> print(left.round(4))
+    [0.025]
+    """
+    place = np.asarray(position, dtype=np.float64)
+    loads = np.atleast_2d(np.asarray(tension, dtype=np.float64))
+    lengths = np.atleast_1d(np.asarray(relaxed_free_length, dtype=np.float64))
+    place, *_ = as_same_shape(position=place, tension=loads[0])
+    as_positive("slack_tension", slack_tension)
+    found, uncertainty = np.full((2, loads.shape[0]), np.nan)
+    reasons = []
+    for row, (load, length) in enumerate(zip(loads, lengths, strict=True)):
+        known = np.flatnonzero(np.isfinite(load) & np.isfinite(place))
+        taut = known[load[known] > REACH * slack_tension]
+        slack = known[load[known] <= slack_tension]
+        if taut.size == 0:
+            reasons.append("the specimen was never taut")
+            continue
+        before, after = slack[slack < taut[0]], slack[slack > taut[-1]]
+        if before.size == 0 or after.size == 0:
+            reasons.append(
+                "the record does not begin slack"
+                if before.size == 0
+                else "the record does not return to slack"
+            )
+            continue
+        rising, falling = slice(before[-1], taut[0] + 1), slice(taut[-1], after[0] + 1)
+        first, u_first = slack_position(place[rising], load[rising], slack_tension=slack_tension)
+        last, u_last = slack_position(place[falling], load[falling], slack_tension=slack_tension)
+        found[row] = (last - first) / length
+        uncertainty[row] = np.hypot(u_first, u_last) / length
+        reasons.append(
+            ""
+            if np.isfinite(found[row])
+            else "too few samples where the specimen goes slack, or no relaxed free length"
+        )
+    return found, uncertainty, tuple(reasons)
