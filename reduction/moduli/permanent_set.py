@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_positive, as_same_shape
+from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["permanent_set", "slack_position"]
+__all__ = ["permanent_set", "slack_crossings", "slack_position"]
 
 FEWEST_SAMPLES = 3
 REACH = 4.0
@@ -79,6 +80,77 @@ def slack_position(
     return float(crossing), float(np.sqrt(covariance[0, 0]))
 
 
+def slack_crossings(
+    position: ArrayLike, tension: ArrayLike, *, slack_tension: float
+) -> tuple[Floats, Floats, str]:
+    """Positions at which a record first becomes taut and last goes slack.
+
+    Parameters
+    ----------
+    position : array_like, shape (n_samples,)
+        Crosshead position. [m]
+    tension : array_like, shape (n_samples,)
+        Tension of one specimen; NaN is left out. [N]
+    slack_tension : float
+        Tension at or below which the specimen is slack. [N]
+
+    Returns
+    -------
+    crossing : ndarray, shape (2,)
+        First rise and last fall through the slack tension; NaN where the record does not
+        show it. [m]
+    crossing_standard_uncertainty : ndarray, shape (2,)
+        Type A. [m]
+    reason : str
+        Why one is missing; empty where none is. [text]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up or the slack tension is not positive.
+
+    Notes
+    -----
+    The first rise of the next test of a specimen, less the first rise of this one, is the
+    set that is left after the rest between them.
+
+    Examples
+    --------
+    >>> x = np.concatenate([np.linspace(0, 2, 201), np.linspace(2, 0, 201)])
+    >>> crossing, _, _ = slack_crossings(x, 100 * np.clip(x - 0.2, 0, None), slack_tension=5.0)
+    >>> print(crossing.round(4))
+    [0.25 0.25]
+    """
+    as_positive("slack_tension", slack_tension)
+    place, load = as_same_shape(position=position, tension=tension)
+    known = np.isfinite(place) & np.isfinite(load)
+    place, load = place[known], load[known]
+    taut = np.flatnonzero(load > REACH * slack_tension)
+    slack = np.flatnonzero(load <= slack_tension)
+    crossing, uncertainty = np.full((2, 2), np.nan)
+    if taut.size == 0:
+        return crossing, uncertainty, "the specimen is never taut"
+    before, after = slack[slack < taut[0]], slack[slack > taut[-1]]
+    reasons = []
+    if before.size == 0:
+        reasons.append("the record does not begin slack")
+    else:
+        rise = slice(before[-1], taut[0] + 1)
+        crossing[0], uncertainty[0] = slack_position(
+            place[rise], load[rise], slack_tension=slack_tension
+        )
+    if after.size == 0:
+        reasons.append("the record does not return to slack")
+    else:
+        fall = slice(taut[-1], after[0] + 1)
+        crossing[1], uncertainty[1] = slack_position(
+            place[fall], load[fall], slack_tension=slack_tension
+        )
+    if not reasons and not np.isfinite(crossing).all():
+        reasons.append("too few samples where the specimen goes slack")
+    return crossing, uncertainty, "; ".join(reasons)
+
+
 def permanent_set(
     position: ArrayLike,
     tension: ArrayLike,
@@ -86,7 +158,7 @@ def permanent_set(
     slack_tension: float,
     relaxed_free_length: ArrayLike,
 ) -> tuple[Floats, Floats, tuple[str, ...]]:
-    r"""Strain left at slack after the test, from the record alone.
+    r"""Strain left at slack when a test unloads, from the record alone.
 
     .. math:: s = (x_{last} - x_{first}) / \ell_0
 
@@ -110,21 +182,22 @@ def permanent_set(
         NaN where the record does not begin or does not end slack. [1]
     permanent_set_standard_uncertainty : ndarray, shape (n_specimens,)
         Type A. [1]
-    reasons : tuple of str, length n_specimens
-        Why a number is missing; empty where it is not. [text]
+    remarks : tuple of str, length n_specimens
+        What the number holds, or why it is missing. [text]
 
     Raises
     ------
     DataError
-        If the series do not pair up or the slack tension is not positive.
+        If the series do not pair up, the slack tension is not positive, or the lengths do
+        not fit the rows.
 
     Notes
     -----
     [1]_, sec. 2.3.4, reports "a permanent elongation of 2-3%" after deployment at 200 %.
-    The number here is the set at the moment of unloading: it holds delayed elasticity that
-    a rest would give back, and any length let out by a slipped splice.  Where the next
-    test of the specimen begins slack, its first crossing minus this first crossing is the
-    set after rest.
+    The number here is what is left at the moment of unloading: it holds the delayed
+    elasticity that a rest would give back, and any length let out by a slipped splice, so
+    it is an upper bound of the set.  What is left after a rest is the difference of the
+    first crossings of two tests (`slack_crossings`).
 
     Examples
     --------
@@ -135,36 +208,26 @@ def permanent_set(
     >>> print(left.round(4))
     [0.025]
     """
-    place = np.asarray(position, dtype=np.float64)
     loads = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     lengths = np.atleast_1d(np.asarray(relaxed_free_length, dtype=np.float64))
-    place, *_ = as_same_shape(position=place, tension=loads[0])
-    as_positive("slack_tension", slack_tension)
-    found, uncertainty = np.full((2, loads.shape[0]), np.nan)
-    reasons = []
-    for row, (load, length) in enumerate(zip(loads, lengths, strict=True)):
-        known = np.flatnonzero(np.isfinite(load) & np.isfinite(place))
-        taut = known[load[known] > REACH * slack_tension]
-        slack = known[load[known] <= slack_tension]
-        if taut.size == 0:
-            reasons.append("the specimen was never taut")
-            continue
-        before, after = slack[slack < taut[0]], slack[slack > taut[-1]]
-        if before.size == 0 or after.size == 0:
-            reasons.append(
-                "the record does not begin slack"
-                if before.size == 0
-                else "the record does not return to slack"
-            )
-            continue
-        rising, falling = slice(before[-1], taut[0] + 1), slice(taut[-1], after[0] + 1)
-        first, u_first = slack_position(place[rising], load[rising], slack_tension=slack_tension)
-        last, u_last = slack_position(place[falling], load[falling], slack_tension=slack_tension)
-        found[row] = (last - first) / length
-        uncertainty[row] = np.hypot(u_first, u_last) / length
-        reasons.append(
-            ""
-            if np.isfinite(found[row])
-            else "too few samples where the specimen goes slack, or no relaxed free length"
+    if lengths.shape != loads.shape[:1]:
+        raise DataError(
+            "relaxed free lengths do not fit the record",
+            found=f"{lengths.size} lengths",
+            needed=f"{loads.shape[0]}",
         )
-    return found, uncertainty, tuple(reasons)
+    found, uncertainty = np.full((2, loads.shape[0]), np.nan)
+    remarks = []
+    for row, (load, length) in enumerate(zip(loads, lengths, strict=True)):
+        crossing, spread, reason = slack_crossings(position, load, slack_tension=slack_tension)
+        if not reason and not np.isfinite(length):
+            reason = "the relaxed free length is not known"
+        found[row] = (crossing[1] - crossing[0]) / length
+        uncertainty[row] = np.hypot(spread[0], spread[1]) / length
+        remarks.append(
+            f"permanent set not given: {reason}"
+            if reason
+            else "permanent set is what is left at the moment of unloading: an upper bound, for "
+            "a rest gives back delayed elasticity"
+        )
+    return found, uncertainty, tuple(remarks)

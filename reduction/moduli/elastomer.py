@@ -1,0 +1,300 @@
+"""Hyperelastic laws fitted to a first loading: neo-Hookean, Mooney-Rivlin, Yeoh, Ogden.
+
+References
+----------
+.. [1] L. R. G. Treloar, "The Physics of Rubber Elasticity," 3rd ed., Oxford, 1975, ch. 5.
+.. [2] D. C. Drucker, "A definition of stable inelastic material," J. Appl. Mech. 26, 1959.
+.. [3] R. W. Ogden, G. Saccomandi and I. Sgura, "Fitting hyperelastic models to
+   experimental data," Comput. Mech. 34, 2004 (several Ogden fits may be equally good).
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.checks import as_same_shape
+from reduction.errors import DataError, FitError
+from reduction.moduli.hyperelastic import (
+    LAWS,
+    PARAMETERS,
+    Deformation,
+    Law,
+    hyperelastic_stress,
+    ogden_columns,
+    polynomial_columns,
+)
+from reduction.moduli.product import ElastomerFit
+from reduction.moduli.separable import fit_separable, lag_one_inflation
+from reduction.record import Floats
+
+__all__ = ["even_grid", "fit_elastomers", "is_stable", "mooney_plot"]
+
+GRID_POINTS = 200
+FEWEST_POINTS = 12
+STARTING_EXPONENTS = (-4.0, -2.0, 1.3, 2.0, 4.0, 8.0)
+DEFORMATIONS: tuple[Deformation, ...] = ("uniaxial", "equibiaxial", "pure-shear")
+
+
+def even_grid(
+    strain: ArrayLike, stress: ArrayLike, *, n_points: int = GRID_POINTS
+) -> tuple[Floats, Floats]:
+    """Means over even strain intervals, so that every strain counts alike in a fit.
+
+    Parameters
+    ----------
+    strain : array_like, shape (n_samples,)
+        Nominal strain; samples at or below zero and NaN are left out. [1]
+    stress : array_like, shape (n_samples,)
+        Nominal stress. [Pa]
+    n_points : int, optional
+        Number of intervals from zero to the greatest strain. [1]
+
+    Returns
+    -------
+    grid_strain : ndarray, shape (n_filled,)
+        Mean strain of each interval that holds a sample. [1]
+    grid_stress : ndarray, shape (n_filled,)
+        Mean stress. [Pa]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up or no sample is stretched.
+
+    Examples
+    --------
+    >>> strain, _ = even_grid(np.linspace(0, 1, 1001), np.linspace(0, 1, 1001), n_points=4)
+    >>> print(strain.round(2))
+    [0.12 0.37 0.62 0.88]
+    """
+    x, y = as_same_shape(strain=strain, stress=stress)
+    used = np.isfinite(x) & np.isfinite(y) & (x > 0)
+    x, y = x[used], y[used]
+    if x.size == 0:
+        raise DataError("no stretched sample", found="0 samples", needed="strain above zero")
+    index = np.minimum((x / x.max() * n_points).astype(np.intp), n_points - 1)
+    count = np.bincount(index, minlength=n_points)
+    filled = count > 0
+    return (
+        np.bincount(index, x, n_points)[filled] / count[filled],
+        np.bincount(index, y, n_points)[filled] / count[filled],
+    )
+
+
+def mooney_plot(strain: ArrayLike, stress: ArrayLike) -> tuple[Floats, Floats]:
+    r"""Inverse stretch ratio and reduced stress: a straight line for a Mooney-Rivlin material.
+
+    .. math:: \frac{P}{2 (\lambda - \lambda^{-2})} = C_{10} + C_{01} \frac{1}{\lambda}
+
+    Parameters
+    ----------
+    strain : array_like, shape (...)
+        Nominal strain. [1]
+    stress : array_like, shape (...)
+        Nominal stress. [Pa]
+
+    Returns
+    -------
+    inverse_stretch_ratio : ndarray, shape (...)
+        1 / (1 + strain). [1]
+    reduced_stress : ndarray, shape (...)
+        NaN below 2 % strain, where the quotient is noise. [Pa]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up.
+
+    Notes
+    -----
+    Source: [1]_, ch. 5.
+
+    Examples
+    --------
+    >>> inverse, reduced = mooney_plot([1.0], [700000.0])
+    >>> print(inverse, reduced)
+    [0.5] [200000.]
+    """
+    x, y = as_same_shape(strain=strain, stress=stress)
+    stretch = 1 + np.where(x > 0.02, x, np.nan)
+    return 1 / (1 + x), y / (2 * (stretch - stretch**-2))
+
+
+def is_stable(*, law: Law, parameters: dict[str, float], strain_high: float) -> bool:
+    """Whether nominal stress keeps rising with strain in three deformations.
+
+    Parameters
+    ----------
+    law : str
+        One of `LAWS`.
+    parameters : dict of str to float
+        By the names of `PARAMETERS`. [Pa], [1]
+    strain_high : float
+        Upper end of the range; it begins at zero. [1]
+
+    Returns
+    -------
+    stable : bool
+        True where it rises in uniaxial, equibiaxial and pure-shear deformation.
+
+    Raises
+    ------
+    DataError
+        If the range is not positive.
+
+    Notes
+    -----
+    Drucker's postulate ([2]_) on the three paths a test can follow, on 200 points each;
+    it does not prove stability on others.  A fit to uniaxial data alone often fails it.
+
+    Examples
+    --------
+    >>> is_stable(law="mooney-rivlin", parameters={"c10": 2e5, "c01": -5e4}, strain_high=2.0)
+    False
+    """
+    if not strain_high > 0:
+        raise DataError("the range of strain is empty", found=f"0 to {strain_high:g}")
+    grid = np.linspace(0.0, strain_high, GRID_POINTS)
+    return all(
+        bool(
+            np.all(
+                np.diff(
+                    hyperelastic_stress(
+                        grid, law=law, parameters=parameters, deformation=deformation
+                    )
+                )
+                > 0
+            )
+        )
+        for deformation in DEFORMATIONS
+    )
+
+
+def _fit(law: Law, strain: Floats, stress: Floats) -> tuple[Floats, Floats, Floats]:
+    """Parameters, their covariance and the residuals of one law."""
+    if law == "ogden-2":
+        stretch = 1 + strain
+        fit = fit_separable(
+            lambda exponents: ogden_columns(stretch, exponents),
+            stress,
+            starts=list(combinations(STARTING_EXPONENTS, 2)),
+        )
+        order = np.argsort(fit.shape)
+        index = np.concatenate([order, 2 + order])
+        values = np.concatenate([fit.amplitude, fit.shape])[index]
+        return values, fit.covariance[np.ix_(index, index)], fit.residual
+    columns = polynomial_columns(1 + strain, law=law)
+    scale = np.linalg.norm(columns, axis=0)
+    values = np.linalg.lstsq(columns / scale, stress)[0] / scale
+    residual = stress - columns @ values
+    half = np.linalg.inv(np.linalg.qr(columns / scale, mode="r"))
+    variance = residual @ residual / (stress.size - values.size)
+    return values, variance * (half @ half.T) / np.outer(scale, scale), residual
+
+
+def fit_elastomers(
+    strain: ArrayLike, stress: ArrayLike, *, specimen: str
+) -> tuple[ElastomerFit, ...]:
+    r"""Four hyperelastic laws fitted to a first loading in uniaxial tension.
+
+    Parameters
+    ----------
+    strain : array_like, shape (n_samples,)
+        Nominal strain of the free length, on one uninterrupted pull. [1]
+    stress : array_like, shape (n_samples,)
+        Nominal stress. [Pa]
+    specimen : str
+        Name of the specimen.
+
+    Returns
+    -------
+    fits : tuple of ElastomerFit
+        One a law, in the order of `LAWS`; where a law cannot be fitted its numbers are
+        NaN and its notes say why.
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up, or fewer than 12 strain intervals hold a sample.
+
+    Notes
+    -----
+    Least squares of stress on means over 200 even strain intervals, so that a hold or a
+    slow stretch of the pull does not count for more; all moduli free of sign.  The
+    standard uncertainty is from the residuals, widened by their correlation, since what
+    is left over is mostly the law and not noise (type A).  AICc ranks the laws:
+    :math:`n \ln(S/n) + 2p + 2p(p+1)/(n-p-1)`, p counting the variance; with correlated
+    residuals it favours the longer law.  Two Ogden terms may fit equally well with very
+    different parameters ([3]_); the best of 15 starts is reported.
+
+    A law fitted to one deformation says little of another, and nothing beyond its range.
+
+    Examples
+    --------
+    >>> strain = np.linspace(0.01, 2.5, 400)
+    >>> stretch = 1 + strain
+    >>> stress = 2 * (2.0e5 + 0.8e5 / stretch) * (stretch - stretch**-2)
+    >>> fits = fit_elastomers(strain, stress, specimen="new")
+    >>> print({name: round(value / 1e5, 2) for name, value in fits[1].parameters.items()})
+    {'c10': 2.0, 'c01': 0.8}
+    """
+    x, y = even_grid(strain, stress)
+    if x.size < FEWEST_POINTS:
+        raise DataError(
+            "too few strain intervals hold a sample",
+            found=str(x.size),
+            needed=f"{FEWEST_POINTS} of {GRID_POINTS}",
+        )
+    fits = []
+    for law in LAWS:
+        names = PARAMETERS[law]
+        try:
+            values, covariance, residual = _fit(law, x, y)
+        except FitError as error:
+            nothing = dict.fromkeys(names, float("nan"))
+            fits.append(
+                ElastomerFit(
+                    specimen,
+                    law,
+                    nothing,
+                    nothing,
+                    np.nan,
+                    float(x[0]),
+                    float(x[-1]),
+                    False,
+                    np.nan,
+                    (f"not fitted: {error}",),
+                )
+            )
+            continue
+        parameters = dict(zip(names, values.tolist(), strict=True))
+        spread = np.sqrt(np.diag(covariance) * lag_one_inflation(residual))
+        mean_square = max(float(residual @ residual) / x.size, np.finfo(float).tiny)
+        p = len(names) + 1
+        notes = []
+        vague = [name for name, u in zip(names, spread, strict=True) if u > abs(parameters[name])]
+        if vague:
+            notes.append(f"not told from zero: {', '.join(vague)}")
+        stable = is_stable(law=law, parameters=parameters, strain_high=float(x[-1]))
+        if not stable:
+            notes.append("not stable over its range: do not use it in a model")
+        fits.append(
+            ElastomerFit(
+                specimen=specimen,
+                law=law,
+                parameters=parameters,
+                standard_uncertainty=dict(zip(names, spread.tolist(), strict=True)),
+                rms_stress=float(np.sqrt(mean_square)),
+                strain_low=float(x[0]),
+                strain_high=float(x[-1]),
+                is_stable=stable,
+                aicc=x.size * float(np.log(mean_square))
+                + 2 * p
+                + 2 * p * (p + 1) / max(1, x.size - p - 1),
+                notes=tuple(notes),
+            )
+        )
+    return tuple(fits)
