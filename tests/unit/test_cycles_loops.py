@@ -1,0 +1,199 @@
+"""Loops: areas and moduli of exact ellipses and straight-sided loops, noise, missing readings."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from reduction.cycles.energy import loop_energy, sums_over_cycles
+from reduction.cycles.harmonic import cycle_basis, fundamental
+from reduction.cycles.loops import close_loops, reading_noise
+from reduction.cycles.product import Cycles
+from reduction.errors import DataError
+
+STORAGE, LOSS, AMPLITUDE = 900.0, 100.0, 0.2
+
+
+def cycles_of(per_cycle, n_cycles, n_samples):
+    first = np.arange(n_cycles) * per_cycle
+    ends = np.column_stack([first, first + per_cycle // 2])
+    return Cycles(
+        first, first + per_cycle, ends, ends + per_cycle // 2, np.ones((n_cycles, 2)),
+        np.zeros(n_samples, np.int32), np.zeros(n_samples, np.int8), np.zeros(n_samples, bool), 0.1,
+    )  # fmt: skip
+
+
+def ellipse(per_cycle, n_cycles, phase=0.0):
+    angle = 2 * np.pi * np.arange(per_cycle * n_cycles + 1) / per_cycle + phase
+    strain = 1 - AMPLITUDE * np.cos(angle)
+    tension = 1000 + AMPLITUDE * (-STORAGE * np.cos(angle) + LOSS * np.sin(angle))
+    return angle / (2 * np.pi) * 10, tension, strain
+
+
+@pytest.mark.parametrize("per_cycle", [12, 20, 49, 50, 51, 400])
+@pytest.mark.parametrize("n_cycles", [1, 3])
+@pytest.mark.parametrize("phase", [0.0, 0.7])
+def test_energy_of_an_ellipse_is_within_a_hundredth_of_a_percent(per_cycle, n_cycles, phase):
+    _, tension, strain = ellipse(per_cycle, n_cycles, phase)
+    first = np.arange(n_cycles) * per_cycle
+    energy, _ = loop_energy(tension, strain, first, first + per_cycle, waveform="sinusoidal")
+    assert energy == pytest.approx(np.pi * LOSS * AMPLITUDE**2, rel=1e-4)
+
+
+@pytest.mark.parametrize("per_cycle", [12, 20, 50])
+def test_polygon_of_an_ellipse_is_short_by_the_known_bias(per_cycle):
+    _, tension, strain = ellipse(per_cycle, 1)
+    first = np.array([0])
+    energy, _ = loop_energy(tension, strain, first, first + per_cycle)
+    angle = 2 * np.pi / per_cycle
+    assert energy[0] == pytest.approx(np.pi * LOSS * AMPLITUDE**2 * np.sin(angle) / angle)
+
+
+@pytest.mark.parametrize("per_cycle", [12, 50, 400])
+def test_noise_leaves_the_energy_unbiased_and_the_scatter_as_stated(per_cycle):
+    rng = np.random.default_rng(3)
+    n_cycles = 1000
+    _, tension, strain = ellipse(per_cycle, n_cycles)
+    noise = 0.002 * 2 * AMPLITUDE * STORAGE
+    tension = tension + rng.normal(0, noise, tension.size)
+    strain = strain + rng.normal(0, 0.002 * 2 * AMPLITUDE, strain.size)
+    first = np.arange(n_cycles) * per_cycle
+    energy, norm = loop_energy(tension, strain, first, first + per_cycle, waveform="sinusoidal")
+    true = np.pi * LOSS * AMPLITUDE**2
+    error = energy.std(ddof=1)
+    assert abs(energy.mean() - true) < 4 * error / np.sqrt(n_cycles)
+    # strain noise moves the energy through the slope of tension, which is the storage part
+    both = np.hypot(noise, STORAGE * 0.002 * 2 * AMPLITUDE)
+    # at 12 samples a cycle the steps of strain are themselves large against eighth-order weights
+    assert error == pytest.approx(both * norm.mean(), rel=0.25)
+
+
+def test_energy_of_a_parallelogram_is_exact_by_the_polygon():
+    strain = np.concatenate([np.linspace(0, 1, 26), np.linspace(1, 0, 26)[1:]])
+    tension = 100 * strain + np.where(np.arange(51) <= 25, 5.0, -5.0)
+    energy, _ = loop_energy(tension, strain, np.array([0]), np.array([50]))
+    # 10 N over the whole stroke, less the one step of the turn at the top, whose tension
+    # falls along a straight line (half of 10 N over a step of 0.04)
+    assert energy[0] == pytest.approx(10 * 1 - 0.5 * 10 * 0.04)
+
+
+def test_a_loop_that_stays_open_is_closed_by_a_straight_line():
+    strain = np.array([0.0, 1.0, 1.0, 0.5])
+    tension = np.array([0.0, 0.0, 2.0, 2.0])
+    energy, _ = loop_energy(tension, strain, np.array([0]), np.array([3]))
+    # quadrilateral (0,0) (1,0) (1,2) (.5,2), walked so that it gives energy: -area by shoelace
+    assert energy[0] == pytest.approx(-1.5)
+
+
+def test_a_short_series_is_refused():
+    with pytest.raises(DataError, match="a loop is too short; found 2 samples"):
+        loop_energy([1.0, 2.0], [0.0, 1.0], np.array([0]), np.array([1]))
+    with pytest.raises(DataError, match="do not pair up"):
+        loop_energy([1.0, 2.0, 3.0], [0.0, 1.0], np.array([0]), np.array([1]))
+
+
+def test_no_cycles_give_no_energy():
+    none = np.array([], dtype=int)
+    assert loop_energy([1.0, 2.0, 3.0], [0.0, 1.0, 2.0], none, none)[0].size == 0
+    assert sums_over_cycles(np.ones(3), none, none).size == 0
+
+
+def test_cycles_apart_do_not_take_samples_from_the_gap():
+    values = np.array([1.0, 1, 1, 100, 100, 2, 2, 2])
+    assert sums_over_cycles(values, np.array([0, 5]), np.array([3, 8])).tolist() == [3.0, 6.0]
+
+
+def test_fundamental_on_uneven_times():
+    rng = np.random.default_rng(0)
+    t = np.sort(np.concatenate([[0, 10], rng.uniform(0, 10, 4000)]))
+    basis = cycle_basis(t, np.array([0]), np.array([t.size - 1]))
+    cosine, sine = fundamental(3 * np.cos(0.2 * np.pi * t) - np.sin(0.2 * np.pi * t), basis)
+    assert cosine[0] == pytest.approx(3, abs=2e-3) and sine[0] == pytest.approx(-1, abs=2e-3)
+
+
+def test_fundamental_does_not_see_a_drift_that_is_linear_in_time():
+    t = np.arange(401.0)
+    wave = 5 * np.cos(2 * np.pi * t / 200) + 2 * np.sin(2 * np.pi * t / 200)
+    basis = cycle_basis(t, np.array([0, 200]), np.array([200, 400]))
+    cosine, sine = fundamental(wave + 0.01 * t, basis)
+    assert cosine == pytest.approx(5, abs=1e-3) and sine == pytest.approx(2, abs=1e-3)
+
+
+def test_a_cycle_without_time_is_refused():
+    with pytest.raises(DataError, match="cycle 1 takes no time"):
+        cycle_basis(np.zeros(5), np.array([0]), np.array([4]))
+
+
+def test_loops_of_a_standard_linear_solid():
+    t, tension, strain = ellipse(50, 4)
+    loops = close_loops(
+        t, tension[None], strain[None], cycles_of(50, 4, t.size), waveform="sinusoidal"
+    )
+    assert loops.frequency[0] == pytest.approx(0.1)
+    assert loops.storage_spring_constant[0] == pytest.approx(STORAGE)
+    assert loops.loss_spring_constant[0] == pytest.approx(LOSS)
+    assert loops.loss_factor[0] == pytest.approx(LOSS / STORAGE)
+    assert loops.fundamental_energy_share[0] == pytest.approx(1, rel=1e-6)
+    # extremes are logged ones: at 50 samples a cycle the peak may be missed by 1 - cos(pi/50)
+    assert loops.apparent_spring_constant[0] == pytest.approx(np.hypot(STORAGE, LOSS), rel=2e-3)
+    assert loops.mean_strain[0] == pytest.approx(1, abs=1e-3)
+
+
+def test_every_quantity_but_the_start_time_has_an_uncertainty():
+    t, tension, strain = ellipse(50, 4)
+    loops = close_loops(t, tension[None], strain[None], cycles_of(50, 4, t.size))
+    fields = set(vars(loops)) - {"uncertainty", "cycle_start_time"}
+    assert set(loops.uncertainty) == fields
+    assert all(value.shape == (1, 4) for value in loops.uncertainty.values())
+
+
+def test_noise_is_found_from_third_differences_of_a_triangle():
+    rng = np.random.default_rng(5)
+    triangle = np.abs((np.arange(20_000) / 50 % 2) - 1) * 100
+    assert reading_noise(triangle + rng.normal(0, 0.3, 20_000)) == pytest.approx(0.3, rel=0.1)
+    assert reading_noise(np.array([1.0, np.nan, 2.0])) == 0
+
+
+def test_few_missing_readings_are_bridged_and_many_make_the_cycle_nan():
+    t, tension, strain = ellipse(50, 3)
+    tension = tension.copy()
+    tension[60:63] = np.nan
+    tension[110:130] = np.nan
+    loops = close_loops(
+        t, tension[None], strain[None], cycles_of(50, 3, t.size), waveform="sinusoidal"
+    )
+    energy = loops.hysteresis_energy[0]
+    assert energy[0] == pytest.approx(np.pi * LOSS * AMPLITUDE**2, rel=1e-3)
+    assert energy[1] == pytest.approx(np.pi * LOSS * AMPLITUDE**2, rel=0.05)
+    assert np.isnan(energy[2]) and np.isnan(loops.peak_tension[0, 2])
+
+
+def test_a_specimen_that_is_missing_throughout_is_nan():
+    t, tension, strain = ellipse(50, 2)
+    both = np.vstack([tension, np.full_like(tension, np.nan)])
+    loops = close_loops(t, both, np.vstack([strain, strain]), cycles_of(50, 2, t.size))
+    assert np.isfinite(loops.peak_tension[0]).all() and np.isnan(loops.peak_tension[1]).all()
+
+
+@given(st.floats(0.1, 100), st.floats(-1e3, 1e3), st.floats(0.01, 1e3))
+def test_scale_and_shift_of_tension(scale, shift, loss):
+    angle = 2 * np.pi * np.arange(41) / 20
+    t, strain = angle, 1 - 0.2 * np.cos(angle)
+    tension = 500 - 100 * np.cos(angle) + loss * np.sin(angle)
+    cycles = cycles_of(20, 2, 41)
+    one = close_loops(t, tension[None], strain[None], cycles)
+    other = close_loops(t, scale * tension[None] + shift, strain[None], cycles)
+    np.testing.assert_allclose(
+        other.hysteresis_energy, scale * one.hysteresis_energy, rtol=1e-6, atol=1e-9 * abs(shift)
+    )
+    np.testing.assert_allclose(
+        other.apparent_spring_constant, scale * one.apparent_spring_constant, rtol=1e-6
+    )
+    assert (one.hysteresis_energy > 0).all()
+
+
+def test_time_reversed_turns_the_sign_of_the_energy():
+    _, tension, strain = ellipse(50, 1)
+    ahead, _ = loop_energy(tension, strain, np.array([0]), np.array([50]))
+    back, _ = loop_energy(tension[::-1], strain[::-1], np.array([0]), np.array([50]))
+    assert back == pytest.approx(-ahead)
