@@ -1,0 +1,142 @@
+"""Unit tests of reduction.strain.calibration and its covariances.
+
+Covariances are checked against many sets of marks drawn with reading errors: an
+independent way to the same number.
+"""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.strain.calibration import (
+    fit_free_length_line,
+    fit_splice_ratio,
+    larger_variance,
+    line_slope,
+    relaxed_lengths,
+)
+
+READING = 0.00124
+DRAWS = 4000
+
+
+def drawn_rows(free, splice, seed):
+    """Free and splice lengths of many sets of marks; the near splice is half of both."""
+    rng = np.random.default_rng(seed)
+    near, far, thimble = rng.normal(0, READING, (3, DRAWS, np.size(free)))
+    return free + far - near, splice + thimble - far + near
+
+
+def test_relaxed_lengths_share_their_toe_readings():
+    free, splice = drawn_rows(np.full(6, 2.55), np.full(6, 1.18), 1)
+    means = np.stack([free.mean(axis=1), splice.mean(axis=1)])
+    _, covariance = relaxed_lengths([2.55], [1.18], reading_uncertainty=READING)
+    # one row is all the tape says; six rows are a sixth of it
+    np.testing.assert_allclose(np.cov(means), covariance / 6, rtol=0.1)
+
+
+def test_relaxed_lengths_take_the_scatter_where_it_is_larger():
+    lengths, covariance = relaxed_lengths([2.50, 2.60], [1.18, 1.18], reading_uncertainty=READING)
+    assert lengths.tolist() == pytest.approx([2.55, 1.18])
+    assert covariance[0, 0] == pytest.approx(0.05**2)  # (0.1 / sqrt 2)**2 / 2
+
+
+def test_no_slack_row_is_refused():
+    with pytest.raises(DataError, match="the marks have no slack row"):
+        relaxed_lengths([], [], reading_uncertainty=READING)
+
+
+def test_relaxed_lengths_are_positive():
+    with pytest.raises(DataError, match="relaxed length are not positive"):
+        relaxed_lengths([0.0], [1.18], reading_uncertainty=READING)
+
+
+def test_two_marks_give_the_line_through_them():
+    line = fit_free_length_line([4.0, 5.0], [5.0, 6.25], reading_uncertainty=READING)
+    assert line.values.tolist() == pytest.approx([0.0, 0.8])
+    np.testing.assert_allclose(line.residual, 0, atol=1e-14)
+
+
+def test_the_covariance_of_a_line_is_that_of_many_sets_of_marks():
+    true_free, true_splice = np.array([4.5, 5.2, 5.8]), np.array([1.40, 1.46, 1.55])
+    free, splice = drawn_rows(true_free, true_splice, 2)
+    # slope and intercept of each set, by the normal equations of numpy
+    fits = [np.polyfit(f + s, f, 1)[::-1] for f, s in zip(free, splice, strict=True)]
+    line = fit_free_length_line(true_free, true_free + true_splice, reading_uncertainty=READING)
+    residual_free = fit_free_length_line(
+        line.values[0] + line.values[1] * (true_free + true_splice),
+        true_free + true_splice,
+        reading_uncertainty=READING,
+    )
+    np.testing.assert_allclose(
+        np.sqrt(np.diag(np.cov(np.transpose(fits)))),
+        np.sqrt(np.diag(residual_free.covariance)),
+        rtol=0.05,
+    )
+    assert residual_free.covariance[0, 1] < 0
+
+
+def test_marks_at_one_position_have_no_line():
+    with pytest.raises(DataError, match="a line needs marks at two positions; found 1"):
+        fit_free_length_line([4.0, 4.1], [5.0, 5.0], reading_uncertainty=READING)
+
+
+def test_a_missing_mark_is_refused():
+    with pytest.raises(DataError, match="1 of 2 values of position are not finite"):
+        fit_free_length_line([4.0, 5.0], [5.0, np.nan], reading_uncertainty=READING)
+
+
+def test_the_uncertainty_of_a_ratio_is_that_of_many_sets_of_marks():
+    ratio, strain = 0.23, np.array([0.76, 1.02, 1.27])
+    true_free, true_splice = 2.55 * (1 + strain), 1.18 * (1 + ratio * strain)
+    free, splice = drawn_rows(true_free, true_splice, 3)
+    x, y = free / 2.55 - 1, splice / 1.18 - 1
+    drawn = np.sum(x * y, axis=1) / np.sum(x * x, axis=1)
+    found = fit_splice_ratio(
+        true_free,
+        true_splice,
+        relaxed_free_length=2.55,
+        relaxed_splice_length=1.18,
+        reading_uncertainty=READING,
+    )
+    assert found.values[0] == pytest.approx(ratio, abs=1e-12)
+    assert np.sqrt(found.covariance[0, 0]) == pytest.approx(drawn.std(), rel=0.05)
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_a_ratio_follows_the_relaxed_lengths_as_stated(which):
+    free, splice = np.array([4.5, 5.2, 5.8]), np.array([1.40, 1.46, 1.55])
+    lengths = np.array([2.55, 1.18])
+
+    def ratio(values):
+        return fit_splice_ratio(
+            free,
+            splice,
+            relaxed_free_length=values[0],
+            relaxed_splice_length=values[1],
+            reading_uncertainty=READING,
+        )
+
+    step = 1e-6 * np.eye(2)[which]
+    slope = (ratio(lengths + step).values[0] - ratio(lengths - step).values[0]) / 2e-6
+    assert ratio(lengths).relaxed_sensitivity[0, which] == pytest.approx(slope, rel=1e-6)
+
+
+def test_a_ratio_without_stretch_is_refused():
+    with pytest.raises(DataError, match="a strain ratio needs a stretched row"):
+        fit_splice_ratio(
+            [2.5], [1.2], relaxed_free_length=2.5, relaxed_splice_length=1.2, reading_uncertainty=0
+        )
+
+
+def test_variance_is_the_larger_of_tape_and_scatter():
+    residual = np.array([1.0, -1.0, 2.0])
+    assert larger_variance(10.0, residual, 1) == 10.0
+    assert larger_variance(0.1, residual, 1) == 3.0
+    assert larger_variance(0.1, residual, 3) == 0.1  # nothing is left over to judge by
+
+
+def test_line_slope_is_that_of_numpy():
+    rng = np.random.default_rng(4)
+    position, values = rng.random(9), rng.random(9)
+    assert line_slope(position, values) == pytest.approx(np.polyfit(position, values, 1)[0])

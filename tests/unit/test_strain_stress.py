@@ -1,0 +1,86 @@
+"""Unit tests of reduction.strain.stress."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.record import Specimen
+from reduction.strain.stress import (
+    area_from_diameters,
+    check_constant_volume,
+    constant_volume_diameter,
+    nominal_stress,
+)
+
+
+def test_area_of_a_specimen_is_that_of_its_mean_diameter():
+    readings = (0.0258, 0.0264, 0.0262)
+    assert area_from_diameters(readings) == pytest.approx(Specimen("a", diameter=readings).area)
+
+
+def test_no_diameter_has_no_area():
+    with pytest.raises(DataError, match="no diameter reading"):
+        area_from_diameters([])
+
+
+def test_a_diameter_of_zero_is_refused():
+    with pytest.raises(DataError, match="1 of 2 values of diameter are not positive"):
+        area_from_diameters([0.02, 0.0])
+
+
+def test_stress_is_tension_over_area_and_missing_where_tension_is():
+    np.testing.assert_allclose(nominal_stress([10.0, np.nan], area=0.5), [20.0, np.nan])
+
+
+def test_no_area_no_stress():
+    with pytest.raises(DataError, match="area are not positive"):
+        nominal_stress([1.0], area=0.0)
+
+
+def test_volume_is_kept():
+    stretch, diameter = np.array([1.0, 1.5, 4.0]), np.array([0.03, 0.02, 0.01])
+    before = constant_volume_diameter(stretch - 1, diameter)
+    np.testing.assert_allclose(before**2, diameter**2 * stretch)
+
+
+def test_a_diameter_at_no_length_is_refused():
+    with pytest.raises(DataError, match=r"1 \+ strain"):
+        constant_volume_diameter([-1.0], [0.02])
+
+
+def test_strains_and_diameters_pair_up():
+    with pytest.raises(DataError, match="do not pair up"):
+        constant_volume_diameter([0.1, 1.0], [0.02])
+
+
+def stretched(scale, scatter=0.0):
+    strain = np.array([0.1, 0.1, 1.0, 1.0])
+    diameter = scale * 0.0264 / np.sqrt(1 + strain) * (1 + scatter * np.array([1, -1, 1, -1]))
+    return tuple(zip(strain.tolist(), diameter.tolist(), strict=True))
+
+
+def test_agreeing_diameters_say_nothing():
+    specimen = Specimen("a", diameter=(0.0264,), stretched_diameters=stretched(1.0, 0.005))
+    assert check_constant_volume(specimen) == ()
+
+
+def test_a_difference_within_reading_scatter_says_nothing():
+    specimen = Specimen("a", diameter=(0.0264,), stretched_diameters=stretched(1.01, 0.01))
+    assert check_constant_volume(specimen) == ()
+
+
+def test_a_difference_beyond_reading_scatter_says_what_it_does_to_moduli():
+    thick = Specimen("a", diameter=(0.0264,), stretched_diameters=stretched(1.05, 0.001))
+    assert "9.3% lower" in check_constant_volume(thick)[0]  # 1 / 1.05**2 - 1
+    thin = Specimen("a", diameter=(0.0264,), stretched_diameters=stretched(0.95, 0.001))
+    assert "10.8% higher" in check_constant_volume(thin)[0]  # 1 / 0.95**2 - 1
+
+
+def test_one_stretched_reading_has_no_scatter_to_judge_by():
+    specimen = Specimen("a", diameter=(0.0264,), stretched_diameters=((1.0, 0.01),))
+    assert check_constant_volume(specimen) == ()
+
+
+def test_stretched_diameters_without_one_before_stretch_are_refused():
+    with pytest.raises(DataError, match="specimen 'a' has no diameter"):
+        check_constant_volume(Specimen("a", stretched_diameters=stretched(1.0)))
