@@ -67,7 +67,7 @@ def _fast_columns(
             schema_sample_rows=None,
             dtype_coercion="strict",
         ).to_arrow_with_errors()
-    except (fastexcel.UnsupportedColumnTypeCombinationError, fastexcel.ColumnNotFoundError):
+    except fastexcel.FastExcelError:  # the exact look finds out what is wrong
         return None
     if errors is not None or not {str(kind) for kind in batch.schema.types} <= {"double", "int64"}:
         return None
@@ -112,12 +112,17 @@ def _exact_columns(
     layout: Layout,
 ) -> SheetCells:
     """Columns cell by cell; `LogError` at the first that is neither number nor missing mark."""
-    rows = (
-        python_calamine.CalamineWorkbook.from_path(path)
-        .get_sheet_by_index(sheet)
-        .to_python(skip_empty_area=False)[first:]
-    )
-    errors = _error_cells(workbook, sheet, first)
+    try:
+        rows = (
+            python_calamine.CalamineWorkbook.from_path(path)
+            .get_sheet_by_index(sheet)
+            .to_python(skip_empty_area=False)[first:]
+        )
+        errors = _error_cells(workbook, sheet, first)
+    except (python_calamine.CalamineError, fastexcel.FastExcelError) as error:
+        raise LogError(
+            path, f"sheet {sheet + 1} cannot be read", found=str(error).splitlines()[0]
+        ) from error
     found = SheetCells()
     for place, want in zip(places, wanted, strict=True):
         cells = [errors.get((first + index, place), row[place]) for index, row in enumerate(rows)]

@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any
 
 import numpy as np
@@ -139,6 +140,8 @@ def check_unit(path: Path, wanted: Wanted, found: str, *, row: int | None = None
         stated = scale_to_si(text, wanted.dimension)
     except SettingsError as error:
         problem = error.problem
+    except (AssertionError, TokenError):  # pint has no answer to "kN/" and the like
+        problem = f"unit '{text}' is not known"
     else:
         declared = scale_to_si(wanted.unit, wanted.dimension)
         if all(math.isclose(a, b, rel_tol=1e-9) for a, b in zip(stated, declared, strict=True)):

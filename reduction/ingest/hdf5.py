@@ -47,7 +47,12 @@ def open_hdf5(path: Path) -> Iterator[h5py.File]:
             path, "the file is not HDF5", found=str(error)[:200], needed="an HDF5 file"
         ) from error
     with file:
-        yield file
+        try:
+            yield file
+        except (OSError, RuntimeError, KeyError) as error:  # what h5py makes of damage
+            raise LogError(
+                path, "the file is damaged", found=str(error)[:200], needed="an intact file"
+            ) from error
 
 
 def _members(group: h5py.Group) -> list[str]:

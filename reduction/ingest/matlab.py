@@ -30,7 +30,7 @@ __all__ = ["matlab_table", "open_matlab", "read_matlab"]
 
 _NOT_MATLAB = (
     MatReadError, ValueError, IndexError, OSError, TypeError, KeyError, EOFError, zlib.error,
-    NotImplementedError,
+    NotImplementedError, UnboundLocalError,
 )  # fmt: skip
 _OWN_CLASSES = (MatlabOpaque, MatlabFunction, MatlabObject)
 _HINT = (

@@ -5,6 +5,8 @@ Sheets are given by name or by number from 1; rows count as the sheet shows them
 
 from __future__ import annotations
 
+import zipfile
+import zlib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -33,6 +35,28 @@ def open_workbook(path: Path) -> fastexcel.ExcelReader:
             found=str(error).splitlines()[0],
             needed="an .xlsx, .xls or .ods workbook without a password",
         ) from error
+
+
+def _check_archive(path: Path) -> None:
+    """Compare the checksums in a zipped workbook: its readers stop before they would."""
+    if not zipfile.is_zipfile(path):
+        return
+    try:
+        with zipfile.ZipFile(path) as archive:
+            damaged = archive.testzip()
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        OSError,
+        EOFError,
+        NotImplementedError,
+        RuntimeError,
+    ) as error:
+        damaged = str(error)
+    if damaged is not None:
+        raise LogError(
+            path, "the workbook is damaged", found=damaged, needed="checksums that agree"
+        )
 
 
 def find_sheet(path: Path, sheet_names: Sequence[str], sheet: str | int) -> int:
@@ -126,6 +150,7 @@ def read_spreadsheet(path: Path, layout: Layout, *, name: str) -> RawLog:
     """
     with unchanged(path):
         source = hash_source(path, name)
+        _check_archive(path)
         workbook = open_workbook(path)
         sheet = find_sheet(path, workbook.sheet_names, layout.sheet)
         sheet_name = workbook.sheet_names[sheet]

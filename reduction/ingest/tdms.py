@@ -17,6 +17,7 @@ from typing import Any
 
 import nptdms  # type: ignore[import-untyped]
 import numpy as np
+from nptdms.log import log_manager  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from reduction.errors import LogError
@@ -30,21 +31,29 @@ from reduction.record import Floats
 __all__ = ["WAVEFORM_COLUMN", "open_tdms", "read_tdms", "tdms_group", "tdms_table"]
 
 WAVEFORM_COLUMN = "wf_increment"
+_NOT_TDMS = (
+    ValueError, KeyError, TypeError, OSError, EOFError, struct.error, IndexError,
+    NotImplementedError, OverflowError,
+)  # fmt: skip
 # npTDMS prints what this module turns into notes and errors
-logging.getLogger("nptdms").setLevel(logging.CRITICAL)
+log_manager.set_level(logging.CRITICAL)
 
 
 @contextmanager
 def open_tdms(path: Path) -> Iterator[nptdms.TdmsFile]:
-    """Open a TDMS file; `LogError` where the file is none."""
-    try:
-        file = nptdms.TdmsFile.open(path)
-    except (ValueError, KeyError, TypeError, OSError, EOFError, struct.error, IndexError) as error:
-        raise LogError(
-            path, "the file is not TDMS", found=str(error)[:200], needed="a .tdms file"
-        ) from error
-    with file:
-        yield file
+    """Open a TDMS file; `LogError` where the file is none.
+
+    The stream, not the path, is handed on: npTDMS would believe an index file beside it.
+    """
+    with path.open("rb") as stream:
+        try:
+            file = nptdms.TdmsFile.open(stream)
+        except _NOT_TDMS as error:
+            raise LogError(
+                path, "the file is not TDMS", found=str(error)[:200], needed="a .tdms file"
+            ) from error
+        with file:
+            yield file
 
 
 def tdms_group(path: Path, file: nptdms.TdmsFile, group: str) -> nptdms.TdmsGroup:
@@ -62,12 +71,18 @@ def tdms_group(path: Path, file: nptdms.TdmsFile, group: str) -> nptdms.TdmsGrou
     return file[group]
 
 
-def tdms_table(group: nptdms.TdmsGroup) -> ColumnTable:
+def tdms_table(path: Path, group: nptdms.TdmsGroup) -> ColumnTable:
     """Channels of a group as columns."""
     channels = group.channels()
 
     def load(place: int) -> NDArray[Any]:
-        return np.asarray(channels[place][:])
+        try:
+            return np.asarray(channels[place][:])
+        except _NOT_TDMS as error:
+            raise LogError(
+                path, "a channel cannot be read", channel=channels[place].name,
+                found=str(error)[:200], needed="an intact .tdms file",
+            ) from error  # fmt: skip
 
     return ColumnTable(
         names=tuple(channel.name for channel in channels),
@@ -170,7 +185,7 @@ def read_tdms(path: Path, layout: Layout, *, name: str) -> RawLog:
         source = hash_source(path, name)
         with open_tdms(path) as file:
             group = tdms_group(path, file, layout.group)
-            table = tdms_table(group)
+            table = tdms_table(path, group)
             made = _waveform_times(path, layout, group, table)
             columns, n_rows = read_columns(path, layout, table, made)
             properties = {**file.properties, **group.properties}

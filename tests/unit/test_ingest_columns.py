@@ -1,0 +1,140 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from reduction.errors import LogError
+from reduction.ingest.columns import (
+    Wanted,
+    check_lengths,
+    check_unit,
+    find_column,
+    wanted_columns,
+    without_marks,
+)
+from reduction.ingest.layout import Layout
+
+PATH = Path("log.h5")
+LOAD = Wanted("tension.1", "load", "kN", "force")
+
+
+def layout(**settings):
+    channels = {
+        "time": {"column": "t"},
+        "tension": {"1": {"column": "a", "unit": "kN"}, "2": {"column": "b", "unit": "V"}},
+    }
+    channels["time"]["unit"] = "s"
+    channels["tension"]["2"] |= {"unit": "kN", "factor": 2.0, "time_column": "tb"}
+    return Layout.model_validate({"format": "hdf5", "channels": channels, **settings})
+
+
+def test_wanted_columns_are_the_channels_and_their_own_times():
+    wanted = wanted_columns(layout())
+    assert [(want.key, want.column, want.dimension) for want in wanted] == [
+        ("time", "t", "time"),
+        ("tension.1", "a", "force"),
+        ("tension.2", "b", "force"),
+        ("tension.2.time", "tb", "time"),
+    ]
+    assert [want.is_compared for want in wanted] == [True, True, False, True]
+
+
+def test_names_are_found_without_the_blanks_around_them():
+    assert find_column(PATH, LOAD, ["time", " load "]) == 1
+
+
+def test_a_long_list_of_columns_is_cut():
+    names = [f"c{number}" for number in range(50)]
+    with pytest.raises(LogError, match="'c39' and 10 more"):
+        find_column(PATH, LOAD, names)
+
+
+def test_a_column_is_not_in_a_file_without_columns():
+    with pytest.raises(LogError, match="'load' is not in the file; found no columns"):
+        find_column(PATH, LOAD, [])
+
+
+def test_a_name_is_not_found_where_columns_have_none():
+    with pytest.raises(LogError, match="found columns without names, numbers 1 to 3"):
+        find_column(PATH, LOAD, ["", "", ""])
+
+
+def test_a_name_that_stands_twice_is_refused():
+    with pytest.raises(LogError, match=r"'load' is 2 times in the file; found numbers 1, 3") as e:
+        find_column(PATH, LOAD, ["load", "t", "load"])
+    assert "by its number" in str(e.value)
+
+
+@pytest.mark.parametrize("number", [0, 3, -1])
+def test_a_number_outside_the_columns_is_refused(number):
+    wanted = Wanted("tension.1", number, "kN", "force")
+    with pytest.raises(LogError, match="needed a number from 1 to 2"):
+        find_column(PATH, wanted, ["a", "b"])
+
+
+def test_a_number_is_refused_where_columns_have_no_order():
+    with pytest.raises(LogError, match="needed a name"):
+        find_column(PATH, Wanted("tension.1", 1, "kN", "force"), ["a", "b"], in_order=False)
+
+
+@pytest.mark.parametrize("stated", ["kN", " [kN] ", "(kN)", "kilonewton", "", "-"])
+def test_other_spellings_of_the_declared_unit_agree(stated):
+    check_unit(PATH, LOAD, stated)
+
+
+def test_pounds_of_a_force_are_pound_force():
+    check_unit(PATH, Wanted("tension.1", "load", "lbf", "force"), "lb")
+
+
+@pytest.mark.parametrize(
+    ("stated", "problem"),
+    [
+        ("N", "the unit in the file is not the declared one; found 'N'; needed 'kN'"),
+        ("mm", "not a unit of force"),
+        ("daPs", "is not known"),
+        ("kN/", "unit 'kN/' is not known"),
+        ("kN (raw", "is not known"),
+    ],
+)
+def test_another_unit_is_refused(stated, problem):
+    with pytest.raises(LogError, match=problem) as error:
+        check_unit(PATH, LOAD, stated, row=2)
+    assert error.value.row == 2
+
+
+def test_a_unit_is_not_compared_where_the_file_has_volts():
+    check_unit(PATH, Wanted("tension.1", "load", "kN", "force", is_compared=False), "V")
+
+
+def test_columns_of_one_length_have_that_many_rows():
+    assert check_lengths(PATH, {"time": np.zeros(3), "tension.1": np.ones(3)}) == 3
+
+
+def test_two_time_bases_are_refused():
+    with pytest.raises(LogError, match=r"two time bases; found time 3 values, tension\.1 2 values"):
+        check_lengths(PATH, {"time": np.zeros(3), "tension.1": np.ones(2)})
+
+
+def test_a_channel_with_own_times_may_have_its_own_length():
+    columns = {"time": np.zeros(3), "tension.1": np.ones(2), "tension.1.time": np.ones(2)}
+    assert check_lengths(PATH, columns) == 3
+
+
+def test_own_times_must_have_the_length_of_their_channel():
+    columns = {"time": np.zeros(3), "tension.1": np.ones(2), "tension.1.time": np.ones(3)}
+    with pytest.raises(LogError, match=r"two time bases; found tension\.1 2 values"):
+        check_lengths(PATH, columns)
+
+
+def test_no_rows_and_no_channels_are_refused():
+    with pytest.raises(LogError, match="there are no data rows"):
+        check_lengths(PATH, {"time": np.zeros(0)})
+    with pytest.raises(LogError, match="declares no channels"):
+        check_lengths(PATH, {})
+
+
+def test_marks_that_are_numbers_become_missing_in_the_precision_of_the_column():
+    marked = layout(missing=["", "-99.9", "x", "inf"])
+    values = np.array([1.0, -99.9, 2.0], dtype=np.float32)
+    assert np.isnan(without_marks(values, marked)).tolist() == [False, True, False]
+    assert without_marks(np.array([1, 2], dtype=np.int16), marked).tolist() == [1.0, 2.0]
