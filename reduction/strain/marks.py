@@ -29,7 +29,7 @@ _READING_TIME = 10.0
 _POSITION_TOLERANCE = 0.05
 # difference of two free lengths has twice the standard uncertainty of one reading (four readings)
 _CONTRADICTION = 4 * 2
-# a hundredth of a foot: how a tape is read where the marks do not say
+# a hundredth of a foot: a tape is not read better than this on a stretched tether
 _TAPE_UNCERTAINTY = 0.003
 
 
@@ -68,7 +68,7 @@ def check_marks(marks: SpliceMarks, *, tests: Collection[str] | None = None) -> 
     ...
     reduction.errors.DataError: marks of 'new' in test T-1 contradict each other: holds ...
     """
-    allowance = _CONTRADICTION * (marks.reading_uncertainty or _TAPE_UNCERTAINTY)
+    allowance = _CONTRADICTION * max(marks.reading_uncertainty, _TAPE_UNCERTAINTY)
     test = np.array(marks.test)
     for name in dict.fromkeys(marks.test) if tests is None else tests:
         rows = np.flatnonzero(test == name)

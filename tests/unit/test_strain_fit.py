@@ -1,0 +1,270 @@
+"""Unit tests of reduction.strain.fit and reduction.strain.pool: which method, on which marks."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError, FitError
+from reduction.phases.standstill import Standstills
+from reduction.record import Specimen, SpliceMarks
+from reduction.settings import StrainSettings
+from reduction.strain.fit import fit_strain_model, free_length_strain_of, zero_strain_position
+from reduction.strain.pool import PooledMarks, fit_to_marks
+
+L0, LS = 2.55, 1.18
+COMPLIANCE, EXPONENT = 0.0012, 0.85
+READING = 0.00124
+
+
+def campaign(tests, *, noise=0.0, seed=0, growth=0.0):
+    """Marks and tensions of tests given as name -> stretched (strain, tension) pairs."""
+    rng = np.random.default_rng(seed)
+    names, holds, rows, tension = [], [], [], []
+    for number, (name, pairs) in enumerate(tests.items()):
+        for hold, (strain, force) in zip(
+            ("slack", "min", "centre", "max"), [(0.0, 0.0), *pairs], strict=False
+        ):
+            near, far, thimble = rng.normal(0, noise, 3)
+            free = L0 * (1 + strain) + growth * number
+            splice = LS * (1 + COMPLIANCE * force**EXPONENT)
+            rows.append((0.54 * splice + near, 0.54 * splice + free + far, free + splice + thimble))
+            names.append(name)
+            holds.append(hold)
+            tension.append(force)
+    near, far, thimble = np.array(rows).T
+    marks = SpliceMarks("new", tuple(names), tuple(holds), near, far, thimble, READING)
+    return marks, np.array(tension)
+
+
+TESTS = {
+    "T-1": [(0.76, 375.0), (1.02, 485.0), (1.28, 590.0)],
+    "T-5": [(1.81, 890.0), (2.05, 1100.0), (2.30, 1290.0)],
+}
+NARROW = {"T-1": TESTS["T-1"]}
+
+
+def fit(tests=TESTS, *, test_id="T-1", method=None, tension=True, specimen=None, **more):
+    marks, force = campaign(tests, **more)
+    return fit_strain_model(
+        specimen or Specimen("new"),
+        test_id=test_id,
+        marks=marks,
+        mark_tension=force if tension else None,
+        settings=StrainSettings(method),
+    )
+
+
+def test_a_wide_span_of_tension_chooses_tension_driven_and_finds_the_law():
+    model = fit()
+    assert model.method == "tension-driven"
+    assert model.marks_from == "pooled over the campaign"
+    assert model.coefficients["splice_compliance"] == pytest.approx(COMPLIANCE, rel=1e-5)
+    assert model.coefficients["splice_exponent"] == pytest.approx(EXPONENT, rel=1e-6)
+    np.testing.assert_allclose(model.mark_strain_residual, 0, atol=1e-8)
+
+
+def test_a_narrow_span_of_tension_chooses_marks():
+    model = fit(NARROW)
+    assert model.method == "marks"
+    assert model.marks_from == "this test"
+
+
+def test_marks_without_tension_choose_marks():
+    model = fit(tension=False)
+    assert model.method == "marks"
+    assert set(model.mark_test) == {"T-1"}
+
+
+def test_a_stated_method_is_used():
+    for method in ("marks", "strain-ratio", "constant-fraction", "tension-driven"):
+        assert fit(method=method).method == method
+
+
+def test_a_test_without_marks_uses_the_pooled_fit_and_says_so():
+    own, other = fit(), fit(test_id="T-9")
+    assert other.coefficients == own.coefficients
+    assert any(
+        "T-9 has no marks of its own; its strain rests on those of T-1, T-5" in n
+        for n in other.notes
+    )
+    line = fit(test_id="T-9", method="marks")
+    assert line.marks_from == "pooled over the campaign"
+    assert set(line.mark_test) == {"T-1", "T-5"}
+
+
+def test_relaxed_lengths_are_pooled_but_for_constant_fraction():
+    marks = fit(growth=0.02, method="marks")
+    assert marks.coefficients["relaxed_free_length"] == pytest.approx(L0 + 0.01)
+    legacy = fit(growth=0.02, method="constant-fraction", test_id="T-5")
+    assert legacy.coefficients["relaxed_free_length"] == pytest.approx(L0 + 0.02)
+
+
+def test_constant_fraction_without_an_own_slack_row_takes_the_pooled_one():
+    model = fit(growth=0.02, method="constant-fraction", test_id="T-9")
+    assert model.coefficients["relaxed_free_length"] == pytest.approx(L0 + 0.01)
+
+
+def test_ranges_are_those_of_the_stretched_marks():
+    model = fit()
+    assert (model.tension_low, model.tension_high) == (0.0, 1290.0)
+    line = fit(method="marks")
+    low, high = (L0 * (1 + e) + LS * (1 + COMPLIANCE * f**EXPONENT) for e, f in TESTS["T-1"][::2])
+    assert (line.position_low, line.position_high) == pytest.approx((low, high))
+    assert np.isnan(line.tension_high)
+
+
+def test_too_narrow_a_span_holds_the_exponent_at_one():
+    model = fit(NARROW, method="tension-driven")
+    assert model.coefficients["splice_exponent"] == 1.0
+    assert any("factor of 1.57 in tension do not fix the exponent" in note for note in model.notes)
+
+
+def test_two_marks_hold_the_exponent_at_one_though_they_span_enough():
+    model = fit({"T-1": [(0.5, 200.0), (1.5, 700.0)]}, method="tension-driven")
+    assert model.coefficients["splice_exponent"] == 1.0
+
+
+def test_a_vague_exponent_is_held_at_one_and_the_note_gives_it():
+    tests = {"T-1": [(0.05, 4.0), (0.07, 7.0), (0.10, 10.0)]}
+    model = fit(tests, method="tension-driven")
+    assert model.coefficients["splice_exponent"] == 1.0
+    assert any("only to 0.85 +- " in note for note in model.notes)
+
+
+def test_joint_covariance_is_that_of_many_campaigns():
+    names = list(fit().coefficients)
+    drawn = np.array(
+        [[fit(noise=READING, seed=seed).coefficients[n] for n in names] for seed in range(300)]
+    )
+    expected = np.sqrt(np.diag(fit().covariance))
+    np.testing.assert_allclose(drawn.std(axis=0), expected, rtol=0.15)
+    correlation = np.corrcoef(drawn.T)
+    covariance = fit().covariance
+    stated = covariance / np.outer(expected, expected)
+    np.testing.assert_allclose(correlation, stated, atol=0.2)
+
+
+def test_marks_that_no_law_fits_fall_back_to_the_line_with_a_reason():
+    marks, force = campaign(TESTS)
+    marks = SpliceMarks(
+        "new", marks.test, marks.hold, marks.near_toe, marks.far_toe,
+        marks.free_length + LS * (1 - 0.00001 * force), READING,
+    )  # fmt: skip
+    model = fit_strain_model(Specimen("new"), test_id="T-1", marks=marks, mark_tension=force)
+    assert model.method == "marks"
+    assert "given up for marks: the splices do not lengthen with tension" in model.notes[0]
+    with pytest.raises(FitError, match="do not lengthen"):
+        fit_strain_model(
+            Specimen("new"),
+            test_id="T-1",
+            marks=marks,
+            mark_tension=force,
+            settings=StrainSettings("tension-driven"),
+        )
+
+
+def test_tension_driven_without_a_tension_is_refused():
+    with pytest.raises(DataError, match="by tension-driven has no mark to rest on"):
+        fit(method="tension-driven", tension=False)
+
+
+def test_slack_rows_alone_are_refused():
+    with pytest.raises(DataError, match="by marks has no mark to rest on"):
+        fit({"T-1": []})
+
+
+def test_a_method_of_marks_without_marks_is_refused():
+    with pytest.raises(DataError, match="by strain-ratio needs splice marks"):
+        fit_strain_model(Specimen("new"), test_id="T-1", settings=StrainSettings("strain-ratio"))
+
+
+def test_tensions_that_do_not_pair_up_are_refused():
+    marks, force = campaign(TESTS)
+    with pytest.raises(DataError, match="found 7 tensions for 8 marks"):
+        fit_strain_model(Specimen("new"), test_id="T-1", marks=marks, mark_tension=force[1:])
+
+
+def test_contradicting_marks_are_refused_in_the_tests_that_use_them():
+    marks, force = campaign(TESTS)
+    far = marks.far_toe.copy()
+    far[1] += 1.0  # T-1, min
+    bad = SpliceMarks(
+        "new", marks.test, marks.hold, marks.near_toe, far, marks.far_thimble + (far > 5.2), READING
+    )
+    with pytest.raises(DataError, match="in test T-1 contradict each other"):
+        fit_strain_model(Specimen("new"), test_id="T-1", marks=bad, mark_tension=force)
+    # the survey gives the tensions of T-1 up, and T-5 stands on its own marks
+    known = np.where(np.array(bad.test) == "T-1", np.nan, force)
+    model = fit_strain_model(
+        Specimen("new"), test_id="T-5", marks=bad, mark_tension=known,
+        settings=StrainSettings("tension-driven"),
+    )  # fmt: skip
+    assert set(np.array(model.mark_test)[model.mark_strain > 0.1]) == {"T-5"}
+
+
+def test_the_ratio_of_slopes_is_that_of_the_curves_over_the_own_marks():
+    model, legacy = fit(test_id="T-5"), fit(test_id="T-5", method="constant-fraction")
+    rows = np.array(model.mark_test) == "T-5"
+    rows &= np.array(model.mark_hold) != "slack"
+    position, force = model.mark_position[rows], model.mark_tension[rows]
+    slopes = [
+        np.polyfit(position, free_length_strain_of(m, position=position, tension=force), 1)[0]
+        for m in (legacy, model)
+    ]
+    assert model.strain_slope_ratio == pytest.approx(slopes[0] / slopes[1])
+    assert legacy.strain_slope_ratio == pytest.approx(1.0)
+
+
+def test_one_stretched_mark_has_no_slope():
+    model = fit({"T-1": [(1.0, 480.0)]}, method="strain-ratio")
+    assert np.isnan(model.strain_slope_ratio)
+
+
+def test_without_marks_the_extensometer_comes_before_the_gauge_length():
+    rope = Specimen("rope", gauge_length=1.0)
+    both = fit_strain_model(rope, test_id="a", has_extensometer=True, reference_position=0.0)
+    assert both.method == "extensometer"
+    alone = fit_strain_model(rope, test_id="a", reference_position=0.25)
+    assert alone.method == "gauge-length"
+    assert alone.coefficients == {"reference_position": 0.25, "gauge_length": 1.0}
+
+
+def test_nothing_to_go_by_is_refused():
+    with pytest.raises(DataError, match="nothing says how position becomes strain of 'rope'"):
+        fit_strain_model(Specimen("rope"), test_id="a")
+
+
+def test_gauge_length_names_what_it_lacks():
+    gauge = StrainSettings("gauge-length")
+    with pytest.raises(DataError, match="by gauge-length lacks a gauge length"):
+        fit_strain_model(Specimen("rope"), test_id="a", settings=gauge, reference_position=0.0)
+    with pytest.raises(DataError, match="lacks a position of zero strain"):
+        fit_strain_model(Specimen("rope", gauge_length=1.0), test_id="a", settings=gauge)
+
+
+def rests(positions, is_rest):
+    n = len(positions)
+    return Standstills(
+        first=np.arange(n), last=np.arange(n), start_time=np.arange(n) * 1.0,
+        end_time=np.arange(n) * 1.0, mean_position=np.array(positions, dtype=float),
+        mean_tension=np.zeros((1, n)), is_rest=np.array(is_rest, dtype=bool),
+        position_tolerance=0.01, slack_tension=5.0,
+    )  # fmt: skip
+
+
+def test_zero_strain_is_at_the_first_rest():
+    stands = rests([0.5, 0.1, 0.2], [False, True, True])
+    assert zero_strain_position(stands, position_is_length=True) == 0.1
+
+
+def test_without_a_rest_only_a_displacement_has_a_zero():
+    stands = rests([0.5], [False])
+    assert zero_strain_position(stands, position_is_length=False) == 0.0
+    assert zero_strain_position(stands, position_is_length=True) is None
+
+
+def test_fit_to_marks_is_the_same_model_without_remarks():
+    marks, force = campaign(TESTS)
+    own = np.array([name == "T-1" for name in marks.test])
+    model = fit_to_marks("tension-driven", PooledMarks(marks, force, own))
+    assert model.coefficients == fit().coefficients
+    assert model.notes == ()

@@ -1,0 +1,149 @@
+"""Unit tests of reduction.strain.marks."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.phases.standstill import Standstills
+from reduction.record import SpliceMarks
+from reduction.strain.marks import check_marks, measure_mark_tension
+
+
+def marks(position, free, *, hold=None, test=None, reading_uncertainty=0.00124):
+    position, free = np.array(position), np.array(free)
+    near = (position - free) / 2
+    return SpliceMarks(
+        specimen="new",
+        test=test or ("T-1",) * position.size,
+        hold=hold or tuple(f"{i}" for i in range(position.size)),
+        near_toe=near,
+        far_toe=near + free,
+        far_thimble=position,
+        reading_uncertainty=reading_uncertainty,
+    )
+
+
+def standstills(holds, rate=10.0):
+    """From (start, end, position, is_rest)."""
+    start, end, position, rest = (np.array(part) for part in zip(*holds, strict=True))
+    return Standstills(
+        first=np.round(start * rate).astype(int),
+        last=np.round(end * rate).astype(int),
+        start_time=start,
+        end_time=end,
+        mean_position=position,
+        mean_tension=np.full((1, len(holds)), np.nan),
+        is_rest=rest.astype(bool),
+        position_tolerance=0.01,
+        slack_tension=5.0,
+    )
+
+
+def measured(rows, holds, tension, **more):
+    return measure_mark_tension(
+        rows, test_id="T-1", standstills=standstills(holds), tension=tension, **more
+    )
+
+
+HOLDS = [(0.0, 5.0, 3.74, True), (20.0, 80.0, 5.90, False), (90.0, 290.0, 6.63, False)]
+RAMP = np.arange(4000) / 10  # a tension that tells the time
+TWO = marks([3.74, 5.90, 6.63], [2.55, 4.51, 5.17], hold=("slack", "min", "max"))
+
+
+def test_a_mark_has_the_tension_of_the_last_ten_seconds_of_its_hold():
+    slack, low, high = measured(TWO, HOLDS, RAMP)
+    assert low == pytest.approx(80.0 - 5.0, abs=0.06)
+    assert high == pytest.approx(290.0 - 5.0, abs=0.06)
+    assert slack == pytest.approx(5.0 - 5 / 6, abs=0.06)  # a third of a short hold
+
+
+def test_the_start_of_the_hold_is_the_other_bound():
+    _, low, high = measured(TWO, HOLDS, RAMP, reading="start")
+    assert low == pytest.approx(20.0 + 5.0, abs=0.06)
+    assert high == pytest.approx(90.0 + 5.0, abs=0.06)
+
+
+def test_a_later_hold_at_the_same_place_does_not_count():
+    holds = [*HOLDS, (300.0, 390.0, 5.901, False)]
+    assert measured(TWO, holds, RAMP)[1] == pytest.approx(75.0, abs=0.06)
+
+
+def test_the_nearest_of_two_close_holds_counts():
+    holds = [(0.0, 10.0, 5.86, False), (20.0, 80.0, 5.90, False)]
+    assert measured(TWO, holds, RAMP)[1] == pytest.approx(75.0, abs=0.06)
+
+
+def test_a_mark_without_a_hold_has_no_tension():
+    low, high = measured(TWO, HOLDS[:2], RAMP)[1:]
+    assert np.isfinite(low)
+    assert np.isnan(high)
+
+
+def test_a_rest_is_no_hold_of_a_stretched_mark():
+    assert np.isnan(measured(TWO, [(20.0, 80.0, 5.90, True)], RAMP)[1])
+
+
+def test_a_slack_row_without_a_rest_has_no_tension_at_all():
+    assert measured(TWO, HOLDS[1:], RAMP)[0] == 0.0
+
+
+def test_rows_of_other_tests_are_left_out():
+    rows = marks([5.90, 6.63], [4.51, 5.17], test=("T-2", "T-1"))
+    assert measured(rows, HOLDS, RAMP) == pytest.approx([285.0], abs=0.06)
+
+
+def test_missing_samples_are_left_out_of_the_mean():
+    log = RAMP.copy()
+    log[750:] = np.nan  # the last five of the ten seconds
+    assert measured(TWO, HOLDS, log)[1] == pytest.approx(72.5, abs=0.06)
+    assert np.isnan(measured(TWO, HOLDS, np.full(4000, np.nan))[1])
+
+
+def test_a_hold_of_one_sample_has_its_tension():
+    assert measured(TWO, [(20.0, 20.0, 5.90, False)], RAMP)[1] == pytest.approx(20.0)
+
+
+def test_marks_in_order_pass():
+    check_marks(marks([3.74, 5.90, 6.63, 7.35], [2.55, 4.51, 5.17, 5.80]))
+
+
+def test_a_free_length_that_falls_is_refused_by_test_and_hold():
+    rows = marks([3.74, 5.90, 6.63], [2.55, 4.51, 4.40], hold=("slack", "min", "max"))
+    with pytest.raises(
+        DataError,
+        match=r"marks of 'new' in test T-1 contradict each other: holds min and max; "
+        r"found free lengths 4.510 and 4.400 m at positions 5.900 and 6.630 m",
+    ):
+        check_marks(rows)
+
+
+def test_one_position_with_two_free_lengths_is_refused():
+    with pytest.raises(DataError, match="holds 0 and 1; found free lengths 4.510 and 4.560"):
+        check_marks(marks([5.90, 5.90], [4.51, 4.56]))
+
+
+def test_one_position_read_twice_within_reading_error_passes():
+    check_marks(marks([5.90, 5.90], [4.510, 4.516]))
+
+
+def test_splices_that_shrink_under_more_stretch_are_refused():
+    with pytest.raises(DataError, match="grows with position, by no more than position does"):
+        check_marks(marks([5.90, 6.00], [4.51, 4.70]))
+
+
+def test_a_tape_is_not_taken_to_read_better_than_a_hundredth_of_a_foot():
+    rows = marks([5.90, 5.90], [4.510, 4.530], reading_uncertainty=0.0)
+    check_marks(rows)
+    with pytest.raises(DataError, match="contradict each other"):
+        check_marks(marks([5.90, 5.90], [4.510, 4.540], reading_uncertainty=0.0))
+
+
+def test_the_same_position_in_two_tests_is_no_contradiction():
+    check_marks(marks([5.90, 5.90], [4.51, 4.60], test=("T-1", "T-2")))
+
+
+def test_only_the_tests_asked_for_are_looked_at():
+    rows = marks([5.90, 5.90], [4.51, 4.60])
+    check_marks(rows, tests=["T-2"])
+    with pytest.raises(DataError, match="contradict"):
+        measured(rows, HOLDS, RAMP)
