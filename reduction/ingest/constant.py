@@ -1,0 +1,201 @@
+"""A channel that repeats one value while the crosshead moves: stuck, or at the end of its range.
+
+A hold repeats values too, and so does a slack specimen: neither is a fault.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from reduction.ingest.quality import noise_of
+from reduction.record import Bools, Floats, Integers
+
+__all__ = ["Runs", "constant_runs", "find_saturated", "find_stuck", "find_stuck_position", "moves"]
+
+_SATURATED_SAMPLES = 5
+_SATURATED_STEPS = 32
+_MOVING_NOISE = 10.0
+_MOVING_SHARE = 1e-3
+_SLACK_SHARE = 0.02
+_JUMP_SHARE = 0.1
+_RISE_SHARE = 0.25
+_RISE_NOISE = 20.0
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Runs of equal values: first sample and the one after the last, shape (n_runs,) each."""
+
+    start: Integers
+    stop: Integers
+
+    def where(self, keep: Bools) -> Runs:
+        """Some of the runs."""
+        return Runs(self.start[keep], self.stop[keep])
+
+    def mask(self, n_samples: int) -> Bools:
+        """True inside the runs, shape (n_samples,)."""
+        edges = np.zeros(n_samples + 1, dtype=np.int8)
+        if not self.start.size:
+            return edges[:-1].view(bool)
+        edges[self.start] = 1
+        edges[self.stop] -= 1
+        return np.cumsum(edges[:-1], dtype=np.int8).view(bool)
+
+
+def constant_runs(values: Floats, minimum: int) -> Runs:
+    """Runs of at least ``minimum`` equal values.
+
+    A run that long holds a whole block of half that length, and a block can be ruled
+    out by three of its samples.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A channel. [any]
+    minimum : int
+        Shortest run. [1]
+
+    Returns
+    -------
+    runs : Runs
+        In order.
+    """
+    length = max(minimum // 2, 1)
+    grid = values[: values.size // length * length].reshape(-1, length)
+    place = np.flatnonzero((grid[:, 0] == grid[:, length // 2]) & (grid[:, 0] == grid[:, -1]))
+    place = place[(grid[place] == grid[place, :1]).all(axis=1)]
+    if not place.size:
+        return Runs(place, place)
+    level = grid[place, 0]
+    is_first = np.concatenate([[True], (np.diff(place) > 1) | (np.diff(level) != 0)])
+    is_last = np.concatenate([is_first[1:], [True]])
+    reach = np.arange(1, length)
+    start, stop = place[is_first] * length, (place[is_last] + 1) * length
+    before = start[:, np.newaxis] - reach
+    same = (values[np.maximum(before, 0)] == values[start, np.newaxis]) & (before >= 0)
+    start = start - np.cumprod(same, axis=1).sum(axis=1)
+    after = stop[:, np.newaxis] + reach - 1
+    inside = np.minimum(after, values.size - 1)
+    same = (values[inside] == values[stop - 1, np.newaxis]) & (after < values.size)
+    stop = stop + np.cumprod(same, axis=1).sum(axis=1)
+    runs = Runs(start, stop)
+    return runs.where(stop - start >= minimum)
+
+
+def moves(position: Floats, runs: Runs) -> Bools:
+    """Whether the crosshead moves in each run, shape (n_runs,)."""
+    if not runs.start.size:
+        return np.empty(0, dtype=bool)
+    noise, _ = noise_of(position)
+    tolerance = _MOVING_NOISE * noise + _MOVING_SHARE * np.nanmax(np.abs(position - position[0]))
+    first, middle = position[runs.start], position[(runs.start + runs.stop) // 2]
+    last = position[runs.stop - 1]
+    travel = np.fmax(np.abs(middle - first), np.fmax(np.abs(last - middle), np.abs(last - first)))
+    return np.asarray(travel > tolerance)
+
+
+def find_stuck(tension: Floats, position: Floats, *, samples: int) -> Bools:
+    """Where a load channel repeats one value while the crosshead moves.
+
+    Parameters
+    ----------
+    tension : ndarray, shape (n_samples,)
+        Load. [N]
+    position : ndarray, shape (n_samples,)
+        Crosshead position. [m]
+    samples : int
+        ``stuck_samples`` of the settings. [1]
+
+    Returns
+    -------
+    is_stuck : ndarray of bool, shape (n_samples,)
+        A run at the level of a slack specimen counts only where the load jumps to it
+        or from it, as when a cable comes loose.
+    """
+    runs = constant_runs(tension, samples)
+    runs = runs.where(moves(position, runs))
+    if not runs.start.size:
+        return runs.mask(tension.size)
+    low, high = float(np.nanmin(tension)), float(np.nanmax(tension))
+    level = tension[runs.start]
+    into = np.abs(level - tension[np.maximum(runs.start - 1, 0)])
+    out = np.abs(level - tension[np.minimum(runs.stop, tension.size - 1)])
+    is_slack = (level <= low + _SLACK_SHARE * (high - low)) & (high > low)
+    jumps = np.fmax(into, out) > _JUMP_SHARE * (high - low)
+    return runs.where(~is_slack | jumps).mask(tension.size)
+
+
+def find_saturated(tension: Floats, position: Floats) -> Bools:
+    """Where a load channel stands at its greatest or least value because it can go no further.
+
+    A quantised peak repeats its greatest value as well.  It is saturated only where the
+    load came, in as many samples before or after, from further than a rounded peak does.
+
+    Parameters
+    ----------
+    tension : ndarray, shape (n_samples,)
+        Load. [N]
+    position : ndarray, shape (n_samples,)
+        Crosshead position. [m]
+
+    Returns
+    -------
+    is_saturated : ndarray of bool, shape (n_samples,)
+        Runs of at least five samples while the crosshead moves.
+    """
+    is_saturated = np.zeros(tension.size, dtype=bool)
+    low, high = float(np.nanmin(tension)), float(np.nanmax(tension))
+    for level in (low, high):
+        if level == low and (low == high or abs(low) <= _SLACK_SHARE * (high - low)):
+            continue  # a slack specimen reads zero, a dead channel is stuck
+        place = np.flatnonzero(tension == level)
+        if place.size < _SATURATED_SAMPLES:
+            continue
+        is_first = np.concatenate([[True], np.diff(place) > 1])
+        is_last = np.concatenate([is_first[1:], [True]])
+        runs = Runs(place[is_first], place[is_last] + 1)
+        length = runs.stop - runs.start
+        runs = runs.where(length >= _SATURATED_SAMPLES)
+        if not runs.start.size:
+            continue
+        _, step = noise_of(tension)
+        length = runs.stop - runs.start
+        before = np.abs(level - tension[np.maximum(runs.start - length, 0)])
+        after = np.abs(level - tension[np.minimum(runs.stop - 1 + length, tension.size - 1)])
+        steep = np.fmax(before, after) >= _SATURATED_STEPS * step
+        runs = runs.where(steep)
+        is_saturated |= runs.where(moves(position, runs)).mask(tension.size)
+    return is_saturated
+
+
+def find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> Bools:
+    """Where position stands still although tension rises: a hold does not make it rise.
+
+    Parameters
+    ----------
+    position : ndarray, shape (n_samples,)
+        Crosshead position. [m]
+    tension : ndarray, shape (n_specimens, n_samples)
+        Loads. [N]
+    samples : int
+        ``stuck_samples`` of the settings. [1]
+
+    Returns
+    -------
+    is_stuck : ndarray of bool, shape (n_samples,)
+        Runs in which any load rises by a quarter of its range.
+    """
+    runs = constant_runs(position, samples)
+    if not runs.start.size:
+        return runs.mask(position.size)
+    rises = np.zeros(runs.start.size, dtype=bool)
+    edges = np.ravel(np.column_stack([runs.start, runs.stop - 1]))
+    for load in tension:
+        noise, _ = noise_of(load)
+        most = np.fmax.reduceat(load, edges)[::2]
+        enough = max(_RISE_SHARE * float(np.nanmax(load) - np.nanmin(load)), _RISE_NOISE * noise)
+        rises |= most - load[runs.start] > enough
+    return runs.where(rises).mask(position.size)

@@ -1,0 +1,128 @@
+"""Flags of a record, put together from the faults of its series."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.errors import DataError
+from reduction.ingest.constant import find_saturated, find_stuck, find_stuck_position
+from reduction.ingest.quality import (
+    account_rows,
+    find_missing,
+    find_outside_range,
+    find_spikes,
+    noise_of,
+    time_faults,
+)
+from reduction.record import Bools, Floats, Quality, Record
+from reduction.settings import QualitySettings
+
+__all__ = ["flag_record"]
+
+_Flags = NDArray[np.uint16]
+
+
+def flag_record(
+    record: Record,
+    *,
+    settings: QualitySettings,
+    resampled: Sequence[str] = (),
+    verified: Mapping[tuple[int, int, int], tuple[float, float]] | None = None,
+    notes: Sequence[str] = (),
+) -> Record:
+    """Return the record with its flags set and what they mean in its notes.
+
+    Parameters
+    ----------
+    record : Record
+        In SI.
+    settings : QualitySettings
+        When a sample is flagged.
+    resampled : sequence of str
+        Channel keys (``crosshead_position``, ``tension.1``) that were interpolated.
+    verified : mapping of (int, int, int) to (float, float), optional
+        By specimen, first row and row after the last: the range that the load cell is
+        verified for. [N]
+    notes : sequence of str
+        Further notes of the record.
+
+    Returns
+    -------
+    record : Record
+        Every row kept.
+
+    Raises
+    ------
+    DataError
+        If a channel holds no number at all.
+    """
+    position_flag: _Flags = np.zeros(record.n_samples, dtype=np.uint16)
+    tension_flag: _Flags = np.zeros(record.tension.shape, dtype=np.uint16)
+    position = record.crosshead_position
+    timing = time_faults(
+        record.time, gap_factor=settings.gap_factor, rate_tolerance=settings.rate_tolerance
+    )
+    _set(position_flag, find_missing(record.time), Quality.MISSING)
+    _set(position_flag, _missing("crosshead_position", position), Quality.MISSING)
+    _set(position_flag, timing.gap, Quality.GAP)
+    _set(position_flag, timing.backward, Quality.REPEATED_OR_BACKWARD_TIME)
+    _set(position_flag, _spikes(position, settings), Quality.SPIKE)
+    if "crosshead_position" in resampled:
+        position_flag |= Quality.RESAMPLED
+    for index, (name, load) in enumerate(zip(record.specimens, record.tension, strict=True)):
+        flags = tension_flag[index]
+        _set(flags, _missing(f"tension of '{name}'", load), Quality.MISSING)
+        saturated = find_saturated(load, position)
+        stuck = find_stuck(load, position, samples=settings.stuck_samples)
+        _set(flags, saturated, Quality.SATURATED)
+        _set(flags, stuck & ~saturated, Quality.STUCK)
+        _set(flags, _spikes(load, settings), Quality.SPIKE)
+        if f"tension.{index + 1}" in resampled:
+            flags |= Quality.RESAMPLED
+    for (index, start, stop), (low, high) in (verified or {}).items():
+        outside = find_outside_range(record.tension[index, start:stop], low, high)
+        _set(tension_flag[index, start:stop], outside, Quality.OUTSIDE_VERIFIED_RANGE)
+    stuck = find_stuck_position(position, record.tension, samples=settings.stuck_samples)
+    _set(position_flag, stuck, Quality.STUCK)
+    flagged = replace(
+        record, quality_flag=tension_flag, crosshead_position_quality_flag=position_flag
+    )
+    found = [*record.notes, *notes]
+    if timing.n_uneven:
+        found.append(
+            f"the sampling rate is not constant: {timing.n_uneven} of {record.n_samples - 1} time "
+            f"steps differ by more than {settings.rate_tolerance:.0%} from their median "
+            f"{timing.step:.4g} s ({timing.shortest:.4g} to {timing.longest:.4g} s, gaps apart)"
+        )
+    account = account_rows(flagged)
+    if any(account.n_flagged.values()):
+        listed = "; ".join(
+            f"{channel} " + ", ".join(f"{mask} {count}" for mask, count in masks.items())
+            for channel, masks in account.n_flagged.items()
+            if masks
+        )
+        found.append(f"{account.n_read} rows read, {account.n_kept} kept, flagged: {listed}")
+    return replace(flagged, notes=tuple(found))
+
+
+def _set(flags: _Flags, where: Bools, mask: Quality) -> None:
+    if where.any():
+        flags[where] |= mask
+
+
+def _missing(name: str, values: Floats) -> Bools:
+    missing = find_missing(values)
+    if missing.all():
+        raise DataError(
+            f"{name} holds no number", found=f"{values.size} missing values", needed="a channel"
+        )
+    return missing
+
+
+def _spikes(values: Floats, settings: QualitySettings) -> Bools:
+    noise, _ = noise_of(values)
+    return find_spikes(values, noise=noise, factor=settings.spike_factor)

@@ -1,0 +1,158 @@
+"""One log on one time axis, with the factors that will bring its channels to SI."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from reduction.errors import DataError, SettingsError
+from reduction.ingest.layout import CLOCK, Channel, Layout
+from reduction.ingest.rawlog import RawLog
+from reduction.ingest.resample import on_common_time
+from reduction.record import Floats
+from reduction.units import Dimension, parse_quantity, scale_to_si
+
+__all__ = ["Piece", "to_piece"]
+
+_USED = ("crosshead_position", "tension", "strain", "cycle_counter")
+_RESTART_SAMPLES = 3
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One file of a record.
+
+    Parameters
+    ----------
+    log : RawLog
+        As it was read.
+    layout : Layout
+        What it looked like.
+    time : ndarray, shape (n_samples,)
+        Elapsed time as logged. [s]
+    values : dict of str to ndarray, shape (n_samples,)
+        By channel key, in the file's unit.
+    scale : dict of str to (float, float)
+        Factor and shift that bring each channel to SI, sign and zero applied.
+    resampled : frozenset of str
+        Channels that were interpolated.
+    notes : tuple of str
+        What the reader of the product has to know.
+    """
+
+    log: RawLog
+    layout: Layout
+    time: Floats
+    values: dict[str, Floats]
+    scale: dict[str, tuple[float, float]]
+    resampled: frozenset[str]
+    notes: tuple[str, ...]
+
+    def channel(self, key: str) -> Channel:
+        """Declaration of a channel; ``tension`` alone is ``tension.1``."""
+        return self.layout.channels[_declared(self.layout, key)]
+
+    def row_of(self, sample: int) -> str:
+        """Where a sample stands in its file, for messages."""
+        if self.log.first_row == 0 or self.resampled:
+            return f"sample {sample + 1} of {self.log.source.name}"
+        row = self.log.first_row + sample if self.log.row is None else int(self.log.row[sample])
+        return f"row {row} of {self.log.source.name}"
+
+
+def to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> Piece:
+    """Bring a log to one time axis.
+
+    Parameters
+    ----------
+    log : RawLog
+        As it was read.
+    layout : Layout
+        What it looked like.
+    gap_factor : float
+        As in `reduction.settings.QualitySettings`. [1]
+
+    Returns
+    -------
+    piece : Piece
+        Channels that a record holds; others are named in the notes.
+
+    Raises
+    ------
+    DataError
+        If channels have no time or two time bases, or time starts again.
+    """
+    values, scale, unused = {}, {}, []
+    for name, channel in layout.channels.items():
+        kind = name.split(".")[0]
+        key = f"{kind}.1" if name in ("tension", "strain") else name
+        if kind in _USED:
+            values[key] = log.columns[name]
+            scale[key] = _scale(channel, layout.dimension(name))
+        elif name != "time":
+            unused.append(name)
+    own = {
+        key: _seconds(log.columns[f"{name}.time"], layout.channels[name].time_unit)
+        for key, name in ((key, _declared(layout, key)) for key in values)
+        if f"{name}.time" in log.columns
+    }
+    common = on_common_time(_shared_time(log, layout), values, own, gap_factor=gap_factor)
+    notes = [*log.notes, *common.notes]
+    if unused:
+        notes.append(f"read, but not part of a record: {', '.join(unused)}")
+    piece = Piece(log, layout, common.time, common.values, scale, common.resampled, tuple(notes))
+    _check_restart(piece)
+    return piece
+
+
+def _declared(layout: Layout, key: str) -> str:
+    return key if key in layout.channels else key.split(".")[0]
+
+
+def _scale(channel: Channel, dimension: Dimension) -> tuple[float, float]:
+    """Factor and shift to SI: the zero is taken off first, then the sign is applied."""
+    factor, offset = scale_to_si(channel.unit, dimension)
+    zero = 0.0 if channel.zero is None else parse_quantity(channel.zero, dimension)
+    shift = channel.sign * (offset - zero)
+    if channel.datum == "displacement" and channel.reference_length is not None:
+        shift += parse_quantity(channel.reference_length, "length")
+    return channel.sign * factor * channel.factor, shift
+
+
+def _seconds(values: Floats, unit: str) -> Floats:
+    factor, _ = (1.0, 0.0) if unit == CLOCK else scale_to_si(unit, "time")
+    return values if factor == 1 else factor * values
+
+
+def _shared_time(log: RawLog, layout: Layout) -> Floats | None:
+    if "time" in layout.channels:
+        channel = layout.channels["time"]
+        return _seconds(log.columns["time"], channel.unit)
+    if layout.sample_interval is None:
+        return None
+    step = parse_quantity(layout.sample_interval, "time")
+    if step <= 0:
+        raise SettingsError(
+            "sample_interval is not positive", found=layout.sample_interval, needed="above zero"
+        )
+    return step * np.arange(log.n_rows_read, dtype=np.float64)
+
+
+def _check_restart(piece: Piece) -> None:
+    """Refuse a log in which time starts again: a slip of the clock is short or small."""
+    time = piece.time
+    # a fall is looked at in whole only where there is one
+    if not time.size or not np.any(time[1:] < time[:-1]):
+        return
+    for last in np.flatnonzero(time[1:] < time[:-1]):
+        first, top = np.nanmin(time[: last + 1]), np.nanmax(time[: last + 1])
+        after = time[last + 1 : last + 2 + _RESTART_SAMPLES]
+        falls = top - after[0] > (top - first) / 2
+        if falls and after.size > _RESTART_SAMPLES and np.all(np.diff(after) > 0):
+            raise DataError(
+                "the log has two time bases: time starts again",
+                found=f"{after[0]:g} s after {time[last]:g} s at {piece.row_of(int(last) + 1)}",
+                needed="one time that goes on",
+                hint="Split the log, and give each part a test of its own.",
+            )

@@ -1,0 +1,257 @@
+"""What is known against a sample: masks of one series, found in few passes.
+
+Everything here takes and returns arrays; a mask is True where a sample is flagged.  A
+clean record costs little more than reading it once: each test first asks a cheap
+question that clean data answers with no.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from reduction.record import Bools, Floats, Integers, Quality, Record
+
+__all__ = [
+    "RowAccount",
+    "Timing",
+    "account_rows",
+    "find_missing",
+    "find_outside_range",
+    "find_spikes",
+    "noise_of",
+    "time_faults",
+]
+
+_BLOCK = 1 << 16  # samples that stay in the cache
+_WINDOWS, _WINDOW = 64, 1024
+_NEIGHBOURS = 4
+_SPIKE_TO_NEIGHBOURS = 3.0
+_MAD_TO_SIGMA = 1.4826
+_SECOND_DIFFERENCE = np.sqrt(6.0)  # sd of x[i-1] - 2 x[i] + x[i+1] over that of x
+_STEP = np.sqrt(12.0)  # one step of a quantised value over its standard deviation
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Faults of a time axis.
+
+    Parameters
+    ----------
+    step : float
+        Median time step. [s]
+    gap, backward : ndarray of bool, shape (n_samples,)
+        First sample after a gap; samples not later than one before them.
+    n_uneven : int
+        Steps, gaps apart, that differ from the median by more than the tolerance.
+    shortest, longest : float
+        Of the steps that are neither gaps nor backward. [s]
+    """
+
+    step: float
+    gap: Bools
+    backward: Bools
+    n_uneven: int
+    shortest: float
+    longest: float
+
+
+@dataclass(frozen=True)
+class RowAccount:
+    """Every row of a record accounted for.
+
+    Parameters
+    ----------
+    n_read, n_kept : int
+        Rows in the files, rows in the record.
+    n_flagged : dict of str to dict of str to int
+        By channel (``crosshead_position``, ``tension of NAME``) and mask; masks that
+        flag nothing are left out.
+    """
+
+    n_read: int
+    n_kept: int
+    n_flagged: dict[str, dict[str, int]]
+
+
+def account_rows(record: Record) -> RowAccount:
+    """Rows read, kept, and flagged by mask and channel."""
+    channels = {"crosshead_position": record.crosshead_position_quality_flag}
+    for name, flags in zip(record.specimens, record.quality_flag, strict=True):
+        channels[f"tension of {name}"] = flags
+    n_flagged = {}
+    for channel, flags in channels.items():
+        values, counts = np.unique(flags[flags != 0], return_counts=True)
+        n_flagged[channel] = {
+            mask.name.lower(): int(counts[(values & mask) != 0].sum())
+            for mask in Quality
+            if mask.name is not None and np.any(values & mask)
+        }
+    return RowAccount(record.n_rows_read, record.n_samples, n_flagged)
+
+
+def _blocks(n_samples: int, overlap: int) -> Iterator[slice]:
+    """Slices that cover a series, each with ``overlap`` samples of the next one."""
+    for start in range(0, n_samples, _BLOCK):
+        yield slice(start, min(start + _BLOCK + overlap, n_samples))
+
+
+def find_missing(values: Floats) -> Bools:
+    """Where a value is NaN, shape (n_samples,)."""
+    if np.isfinite(values.sum()):
+        return np.zeros(values.size, dtype=bool)
+    return np.isnan(values)
+
+
+def find_outside_range(values: Floats, low: float, high: float) -> Bools:
+    """Where a value lies outside the range a load cell is verified for, shape (n_samples,)."""
+    if values.min() >= low and values.max() <= high:
+        return np.zeros(values.size, dtype=bool)
+    return (values < low) | (values > high)
+
+
+def _sampled(values: Floats) -> Floats:
+    """Windows spread evenly over a series, one a row; a short series is one window."""
+    if values.size <= _WINDOWS * _WINDOW:
+        return values[np.newaxis]
+    starts = np.linspace(0, values.size - _WINDOW, _WINDOWS).astype(np.int64)
+    windows: Floats = values[starts[:, np.newaxis] + np.arange(_WINDOW)]
+    return windows
+
+
+def time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> Timing:
+    """Gaps, backward or repeated time, and steps that differ from the median.
+
+    A gap is a step ``gap_factor`` times as long as the median of the record and of the
+    steps around it, so that a slow part of a log is not a row of gaps.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time; NaN where missing. [s]
+    gap_factor : float
+        As in `reduction.settings.QualitySettings`. [1]
+    rate_tolerance : float
+        Likewise. [1]
+
+    Returns
+    -------
+    timing : Timing
+        Masks and steps.
+    """
+    n_samples = time.size
+    gap = np.zeros(n_samples, dtype=bool)
+    backward = np.zeros(n_samples, dtype=bool)
+    steps = np.diff(_sampled(time), axis=1).ravel()
+    steps = steps[steps > 0]
+    if not steps.size:
+        backward[1:] = True
+        return Timing(np.nan, gap, backward, 0, np.nan, np.nan)
+    step = float(np.median(steps))
+    low, high = (1 - rate_tolerance) * step, (1 + rate_tolerance) * step
+    latest, n_uneven, shortest, longest = -np.inf, 0, np.inf, -np.inf
+    for part in _blocks(n_samples, 1):
+        piece = time[part]
+        step_here = np.diff(piece)
+        least, most = (step_here.min(), step_here.max()) if step_here.size else (step, step)
+        if low <= least and most <= high and piece[0] >= latest:  # the usual case; False on NaN
+            latest = piece[-1]
+            shortest, longest = min(shortest, least), max(longest, most)
+            continue
+        reached = np.fmax.accumulate(np.concatenate([[latest], piece]))
+        late = piece[1:] <= reached[1:-1]
+        backward[part][1:] = late
+        latest = reached[-1]
+        long = np.flatnonzero(step_here > gap_factor * step) + part.start
+        gap[1 + long[_stands_out(time, long, gap_factor)]] = True
+        usual = step_here[(step_here > 0) & ~gap[part][1:]]
+        if usual.size:
+            n_uneven += int(np.count_nonzero((usual < low) | (usual > high)))
+            shortest, longest = min(shortest, usual.min()), max(longest, usual.max())
+    return Timing(step, gap, backward, n_uneven, float(shortest), float(longest))
+
+
+def _stands_out(time: Floats, place: Integers, factor: float) -> Bools:
+    """Steps that are long beside the median of the steps around them."""
+    around = np.concatenate([np.arange(-_NEIGHBOURS, 0), np.arange(1, _NEIGHBOURS + 1)])
+    # a step at the edge is compared with those on its one side
+    near = np.clip(place[:, np.newaxis] + around, 0, time.size - 2)
+    steps = np.where(near == place[:, np.newaxis], np.nan, time[near + 1] - time[near])
+    is_known = np.isfinite(steps).any(axis=1)
+    usual = np.full(place.size, -np.inf)
+    usual[is_known] = np.nanmedian(steps[is_known], axis=1)
+    return time[place + 1] - time[place] > factor * usual
+
+
+def noise_of(values: Floats) -> tuple[float, float]:
+    """Standard deviation of a series about its own course, and the step it is printed in.
+
+    From second differences in windows over the series (median absolute deviation), so
+    that ramps, reversals and holds do not count; never below what the step makes.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A channel. [any]
+
+    Returns
+    -------
+    noise : float
+        Standard deviation of one sample. [as values]
+    step : float
+        Smallest change between neighbours; 0 for a constant series. [as values]
+    """
+    windows = _sampled(values)
+    changes = np.abs(np.diff(windows, axis=1))
+    changes = changes[changes > 0]
+    step = float(changes.min()) if changes.size else 0.0
+    second = np.abs(np.diff(windows, n=2, axis=1))
+    second = second[np.isfinite(second)]
+    spread = float(np.median(second)) if second.size else 0.0
+    return max(_MAD_TO_SIGMA * spread / _SECOND_DIFFERENCE, step / _STEP), step
+
+
+def find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
+    """Single samples far off both neighbours, on the same side.
+
+    The sample is off by ``factor`` times the noise and by three times every step
+    nearby, so that a reversal, the start of a ramp and a step are none.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A channel. [any]
+    noise : float
+        From `noise_of`. [as values]
+    factor : float
+        ``spike_factor`` of the settings. [1]
+
+    Returns
+    -------
+    is_spike : ndarray of bool, shape (n_samples,)
+        True at the sample that is off.
+    """
+    is_spike = np.zeros(values.size, dtype=bool)
+    limit = factor * noise
+    if limit <= 0:
+        return is_spike
+    for part in _blocks(values.size, 2):
+        step = np.diff(values[part])
+        product = step[:-1] * step[1:]
+        place = np.flatnonzero(product < -(limit**2)) + 1 + part.start
+        if not place.size:
+            continue
+        before, here, after = values[place - 1], values[place], values[place + 1]
+        off = np.minimum(np.abs(here - before), np.abs(here - after))
+        last = values.size - 1
+        nearby = np.fmax(
+            np.abs(after - before),
+            np.fmax(
+                np.abs(before - values[np.maximum(place - 2, 0)]),
+                np.abs(values[np.minimum(place + 2, last)] - after),
+            ),
+        )
+        is_spike[place[(off > limit) & (off > _SPIKE_TO_NEIGHBOURS * nearby)]] = True
+    return is_spike
