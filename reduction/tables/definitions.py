@@ -315,6 +315,33 @@ TABLES = (
         _with_its_one_specimen,
         is_stepwise=True,
     ),
+    Table(
+        "specimens",
+        ("specimen",),
+        (
+            "specimen_kind",
+            "specimen_material",
+            "specimen_condition",
+            "diameter",
+            "area",
+            "rated_break_strength",
+            "rated_break_strength_source",
+            "declared_gauge_length",
+        ),
+        ("specimen_kind",),
+    ),
+    Table(
+        "standstills",
+        ("standstill", "specimen"),
+        (
+            "standstill_start_time",
+            "standstill_end_time",
+            "standstill_position",
+            "standstill_tension",
+            "standstill_is_rest",
+        ),
+        ("standstill_start_time",),
+    ),
     Table("notes", ("note",), ("note_stage",), ("note",)),
     Table(
         "rows",

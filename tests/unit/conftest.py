@@ -106,7 +106,9 @@ def make_loops(rng, n_specimens):
     names = [item.name for item in fields(Loops) if item.name != "uncertainty"]
     values = {name: array(rng, n_specimens, N_CYCLES) for name in names}
     uncertain = [name for name in names if name != "cycle_start_time"]
-    return Loops(**values, uncertainty={name: array(rng, n_specimens, N_CYCLES) for name in uncertain})
+    return Loops(
+        **values, uncertainty={name: array(rng, n_specimens, N_CYCLES) for name in uncertain}
+    )
 
 
 def make_curves(rng, n_specimens):
@@ -133,11 +135,7 @@ def make_curves(rng, n_specimens):
 
 
 def make_hold(rng, specimen, kind="relaxation", n_terms=2):
-    numbers = {
-        item.name: float(array(rng))
-        for item in fields(HoldResult)
-        if item.type == "float"
-    }
+    numbers = {item.name: float(array(rng)) for item in fields(HoldResult) if item.type == "float"}
     return HoldResult(
         specimen=specimen,
         kind=kind,
@@ -250,7 +248,7 @@ def make_specimens():
     return new, Specimen("used", diameter=(0.0239,), condition="used")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def rich_test():
     """Every part filled, two specimens."""
     rng = np.random.default_rng(20051210)
@@ -273,7 +271,10 @@ def rich_test():
         settings_json='{"cycles": {"band": null}}',
         notes=("=1+1 looks like a formula", "the last cycle is broken"),
         history=History(
-            (("T-0", "T-00"), ()), np.array([1.2, np.nan]), np.array([400.0, np.nan]), np.array([20.0, 0.0])
+            (("T-0", "T-00"), ()),
+            np.array([1.2, np.nan]),
+            np.array([400.0, np.nan]),
+            np.array([20.0, 0.0]),
         ),
         standstills=Standstills(
             first=np.array([0, 30]),
@@ -294,7 +295,9 @@ def rich_test():
         curves=make_curves(rng, 2),
         first_loading=make_curves(rng, 2),
         segments=Segments(**segments, criterion="corrected Akaike"),
-        identity=CycleIdentity(array(rng, *per_cycle), array(rng, *per_cycle), array(rng, *per_cycle)),
+        identity=CycleIdentity(
+            array(rng, *per_cycle), array(rng, *per_cycle), array(rng, *per_cycle)
+        ),
         amplitude=AmplitudeSummary(
             **{name: array(rng, 2) for name in of_test},
             uncertainty={name: array(rng, 2) for name in of_test},
@@ -303,14 +306,18 @@ def rich_test():
         slips=make_slips(rng),
         ratio=make_ratio(rng),
         elastomers=make_elastomers("new"),
-        holds=(make_hold(rng, "new"), make_hold(rng, "used", n_terms=0), make_hold(rng, "new", "creep")),
+        holds=(
+            make_hold(rng, "new"),
+            make_hold(rng, "used", n_terms=0),
+            make_hold(rng, "new", "creep"),
+        ),
         stress_at_strain=array(rng, 2, 2),
         stress_at_strain_levels=(1.0, 0.5),
         permanent_set=np.array([0.02, np.nan]),
     )
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def holds_only_test():
     """A relaxation test of one specimen without a diameter."""
     rng = np.random.default_rng(7)
@@ -326,7 +333,7 @@ def holds_only_test():
     )
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def bare_test():
     """A log of which nothing could be made, with few attributes and no slip found."""
     rng = np.random.default_rng(8)
@@ -352,7 +359,7 @@ def bare_test():
     )
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def stepwise_test():
     """Weights hung one after another; no log."""
     rng = np.random.default_rng(9)
@@ -393,13 +400,26 @@ def any_test(request):
     return request.getfixturevalue(request.param)
 
 
+def write_to(folder, test):
+    """Write a reduced test as an archive and give its path."""
+    path = folder / f"{test.description.test_id}.nc"
+    write_archive(to_dataset(test, version="1.2.3", command="reduction run"), path)
+    return path
+
+
+@pytest.fixture(scope="session")
+def archives(rich_test, holds_only_test, bare_test, stepwise_test, tmp_path_factory):
+    """One archive of each kind, for tests that leave them as they are."""
+    folder = tmp_path_factory.mktemp("archives")
+    tests = (bare_test, holds_only_test, stepwise_test, rich_test)
+    return [write_to(folder, test) for test in tests]
+
+
 @pytest.fixture
 def write(tmp_path):
     """Write a reduced test as an archive and give its path."""
 
     def write_test(test):
-        path = tmp_path / f"{test.description.test_id}.nc"
-        write_archive(to_dataset(test, version="1.2.3", command="reduction run"), path)
-        return path
+        return write_to(tmp_path, test)
 
     return write_test

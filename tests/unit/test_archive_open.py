@@ -1,0 +1,37 @@
+"""Only an archive of this schema is opened."""
+
+import netCDF4
+import pytest
+
+from reduction.archive.open import open_archive
+from reduction.errors import ArchiveError
+
+
+def test_text_and_elapsed_time_come_back_decoded(rich_test, write):
+    with open_archive(write(rich_test)) as archive:
+        assert archive["specimen"].values.tolist() == ["new", "used"]
+        assert archive["strain_method"].values.tolist() == ["tension-driven"] * 2
+        assert archive["time"].values[1] == 0.1
+        assert archive["rated_break_strength_source"].values.tolist() == ["maker", ""]
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(ArchiveError, match=r"there is no archive .*T-9.nc"):
+        open_archive(tmp_path / "T-9.nc")
+
+
+def test_a_file_that_is_not_netcdf_is_refused(tmp_path):
+    path = tmp_path / "T-1.nc"
+    path.write_text("time,tension\n0,1\n")
+    with pytest.raises(ArchiveError, match=r"is not a netCDF file; found .*; needed an archive"):
+        open_archive(path)
+
+
+@pytest.mark.parametrize(("version", "found"), [(None, "none"), ("0", "version 0")])
+def test_another_schema_is_refused(tmp_path, version, found):
+    path = tmp_path / "T-1.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        if version is not None:
+            file.schema_version = version
+    with pytest.raises(ArchiveError, match=rf"has another schema; found {found}; needed version 1"):
+        open_archive(path)

@@ -1,0 +1,95 @@
+"""Archives appear whole or not at all, follow CF, and are the same bytes each time."""
+
+import hashlib
+import os
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from reduction.archive.dataset import to_dataset
+from reduction.archive.write import write_archive, write_whole
+from reduction.errors import ArchiveError
+
+AGAIN = """
+import pickle, sys
+from pathlib import Path
+from reduction.archive.dataset import to_dataset
+from reduction.archive.write import write_archive
+test = pickle.loads(Path(sys.argv[1]).read_bytes())
+write_archive(to_dataset(test, version="1.2.3", command="reduction run"), Path(sys.argv[2]))
+"""
+
+
+def test_the_outside_checker_finds_nothing_in_any_kind_of_product(archives):
+    checker = Path(__file__).parents[1] / "compliance.py"
+    command = [sys.executable, checker, *archives]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603
+    assert done.returncode == 0, done.stdout
+    assert done.stdout.count("All tests passed!") == 4
+
+
+def test_another_process_writes_the_same_bytes(rich_test, archives, tmp_path):
+    first = archives[-1].read_bytes()
+    stored = tmp_path / "test.pickle"
+    stored.write_bytes(pickle.dumps(rich_test))
+    again = tmp_path / "again.nc"
+    subprocess.run(  # noqa: S603
+        [sys.executable, "-c", AGAIN, stored, again],
+        check=True,
+        env={**os.environ, "PYTHONHASHSEED": "4711"},
+    )
+    assert hashlib.sha256(again.read_bytes()).digest() == hashlib.sha256(first).digest()
+
+
+def test_nothing_is_left_beside_the_archive(rich_test, write):
+    path = write(rich_test)
+    assert [entry.name for entry in path.parent.iterdir()] == ["T-1.nc"]
+
+
+def test_a_faulty_dataset_is_refused_and_the_file_before_is_kept(bare_test, write):
+    path = write(bare_test)
+    before = path.read_bytes()
+    dataset = to_dataset(bare_test, version="1.2.3", command="reduction run")
+    del dataset["tension"].attrs["units"]
+    with pytest.raises(ArchiveError, match=r"bare.nc does not follow CF .* tension has no units"):
+        write_archive(dataset, path)
+    assert path.read_bytes() == before
+    assert [entry.name for entry in path.parent.iterdir()] == ["bare.nc"]
+
+
+def test_a_disk_that_refuses_is_an_archive_error(bare_test, tmp_path):
+    (tmp_path / "file").write_text("not a folder")
+    dataset = to_dataset(bare_test, version="1.2.3", command="reduction run")
+    with pytest.raises(ArchiveError, match=r"bare.nc cannot be written; found .* is kept"):
+        write_archive(dataset, tmp_path / "file" / "bare.nc")
+
+
+def test_a_full_disk_is_an_archive_error_and_the_file_before_is_kept(bare_test, write, monkeypatch):
+    path = write(bare_test)
+    before = path.read_bytes()
+    dataset = to_dataset(bare_test, version="1.2.3", command="reduction run")
+
+    def full(self, part, **_):
+        Path(part).write_bytes(b"half")
+        raise RuntimeError("NetCDF: HDF error")
+
+    monkeypatch.setattr(type(dataset), "to_netcdf", full)
+    with pytest.raises(ArchiveError, match=r"bare.nc cannot be written; found NetCDF: HDF error"):
+        write_archive(dataset, path)
+    assert path.read_bytes() == before
+    assert [entry.name for entry in path.parent.iterdir()] == ["bare.nc"]
+
+
+def test_a_text_is_written_as_it_is(tmp_path):
+    path = tmp_path / "new folder" / "a.csv"
+    write_whole(path, "größe\r\n1\r\n")
+    assert path.read_bytes() == "größe\r\n1\r\n".encode()
+
+
+def test_a_text_that_cannot_be_written_is_an_archive_error(tmp_path):
+    (tmp_path / "file").write_text("not a folder")
+    with pytest.raises(ArchiveError, match=r"a.csv cannot be written"):
+        write_whole(tmp_path / "file" / "a.csv", "1")

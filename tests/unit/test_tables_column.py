@@ -1,0 +1,66 @@
+"""Cells and headers of the tables."""
+
+import numpy as np
+import pytest
+
+from reduction.archive.schema import SCHEMA
+from reduction.archive.variable import label
+from reduction.tables.column import Column, cells_of, csv_text, uncertainty_of
+
+
+def test_a_real_has_its_unit_in_the_header_and_a_label_or_count_has_none():
+    assert Column("segment_modulus", SCHEMA["segment_modulus"]).header == "segment_modulus [Pa]"
+    assert Column("segment", SCHEMA["segment"]).header == "segment"
+    assert Column("strain_method", SCHEMA["strain_method"]).header == "strain_method"
+
+
+def test_a_measured_column_is_followed_by_its_uncertainty():
+    column = uncertainty_of(Column("segment_modulus", SCHEMA["segment_modulus"]))
+    assert column.header == "segment_modulus_standard_uncertainty [Pa]"
+
+
+def test_a_number_comes_back_from_its_digits_exactly():
+    numbers = [0.1, 1 / 3, 1e-300, 123456789.123456789, -0.0]
+    text = csv_text(["x [1]"], [[cell] for cell in numbers])
+    assert [float(line) for line in text.split("\r\n")[1:-1]] == numbers
+
+
+def test_what_is_not_known_is_an_empty_cell():
+    cells = cells_of(np.array([1.5, np.nan]), SCHEMA["tension"])
+    assert csv_text(["a", "b"], [cells]) == "a,b\r\n1.5,\r\n"
+
+
+def test_a_count_is_written_without_a_point():
+    cells = cells_of(np.array([3], dtype=np.int32), SCHEMA["cycle"])
+    assert csv_text(["cycle"], [cells]) == "cycle\r\n3\r\n"
+
+
+def test_flags_are_written_in_words():
+    assert cells_of(np.array([1, 2, 7]), SCHEMA["branch"]) == ["ascending", "descending", "7"]
+    assert cells_of(np.array([0, 33]), SCHEMA["quality_flag"]) == ["", "missing spike"]
+
+
+@pytest.mark.parametrize("start", ["=", "+", "-", "@", "\t", "\r"])
+def test_text_that_a_spreadsheet_would_run_is_escaped(start):
+    text = csv_text(["note"], [[f"{start}cmd"], ["plain = text"]])
+    assert f"'{start}cmd" in text
+    assert "plain = text" in text
+    assert "'plain" not in text
+
+
+def test_a_negative_number_is_not_taken_for_a_formula():
+    assert csv_text(["x"], [[-1.5]]) == "x\r\n-1.5\r\n"
+
+
+def test_text_with_commas_quotes_and_line_ends_is_quoted():
+    assert csv_text(["note"], [['a "b", c\nd']]) == 'note\r\n"a ""b"", c\nd"\r\n'
+
+
+def test_a_label_says_why_it_has_no_uncertainty():
+    assert Column("test", label("test")[0]).description == ["test", "", "test", "label"]
+    assert Column("segment_modulus", SCHEMA["segment_modulus"]).description == [
+        "segment_modulus [Pa]",
+        "Pa",
+        "slope of a piecewise-linear segment",
+        "",
+    ]
