@@ -1,0 +1,143 @@
+"""Unit tests of reduction.moduli.stepwise; the numbers of a real test are in tests/golden."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.moduli.stepwise import reduce_stepwise
+from reduction.record import StepReadings
+
+AREA, GAUGE, MODULUS = 5e-4, 0.15, 8e5
+WEIGHTS = np.array([100.0, 200.0, 300.0, 400.0, 300.0, 200.0])
+
+
+def readings(weights=WEIGHTS, *, strain=None, printed=True, uncertainty=0.0005, **more):
+    weights = np.asarray(weights, dtype=float)
+    strain = weights / AREA / MODULUS if strain is None else np.asarray(strain)
+    return StepReadings(
+        clock=tuple(f"{900 + 10 * i:04d}" for i in range(weights.size)),
+        time=600.0 * np.arange(weights.size),
+        tension=weights,
+        length=GAUGE * (1 + strain),
+        eye_to_eye_length=np.full(weights.size, np.nan),
+        printed_strain=strain if printed else np.full(weights.size, np.nan),
+        length_standard_uncertainty=uncertainty,
+        **more,
+    )
+
+
+def test_a_linear_elastic_sample_gives_its_modulus_everywhere_but_at_the_turn():
+    result = reduce_stepwise(readings(), area=AREA)
+    expected = [MODULUS, MODULUS, MODULUS, np.nan, MODULUS]
+    np.testing.assert_allclose(result.interval_modulus, expected, rtol=1e-9)
+    np.testing.assert_allclose(result.secant_modulus, MODULUS, rtol=1e-9)
+    assert result.interval_branch.tolist() == [1, 1, 1, 0, 2]
+
+
+def test_uncertainty_is_that_of_reading_the_tape_at_both_ends():
+    result = reduce_stepwise(readings(), area=AREA)
+    step = 100.0 / AREA / MODULUS
+    relative = np.sqrt(2) * 0.0005 / GAUGE / step
+    assert result.interval_modulus_standard_uncertainty[0] == pytest.approx(MODULUS * relative)
+
+
+def test_uncertainty_of_the_weights_adds_to_it():
+    alone = reduce_stepwise(readings(), area=AREA)
+    both = reduce_stepwise(readings(tension_standard_uncertainty=2.0), area=AREA)
+    added = np.sqrt(2) * 2.0 / AREA / (100.0 / AREA / MODULUS)
+    expected = np.hypot(alone.interval_modulus_standard_uncertainty, added)
+    np.testing.assert_allclose(both.interval_modulus_standard_uncertainty, expected)
+
+
+def test_an_unstated_reading_uncertainty_is_the_scatter_and_a_note_says_so():
+    log = readings(uncertainty=float("nan"))
+    miss = 0.0006 * np.array([1, -1, 1, -1, 1, -1])
+    scattered = StepReadings(
+        log.clock, log.time, log.tension, log.length + miss, log.eye_to_eye_length,
+        log.printed_strain,
+    )  # fmt: skip
+    result = reduce_stepwise(scattered, area=AREA)
+    assert any("the uncertainty of a length is not stated" in note for note in result.notes)
+    assert any("0.60 mm, is taken for it" in note for note in result.notes)
+
+
+def test_creep_at_one_weight_is_flagged_and_gives_no_modulus():
+    result = reduce_stepwise(
+        readings([100, 200, 200, 300], strain=[0.25, 0.50, 0.53, 0.75]), area=AREA
+    )
+    assert result.is_creep.tolist() == [False, False, True, False]
+    assert np.isnan(result.interval_modulus).tolist() == [False, True, False]
+    assert (
+        "0920: in 10 min the weight changed by +0.0 N and the length by +4.5 mm" in result.notes[1]
+    )
+
+
+def test_a_length_that_shrinks_under_more_weight_gives_no_modulus():
+    result = reduce_stepwise(readings([100, 200, 300], strain=[0.25, 0.50, 0.49]), area=AREA)
+    assert result.is_creep.tolist() == [False, False, True]
+    assert np.isnan(result.interval_modulus[1])
+
+
+def test_a_repeated_reading_is_neither_creep_nor_slope():
+    result = reduce_stepwise(readings([100, 200, 200], strain=[0.25, 0.5, 0.5]), area=AREA)
+    assert not result.is_creep.any()
+    assert np.isnan(result.interval_modulus[1])
+
+
+def test_a_misread_length_is_kept_with_its_flag():
+    strain = WEIGHTS / AREA / MODULUS
+    log = readings()
+    length = log.length.copy()
+    length[2] += 0.02
+    misread = StepReadings(
+        log.clock, log.time, log.tension, length, log.eye_to_eye_length, log.printed_strain
+    )
+    result = reduce_stepwise(misread, area=AREA)
+    assert result.is_inconsistent.tolist() == [False, False, True, False, False, False]
+    assert result.strain[2] == pytest.approx(strain[2] + 0.02 / GAUGE)
+    assert np.isnan(result.interval_modulus[1:3]).all()
+    assert np.isnan(result.secant_modulus[2])
+    (note,) = [text for text in result.notes if text.startswith("0920")]
+    assert "would agree, and the intervals beside it would be 0.80 and 0.80 MPa" in note
+
+
+@pytest.mark.parametrize(("eye_follows", "word"), [("length", "length"), ("strain", "elongation")])
+def test_the_eye_to_eye_length_says_which_of_two_readings_to_doubt(eye_follows, word):
+    log = readings()
+    length = log.length.copy()
+    length[2] += 0.02
+    eye = 1.0 + 6 * (length if eye_follows == "length" else log.length)
+    result = reduce_stepwise(
+        StepReadings(log.clock, log.time, log.tension, length, eye, log.printed_strain), area=AREA
+    )
+    assert any(f"speaks for the {word})" in note for note in result.notes)
+
+
+def test_without_recorded_elongations_the_stated_gauge_length_is_used():
+    result = reduce_stepwise(readings(printed=False), area=AREA, stated_gauge_length=GAUGE)
+    assert result.gauge_length == GAUGE
+    assert np.isnan(result.gauge_length_standard_uncertainty)
+    np.testing.assert_allclose(result.interval_modulus[:3], MODULUS)
+
+
+def test_neither_elongation_nor_gauge_length_is_refused():
+    with pytest.raises(DataError, match="no reading has a recorded elongation"):
+        reduce_stepwise(readings(printed=False), area=AREA)
+
+
+def test_one_step_is_refused():
+    with pytest.raises(DataError, match="a stepwise test needs two steps; found 1"):
+        reduce_stepwise(readings([100.0]), area=AREA)
+
+
+def test_no_area_is_refused():
+    with pytest.raises(DataError, match="area are not positive"):
+        reduce_stepwise(readings(), area=0.0)
+
+
+def test_the_assumed_diameter_is_named():
+    assert "a round section of 25.23 mm" in reduce_stepwise(readings(), area=AREA).notes[-1]
+
+
+def test_notes_of_the_log_come_first():
+    assert reduce_stepwise(readings(notes=("typed",)), area=AREA).notes[0] == "typed"
