@@ -205,6 +205,7 @@ def _parse(
             strings_can_be_null=False,
             decimal_point=layout.decimal,
         ),
+        memory_pool=pa.system_memory_pool(),  # the others clear huge pages, which is slow
     )
 
 
