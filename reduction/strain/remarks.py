@@ -37,7 +37,7 @@ def _rms(residual: Floats) -> float:
 
 def _high_or_low(ratio: float) -> str:
     change = 1 / ratio - 1
-    return f"{abs(change):.1%} {'high' if change > 0 else 'low'}"
+    return f"{100 * abs(change):.1f} % {'high' if change > 0 else 'low'}"
 
 
 def _on_constant_fraction(model: StrainModel, is_stretched: Bools) -> tuple[str, ...]:
@@ -103,7 +103,7 @@ def _on_slack(marks: SpliceMarks) -> tuple[str, ...]:
     growth = trend.slope * (length.size - 1)
     return (
         f"{marks.specimen}: the slack length grows by {1e3 * growth:.0f} mm "
-        f"({growth / length[0]:.1%}) from the first test to the last (permanent set, or a splice "
+        f"({100 * growth / length[0]:.1f} %) from the first test to the last (permanent set, or a splice "
         "let out); strain counts from the mean slack length",
     )
 
@@ -169,7 +169,7 @@ def remarks_on(
     >>> marks = SpliceMarks("new", ("T-1",), ("min",), np.array([0.7]), np.array([5.2]),
     ...                     np.array([5.9]))
     >>> print(remarks_on(model, marks, "T-1")[0][24:])
-    the method of WHOI-2005-10, would read moduli over these marks 14.5% high against marks
+    the method of WHOI-2005-10, would read moduli over these marks 14.5 % high against marks
     """
     is_stretched = np.array([hold != "slack" for hold in model.mark_hold], dtype=bool)
     notes: tuple[str, ...] = ()

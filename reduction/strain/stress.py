@@ -206,5 +206,5 @@ def check_constant_volume(specimen: Specimen) -> tuple[str, ...]:
         f"{specimen.name}: the stretched diameters imply {1e3 * mean:.2f} mm before stretch at "
         f"constant volume, {1e3 * stated:.2f} mm is stated, and reading scatter explains no more "
         f"than {1e3 * allowed:.2f} mm; with the implied diameter every modulus and stress of this "
-        f"specimen would be {abs(change):.1%} {'lower' if change < 0 else 'higher'}",
+        f"specimen would be {100 * abs(change):.1f} % {'lower' if change < 0 else 'higher'}",
     )

@@ -42,7 +42,7 @@ def test_a_fit_without_fault_says_nothing():
 
 
 @pytest.mark.parametrize(
-    ("ratio", "text"), [(0.873, "14.5% high"), (1.05, "4.8% low"), (0.86, "16.3% high")]
+    ("ratio", "text"), [(0.873, "14.5 % high"), (1.05, "4.8 % low"), (0.86, "16.3 % high")]
 )
 def test_the_bias_of_the_report_s_method_is_named(ratio, text):
     (note,) = remarks_on(model(ratio=ratio), marks(), "T-1")
@@ -63,7 +63,7 @@ def test_constant_fraction_names_its_own_miss():
     )
     (note,) = remarks_on(legacy, marks(), "T-1")
     assert "misses its own marks by -3.5 to +3.5 points" in note
-    assert "moduli over them 16.7% high" in note
+    assert "moduli over them 16.7 % high" in note
 
 
 def test_constant_fraction_that_meets_its_marks_or_has_one_says_nothing():
@@ -88,7 +88,7 @@ def test_a_misread_mark_is_named_by_test_and_hold():
 def test_a_growing_slack_length_is_named_and_a_scattering_one_is_not():
     grown = marks(slack=(3.740, 3.751, 3.759, 3.771))
     (note,) = remarks_on(model(), grown, "T-1")
-    assert "the slack length grows by 30 mm (0.8%) from the first test to the last" in note
+    assert "the slack length grows by 30 mm (0.8 %) from the first test to the last" in note
     for slack in (
         (3.740, 3.752, 3.739, 3.750),  # scatter
         (3.771, 3.759, 3.751, 3.740),  # shrinks

@@ -71,9 +71,9 @@ def test_a_difference_within_reading_scatter_says_nothing():
 
 def test_a_difference_beyond_reading_scatter_says_what_it_does_to_moduli():
     thick = Specimen("a", diameter=(0.0264,), stretched_diameters=stretched(1.05, 0.001))
-    assert "9.3% lower" in check_constant_volume(thick)[0]  # 1 / 1.05**2 - 1
+    assert "9.3 % lower" in check_constant_volume(thick)[0]  # 1 / 1.05**2 - 1
     thin = Specimen("a", diameter=(0.0264,), stretched_diameters=stretched(0.95, 0.001))
-    assert "10.8% higher" in check_constant_volume(thin)[0]  # 1 / 0.95**2 - 1
+    assert "10.8 % higher" in check_constant_volume(thin)[0]  # 1 / 0.95**2 - 1
 
 
 def test_one_stretched_reading_has_no_scatter_to_judge_by():
