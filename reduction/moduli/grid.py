@@ -90,12 +90,25 @@ class StrainGrid:
         return cls(round(first * width, 12), width, n_bins, half_window, cycles_pooled)
 
 
-def _round_number(value: float) -> float:
+def round_number(value: float) -> float:
     """Nearest of 1, 2, 5 times a power of ten, by ratio."""
     power = floor(log10(value))
     steps = [m * 10.0**k for k in (power, power + 1) for m in (1, 2, 5)]
     nearest = min(steps, key=lambda step: abs(log10(step / value)))
     return float(f"{nearest:.1g}")
+
+
+def bins_each_side(window: float, width: float) -> int:
+    """Half of the smallest odd number of bins that covers the window, rounding errors aside."""
+    half_window = ceil((window / width - 1) / 2 - 1e-6)
+    if half_window < 1:
+        raise SettingsError(
+            "modulus.window is not wider than a bin",
+            found=f"{window:g} with bins of {width:g}",
+            needed=f"more than {width:g}",
+            hint="Leave modulus.strain_bin_width out, or make it smaller.",
+        )
+    return half_window
 
 
 def _sample_spacing(strain: Floats, cycles: Cycles, stroke: float) -> float:
@@ -195,7 +208,7 @@ def strain_grid(strain: ArrayLike, *, cycles: Cycles, settings: ModulusSettings)
         finest = stroke / _STROKE_SHARE
         if settings.window is not None and settings.window > 0:
             finest = min(finest, settings.window / 5)
-        width = _round_number(finest)
+        width = round_number(finest)
     if not width > 0:
         raise SettingsError("modulus.strain_bin_width is not positive", found=f"{width:g}")
 
@@ -204,15 +217,7 @@ def strain_grid(strain: ArrayLike, *, cycles: Cycles, settings: ModulusSettings)
     window = settings.window
     if window is None:
         window = max(5 * width, min(wanted, _WIDEST_WINDOW * stroke), 4 * spacing)
-    # the smallest odd number of bins that covers it, rounding errors aside
-    half_window = ceil((window / width - 1) / 2 - 1e-6)
-    if half_window < 1:
-        raise SettingsError(
-            "modulus.window is narrower than two bins",
-            found=f"{window:g} with bins of {width:g}",
-            needed=f"more than {width:g}",
-            hint="Leave modulus.strain_bin_width out, or make it smaller.",
-        )
+    half_window = bins_each_side(window, width)
     covered = (2 * half_window + 1) * width
     return StrainGrid.spanning(
         float(np.nanmin(ends)),

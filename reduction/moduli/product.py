@@ -100,8 +100,9 @@ class Segments:
 class CycleIdentity:
     """Closed-cycle identity, checked on every cycle; arrays (n_specimens, n_cycles).
 
-    Stroke-mean modulus ascending minus descending equals the tension lost over
-    the cycle, over area and strain stroke.
+    Stroke-mean modulus ascending minus descending is minus the tension lost over
+    the cycle, over area and strain stroke: what is lost was given back on the way down
+    and not taken up again.
     """
 
     stroke_mean_modulus_difference: Floats

@@ -1,0 +1,348 @@
+"""Ratio of two modulus curves on one strain axis, with the interval it lies in.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic
+   Modulus of Rubber Mooring Tethers and their Use in Coastal Moorings," Woods
+   Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+.. [2] JCGM 100, "Guide to the expression of uncertainty in measurement," 2008, G.4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.stats import t as student_t
+
+from reduction.errors import DataError
+from reduction.moduli.product import ModulusCurves, Ratio
+from reduction.moduli.stepwise import StepwiseResult
+from reduction.record import Floats
+
+__all__ = ["compare_curves", "compare_cycles", "compare_static", "curve_at"]
+
+_CONFIDENCE = 0.95
+_TYPE_A = (
+    "the interval holds what differs from cycle to cycle (type A); errors of area, calibration "
+    "and splice strain that the two do not share are not in it"
+)
+
+
+def curve_at(
+    strain: ArrayLike, strain_bin: ArrayLike, values: ArrayLike, *, spacing: float
+) -> Floats:
+    """Values of a curve between its bins, by straight lines; nothing is extrapolated.
+
+    Parameters
+    ----------
+    strain : array_like, shape (n,)
+        Where the curve is wanted. [1]
+    strain_bin : array_like, shape (n_bins,)
+        Bin centres, increasing. [1]
+    values : array_like, shape (n_bins,)
+        The curve, NaN where not supported. [SI]
+    spacing : float
+        Distance of neighbouring bins; a gap wider than half as much again is not
+        bridged. [1]
+
+    Returns
+    -------
+    at_strain : ndarray, shape (n,)
+        NaN outside the curve and in its gaps. [SI]
+
+    Raises
+    ------
+    DataError
+        If the curve does not have a value a bin.
+
+    Examples
+    --------
+    >>> nan = float("nan")
+    >>> print(curve_at([0.5, 1.5, 4.0], [0.0, 1.0, 2.0, 3.0], [1.0, 3.0, nan, 5.0], spacing=1.0))
+    [ 2. nan nan]
+    """
+    wanted = np.asarray(strain, dtype=np.float64)
+    bins, curve = (np.asarray(series, dtype=np.float64) for series in (strain_bin, values))
+    if bins.shape != curve.shape or bins.ndim != 1:
+        raise DataError(
+            "a curve needs a value a bin", found=f"{curve.shape}", needed=f"{bins.shape}"
+        )
+    known = np.isfinite(curve)
+    bins, curve = bins[known], curve[known]
+    if bins.size == 0:
+        return np.full(wanted.shape, np.nan)
+    close = 1e-6 * spacing  # two grids of one width differ by rounding
+    after = np.clip(np.searchsorted(bins, wanted - close), 0, bins.size - 1)
+    before = np.clip(np.searchsorted(bins, wanted + close, side="right") - 1, 0, None)
+    between = (
+        (bins[before] <= wanted + close)
+        & (bins[after] >= wanted - close)
+        & (bins[after] - bins[before] <= 1.5 * spacing)
+    )
+    return np.where(between, np.interp(wanted, bins, curve), np.nan)
+
+
+@dataclass(frozen=True)
+class _Side:
+    """Numerator or denominator on the common axis; arrays (2, n_bins)."""
+
+    name: str
+    modulus: Floats
+    uncertainty: Floats
+    freedom: Floats
+
+
+def _ratio(strain: Floats, above: _Side, below: _Side, *notes: str) -> Ratio:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = above.modulus / below.modulus
+        relative = [(side.uncertainty / side.modulus) ** 2 for side in (above, below)]
+        total = relative[0] + relative[1]
+        # Welch-Satterthwaite, [2]_ eq. G.2b
+        freedom = total**2 / (relative[0] ** 2 / above.freedom + relative[1] ** 2 / below.freedom)
+        uncertainty = np.abs(ratio) * np.sqrt(total)
+        reach = uncertainty * student_t.ppf((1 + _CONFIDENCE) / 2, np.where(total > 0, freedom, 1))
+    low, high = ratio - reach, ratio + reach
+    return Ratio(
+        numerator=above.name,
+        denominator=below.name,
+        strain_bin=strain,
+        ratio=ratio,
+        ratio_standard_uncertainty=uncertainty,
+        ratio_low=low,
+        ratio_high=high,
+        is_different=(low > 1) | (high < 1),
+        notes=(_TYPE_A, *notes),
+    )
+
+
+def _spacing(curves: ModulusCurves) -> float:
+    return float(np.ptp(curves.strain_bin_bounds[0]))
+
+
+def _side(curves: ModulusCurves, specimen: int, name: str, strain: Floats) -> _Side:
+    """Mean curve of one specimen at the strains of the axis."""
+    count = np.maximum(curves.tangent_modulus_count[specimen] - 1.0, 1.0)
+    series = (
+        curves.tangent_modulus[specimen],
+        curves.tangent_modulus_standard_uncertainty[specimen],
+        np.where(np.isfinite(curves.tangent_modulus[specimen]), count, np.nan),
+    )
+    spacing = _spacing(curves)
+    at = [
+        np.stack([curve_at(strain, curves.strain_bin, row, spacing=spacing) for row in values])
+        for values in series
+    ]
+    return _Side(name, *at)
+
+
+def compare_curves(
+    numerator: ModulusCurves,
+    denominator: ModulusCurves,
+    *,
+    numerator_specimen: int,
+    denominator_specimen: int,
+    numerator_name: str,
+    denominator_name: str,
+) -> Ratio:
+    r"""Ratio of the mean tangent moduli of two specimens, or of two tests.
+
+    Parameters
+    ----------
+    numerator, denominator : ModulusCurves
+        Of two tests, or twice of the one that holds both specimens. [SI]
+    numerator_specimen, denominator_specimen : int
+        Place of the specimen in its curves. [1]
+    numerator_name, denominator_name : str
+        What they are called.
+
+    Returns
+    -------
+    ratio : Ratio
+        On the coarser of the two grids, both branches, with its 95 % interval. [1]
+
+    Raises
+    ------
+    DataError
+        If the two have no strain in common.
+
+    Notes
+    -----
+    Printed source: sec. 4.6 of [1]_ compares new and used tethers at equal strain.
+
+    The interval is :math:`r \pm t_{95}(\nu)\,u(r)` with u from the type A uncertainty
+    of both, taken as independent, and :math:`\nu` after Welch and Satterthwaite ([2]_).
+    It is that of one strain: of a hundred bins of equal curves five stand out. Where one
+    of the two has no modulus the ratio is NaN and ``is_different`` False.
+
+    Examples
+    --------
+    Ten cycles each; 11 and 10 MPa, both known to 1 %.
+
+    >>> import numpy as np
+    >>> modulus = np.array([11e6, 10e6])[:, None, None] * np.ones((2, 2, 3))
+    >>> x = np.array([1.0, 1.1, 1.2])
+    >>> blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((2, 2, 3)))
+    >>> curves = ModulusCurves(**blank | {
+    ...     "strain_bin": x, "strain_bin_bounds": np.stack([x - 0.05, x + 0.05], axis=1),
+    ...     "tangent_modulus": modulus, "tangent_modulus_count": np.full((2, 2, 3), 10),
+    ...     "tangent_modulus_standard_uncertainty": 0.01 * modulus,
+    ... })
+    >>> ratio = compare_curves(
+    ...     curves, curves, numerator_specimen=0, denominator_specimen=1,
+    ...     numerator_name="new", denominator_name="used",
+    ... )
+    >>> print(ratio.ratio[0, 0].round(3), ratio.ratio_low[0, 0].round(3))
+    1.1 1.067
+    """
+    axis = max((numerator, denominator), key=_spacing).strain_bin
+    above = _side(numerator, numerator_specimen, numerator_name, axis)
+    below = _side(denominator, denominator_specimen, denominator_name, axis)
+    if not np.isfinite(above.modulus * below.modulus).any():
+        raise DataError(
+            f"'{numerator_name}' and '{denominator_name}' have no strain in common",
+            found=f"{_range(numerator, numerator_specimen)} and "
+            f"{_range(denominator, denominator_specimen)}",
+            needed="overlapping strains",
+        )
+    return _ratio(axis, above, below)
+
+
+def _range(curves: ModulusCurves, specimen: int) -> str:
+    known = curves.strain_bin[np.isfinite(curves.tangent_modulus[specimen]).any(axis=0)]
+    return f"{known[0]:g} to {known[-1]:g}" if known.size else "no modulus"
+
+
+def compare_cycles(
+    curves: ModulusCurves,
+    *,
+    specimen: int,
+    numerator_cycles: Sequence[int],
+    denominator_cycles: Sequence[int],
+) -> Ratio:
+    r"""Ratio of the mean curves of two sets of cycles, such as the last and the first.
+
+    Parameters
+    ----------
+    curves : ModulusCurves
+        With the curves of selected cycles. [SI]
+    specimen : int
+        Place of the specimen in the curves. [1]
+    numerator_cycles, denominator_cycles : sequence of int
+        Cycle numbers, all among ``selected_cycle``. [1]
+
+    Returns
+    -------
+    ratio : Ratio
+        On the grid of the curves, both branches, with its 95 % interval. [1]
+
+    Raises
+    ------
+    DataError
+        If a set is empty or names a cycle whose curve was not kept.
+
+    Notes
+    -----
+    Printed source: sec. 4.7 of [1]_ sets the last cycles of the extended test beside the
+    first. The uncertainty of each mean is that of the regressions of its cycles (type A).
+
+    Examples
+    --------
+    A modulus that halves from cycle 1 to cycle 3.
+
+    >>> import numpy as np
+    >>> by_cycle = np.array([2.0, 1.5, 1.0])[None, :, None, None] * np.ones((1, 3, 2, 1))
+    >>> blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((1, 2, 1)))
+    >>> curves = ModulusCurves(**blank | {
+    ...     "selected_cycle": np.array([1, 2, 3]), "tangent_modulus_by_cycle": by_cycle,
+    ...     "tangent_modulus_by_cycle_standard_uncertainty": 0.01 * by_cycle,
+    ... })
+    >>> ratio = compare_cycles(
+    ...     curves, specimen=0, numerator_cycles=[3], denominator_cycles=[1]
+    ... )
+    >>> print(ratio.ratio[0], ratio.ratio_low[0].round(4), ratio.is_different[0])
+    [0.5] [0.4861] [ True]
+    """
+    sides = []
+    for chosen in (numerator_cycles, denominator_cycles):
+        kept = np.isin(curves.selected_cycle, chosen)
+        if len(chosen) == 0 or np.count_nonzero(kept) < len(set(chosen)):
+            raise DataError(
+                "a cycle to compare has no curve of its own",
+                found=", ".join(str(number) for number in chosen) or "no cycle",
+                needed="cycles among " + ", ".join(str(n) for n in curves.selected_cycle),
+            )
+        modulus = curves.tangent_modulus_by_cycle[specimen, kept].mean(axis=0)
+        variance = curves.tangent_modulus_by_cycle_standard_uncertainty[specimen, kept] ** 2
+        uncertainty = np.sqrt(variance.sum(axis=0)) / len(set(chosen))
+        name = "cycles " + ", ".join(str(number) for number in sorted(set(chosen)))
+        sides.append(_Side(name, modulus, uncertainty, np.full(modulus.shape, np.inf)))
+    above, below = sides
+    return _ratio(curves.strain_bin, above, below)
+
+
+def compare_static(stepwise: StepwiseResult, curves: ModulusCurves, *, specimen: int) -> Ratio:
+    r"""Ratio of the static modulus of a stepwise test to the dynamic one at equal strain.
+
+    Parameters
+    ----------
+    stepwise : StepwiseResult
+        Interval moduli of dead weights hung one after another. [SI]
+    curves : ModulusCurves
+        Of a cyclic test. [SI]
+    specimen : int
+        Place of the specimen in the curves. [1]
+
+    Returns
+    -------
+    ratio : Ratio
+        At the middles of the intervals, static over dynamic, branch by branch. [1]
+
+    Raises
+    ------
+    DataError
+        If no interval lies within the strains of the cyclic test.
+
+    Notes
+    -----
+    Printed source: Figure 35 of [1]_ lays T-2, T-4, T-5 and the static test over each
+    other. The two specimens there differ in more than the rate: the static one is
+    another piece of rubber, of a diameter that is not printed.
+
+    Examples
+    --------
+    A static slope of 5 MPa beside a dynamic one of 10 MPa at 100 % elongation.
+
+    >>> import numpy as np
+    >>> x, ten = np.array([0.9, 1.1]), np.full((1, 2, 2), 10e6)
+    >>> blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((1, 2, 2)))
+    >>> curves = ModulusCurves(**blank | {
+    ...     "strain_bin": x, "strain_bin_bounds": np.stack([x - 0.1, x + 0.1], axis=1),
+    ...     "tangent_modulus": ten, "tangent_modulus_standard_uncertainty": 0.01 * ten,
+    ... })
+    >>> none = dict.fromkeys(StepwiseResult.__dataclass_fields__, np.empty(0))
+    >>> static = StepwiseResult(**none | {
+    ...     "interval_strain": np.array([1.0]), "interval_modulus": np.array([5e6]),
+    ...     "interval_modulus_standard_uncertainty": np.array([1e5]),
+    ...     "interval_branch": np.array([1]),
+    ... })
+    >>> print(compare_static(static, curves, specimen=0).ratio)
+    [[0.5]
+     [nan]]
+    """
+    order = np.argsort(stepwise.interval_strain, kind="stable")
+    strain = stepwise.interval_strain[order]
+    on_branch = stepwise.interval_branch[order] == np.array([[1], [2]])
+    modulus = np.where(on_branch, stepwise.interval_modulus[order], np.nan)
+    uncertainty = np.where(on_branch, stepwise.interval_modulus_standard_uncertainty[order], np.nan)
+    static = _Side("static", modulus, uncertainty, np.full(modulus.shape, np.inf))
+    dynamic = _side(curves, specimen, "dynamic", strain)
+    if not np.isfinite(static.modulus * dynamic.modulus).any():
+        raise DataError(
+            "the stepwise and the cyclic test have no strain in common",
+            found=f"{strain[0]:g} to {strain[-1]:g} and {_range(curves, specimen)}",
+            needed="overlapping strains on a branch",
+        )
+    return _ratio(strain, static, dynamic)

@@ -1,0 +1,230 @@
+"""Tangent modulus on the first rise of a record to its greatest strain.
+
+Rubber is stiffer the first time it is stretched, and again after a hold; neither
+belongs in a mean over cycles.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic
+   Modulus of Rubber Mooring Tethers and their Use in Coastal Moorings," Woods
+   Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+.. [2] L. Mullins, "Softening of rubber by deformation," Rubber Chem. Technol.,
+   vol. 42, 1969.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reduction.moduli.blur import window_blur
+from reduction.moduli.grid import StrainGrid, bins_each_side, round_number
+from reduction.moduli.moments import LocalFits, accumulate_moments, fit_windows
+from reduction.moduli.product import ModulusCurves
+from reduction.moduli.running import RunningStatistics
+from reduction.moduli.tangent import pair_specimens
+from reduction.phases.standstill import Standstills
+from reduction.record import Bools, Floats
+from reduction.settings import ModulusSettings
+
+__all__ = ["first_loading_curves"]
+
+_BAND = 0.01  # of the rise: a sample this far below the greatest strain so far has unloaded
+_BINS = 200  # of the rise, the finest grid
+
+
+def _without_single_spikes(strain: Floats) -> Floats:
+    """Median of each sample and its neighbours; the ends as they are."""
+    smooth = strain.copy()
+    before, here, after = strain[:-2], strain[1:-1], strain[2:]
+    smooth[1:-1] = np.maximum(np.minimum(before, here), np.minimum(np.maximum(before, here), after))
+    return smooth
+
+
+def _end_of_rise(strain: Floats, start: float) -> int:
+    """First sample near the greatest strain that is not a single spike."""
+    while True:
+        top = int(np.nanargmax(strain))
+        tolerance = _BAND / 2 * (strain[top] - start)
+        around = strain[max(top - 1, 0) : top + 2]
+        if np.count_nonzero(around >= strain[top] - tolerance) > 1 or tolerance == 0:
+            return int(np.argmax(strain >= strain[top] - tolerance))
+        strain = strain.copy()
+        strain[top] = np.nan
+
+
+def _rising_pieces(strain: Floats, tension: Floats, is_still: Bools) -> NDArray[np.int64]:
+    """Number of the rising piece of each sample, from 0; -1 where the sample is in none.
+
+    The result is as long as the rise; a standstill or an unloading ends a piece.
+    """
+    known = np.flatnonzero(np.isfinite(strain))
+    if known.size == 0:
+        return np.empty(0, dtype=np.int64)
+    start = float(strain[known[0]])
+    end = _end_of_rise(strain, start) + 1
+    smooth = _without_single_spikes(strain[:end])
+    highest = np.fmax.accumulate(smooth)
+    floor = highest - _BAND * (highest[-1] - start)
+    is_still, tension = is_still[:end], tension[:end]
+    # comparisons with NaN are false: a missing sample rises nowhere, and breaks nothing
+    rises = (smooth >= floor) & ~is_still & np.isfinite(tension)
+    breaks = np.cumsum(is_still | (smooth < floor))
+    piece = np.full(end, -1, dtype=np.int64)
+    piece[rises] = np.unique(breaks[rises], return_inverse=True)[1]
+    return piece
+
+
+def _grid_of_rise(
+    strain: Floats, pieces: list[NDArray[np.int64]], settings: ModulusSettings
+) -> StrainGrid | None:
+    """Grid over the rises of all specimens; None where nothing rises."""
+    rises = [row[: piece.size][piece >= 0] for row, piece in zip(strain, pieces, strict=True)]
+    low = min((float(rise.min()) for rise in rises if rise.size), default=0.0)
+    high = max((float(rise.max()) for rise in rises if rise.size), default=0.0)
+    if not high > low:
+        return None
+    spacing = max((high - low) / rise.size for rise in rises if rise.size)
+    wanted = 3 * settings.minimum_count * spacing
+    width = settings.strain_bin_width or round_number(max((high - low) / _BINS, wanted / 5))
+    window = settings.window or max(5 * width, wanted)
+    return StrainGrid.spanning(
+        low, high, width=width, half_window=bins_each_side(window, width), cycles_pooled=1
+    )
+
+
+def _fit_rise(
+    strain: Floats,
+    tension: Floats,
+    piece: NDArray[np.int64],
+    *,
+    grid: StrainGrid,
+    minimum_count: int,
+) -> LocalFits:
+    known = tension[: piece.size][piece >= 0]
+    moments, _ = accumulate_moments(
+        strain[: piece.size],
+        tension[: piece.size],
+        curve=piece,
+        n_curves=int(piece.max(initial=0)) + 1,
+        grid=grid,
+        tension_reference=float(known.mean()) if known.size else 0.0,
+    )
+    return fit_windows(moments, minimum_count=minimum_count)
+
+
+def first_loading_curves(
+    strain: ArrayLike,
+    tension: ArrayLike,
+    *,
+    area: ArrayLike,
+    settings: ModulusSettings,
+    standstills: Standstills | None = None,
+) -> ModulusCurves | None:
+    r"""Tangent modulus and tension on the first rise to the greatest strain of the record.
+
+    Parameters
+    ----------
+    strain : array_like, shape (n_specimens, n_samples)
+        Nominal strain of the free length; NaN where missing. [1]
+    tension : array_like, shape (n_specimens, n_samples)
+        Tension; NaN where missing. [N]
+    area : array_like, shape (n_specimens,)
+        Cross-sectional area at zero tension. [m2]
+    settings : ModulusSettings
+        Bins, window and fewest samples; None is found from the rise. [1]
+    standstills : Standstills, optional
+        Holds and rests of the record, which are left out; without them a hold is
+        taken for slow loading. [SI]
+
+    Returns
+    -------
+    curves : ModulusCurves or None
+        The ascending branch (index 0); the descending one is NaN. None where the
+        record does not rise. [SI]
+
+    Raises
+    ------
+    DataError
+        If strain, tension and area do not pair up, or an area is not positive.
+
+    Notes
+    -----
+    A sample belongs to the rise while no earlier strain was higher by more than 1 %
+    of the rise: an unloading on the way, and the reloading up to where it left, are
+    left out. A standstill or an unloading ends a piece, and no window reaches from one
+    piece into the next: tension drops in a hold, and the stiff recovery after it would
+    be read as modulus. The curve has a gap there, a quarter window to each side; after
+    a hold it is the modulus of relaxed rubber for a few percent of strain.
+
+    Whether it is the specimen's first loading, its history says: earlier tests soften
+    it up to the strain they reached ([2]_).
+
+    The uncertainty is that of the regression (type A); minimum and maximum are the
+    curve itself, scatter is NaN, the count is the number of pieces, and
+    the untrimmed curve is the same: crosshead speed-up is not trimmed from a rise.
+
+    Examples
+    --------
+    A pull that stops half-way and unloads a little; 1000 N per unit strain, 1 cm2.
+
+    >>> import numpy as np
+    >>> up, back = np.linspace(0.0, 1.0, 200), np.linspace(1.0, 0.8, 40)
+    >>> strain = np.concatenate([up, back, np.linspace(0.8, 2.0, 240)])[None, :]
+    >>> curves = first_loading_curves(
+    ...     strain, 1000 * strain, area=[1e-4], settings=ModulusSettings()
+    ... )
+    >>> at = np.argmin(np.abs(curves.strain_bin - 1.5))
+    >>> print((curves.tangent_modulus[0, :, at] / 1e6).round(6))
+    [10. nan]
+    """
+    strains, tensions, areas = pair_specimens(strain, tension, area)
+    is_still = np.zeros(strains.shape[1], dtype=bool)
+    if standstills is not None:
+        for first, last in zip(standstills.first, standstills.last, strict=True):
+            is_still[first : last + 1] = True
+    pieces = [
+        _rising_pieces(row, load, is_still) for row, load in zip(strains, tensions, strict=True)
+    ]
+    grid = _grid_of_rise(strains, pieces, settings)
+    if grid is None:
+        return None
+    slope, slope_uncertainty, load, load_uncertainty, count = np.full(
+        (5, areas.size, 2, grid.n_bins), np.nan
+    )
+    for row, piece in enumerate(pieces):
+        fits = _fit_rise(
+            strains[row], tensions[row], piece, grid=grid, minimum_count=settings.minimum_count
+        )
+        weight = np.ones(fits.slope.shape[0])
+        slopes = RunningStatistics.of(fits.slope, fits.slope_variance, weight=weight)
+        loads = RunningStatistics.of(fits.tension, fits.tension_variance, weight=weight)
+        slope[row, 0], slope_uncertainty[row, 0] = slopes.value(), slopes.standard_uncertainty()
+        load[row, 0], load_uncertainty[row, 0] = loads.value(), loads.standard_uncertainty()
+        count[row, 0] = slopes.count
+    blur, gain = window_blur(slope, half_window=grid.half_window)
+    per_area = 1 / areas[:, None, None]
+    modulus, uncertainty = (slope - blur) * per_area, gain * slope_uncertainty * per_area
+    none_selected = np.empty((areas.size, 0, 2, grid.n_bins))
+    return ModulusCurves(
+        strain_bin=grid.centres,
+        strain_bin_bounds=grid.bounds,
+        window=grid.window,
+        tangent_modulus=modulus,
+        tangent_modulus_standard_uncertainty=uncertainty,
+        tangent_modulus_count=np.nan_to_num(count).astype(np.int64),
+        tangent_modulus_minimum=modulus.copy(),
+        tangent_modulus_maximum=modulus.copy(),
+        tangent_modulus_scatter=np.full_like(modulus, np.nan),
+        tangent_modulus_untrimmed=modulus.copy(),
+        tangent_modulus_untrimmed_standard_uncertainty=uncertainty.copy(),
+        branch_tension=load,
+        branch_tension_standard_uncertainty=load_uncertainty,
+        selected_cycle=np.empty(0, dtype=np.int64),
+        tangent_modulus_by_cycle=none_selected,
+        tangent_modulus_by_cycle_standard_uncertainty=none_selected.copy(),
+        notes=(
+            f"first loading: {max(int(piece.max(initial=-1)) for piece in pieces) + 1} rising "
+            f"pieces between holds, window {grid.window:g} of strain",
+        ),
+    )

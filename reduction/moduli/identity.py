@@ -1,0 +1,161 @@
+"""Closed-cycle identity: the two branches of a cycle account for the tension it loses.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic
+   Modulus of Rubber Mooring Tethers and their Use in Coastal Moorings," Woods
+   Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.cycles.product import Cycles
+from reduction.moduli.product import CycleIdentity
+from reduction.moduli.tangent import pair_specimens
+from reduction.record import Floats
+
+__all__ = ["check_identity"]
+
+_MOST_PIECES = 4  # of a stroke: more follow its curvature better, with more noise
+_PIECE_SAMPLES = 6
+_FEWEST_SAMPLES = 3  # in a piece
+_BLOCK_SAMPLES = 1 << 16  # a block's temporaries stay in the processor's cache
+
+
+def _tension_change(
+    strain: Floats, tension: Floats, *, cycles: Cycles, n_pieces: int
+) -> tuple[Floats, Floats]:
+    """Tension change along each branch from regression slopes, and its strain; (n_cycles, 2)."""
+    start, end = strain[cycles.branch_first], strain[cycles.branch_last]
+    stroke = end - start
+    begin, per_stroke = start.ravel(), 1 / np.where(stroke == 0, np.nan, stroke).ravel()
+    first_tension = tension[cycles.branch_first]
+    known = np.isfinite(first_tension)
+    reference = float(first_tension[known].mean()) if known.any() else 0.0
+    sums = np.zeros((5, cycles.n_cycles * 2 * n_pieces))
+    first, stop = int(cycles.first[0]), int(cycles.last[-1]) + 1
+    for block in range(first, stop, _BLOCK_SAMPLES):
+        samples = slice(block, min(block + _BLOCK_SAMPLES, stop))
+        branch = 2 * cycles.cycle_number[samples].astype(np.int64) + cycles.branch[samples] - 3
+        branch[(cycles.cycle_number[samples] == 0) | (cycles.branch[samples] == 0)] = -1
+        y = tension[samples] - reference
+        u = (strain[samples] - begin[branch]) * per_stroke[branch]
+        used = (branch >= 0) & np.isfinite(u) & np.isfinite(y)
+        if not used.all():
+            branch, u, y = branch[used], u[used], y[used]
+        if branch.size == 0:
+            continue
+        # noise carries samples past the reversals: they belong to the end pieces
+        piece = np.clip((n_pieces * u).astype(np.int64), 0, n_pieces - 1)
+        offset = int(branch.min()) * n_pieces
+        cell = branch * n_pieces + piece - offset
+        n_cells = int(cell.max()) + 1
+        rows = sums[:, offset : offset + n_cells]
+        rows[0] += np.bincount(cell, minlength=n_cells)
+        for row, weight in zip(rows[1:], (u, y, u * u, u * y), strict=True):
+            row += np.bincount(cell, weights=weight, minlength=n_cells)
+    n, su, sy, suu, suy = sums
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = (suy - su * sy / n) / (suu - su * su / n)
+    slope = np.where(n >= _FEWEST_SAMPLES, slope, np.nan)
+    return slope.reshape(cycles.n_cycles, 2, n_pieces).mean(axis=-1), stroke
+
+
+def check_identity(
+    strain: ArrayLike, tension: ArrayLike, *, area: ArrayLike, cycles: Cycles
+) -> CycleIdentity:
+    r"""Difference of the stroke-mean moduli beside the tension lost, on every cycle.
+
+    .. math::
+
+        \bar E_{asc} - \bar E_{desc} = -\frac{F_{first} - F_{last}}{A \Delta\varepsilon}
+
+    Parameters
+    ----------
+    strain : array_like, shape (n_specimens, n_samples)
+        Nominal strain of the free length; NaN where missing. [1]
+    tension : array_like, shape (n_specimens, n_samples)
+        Tension; NaN where missing. [N]
+    area : array_like, shape (n_specimens,)
+        Cross-sectional area at zero tension. [m2]
+    cycles : Cycles
+        Cycles and branches; whole branches are used, ends included. [SI]
+
+    Returns
+    -------
+    identity : CycleIdentity
+        Both sides [Pa] and what is left between them over the mean modulus of the two
+        branches [1]; shape (n_specimens, n_cycles). [SI]
+
+    Raises
+    ------
+    DataError
+        If strain, tension and area do not pair up, or an area is not positive.
+
+    Notes
+    -----
+    Derivation: along a branch, :math:`A \int E\,d\varepsilon` is the change of tension.
+    From first to last sample of the cycle the ascending branch adds, the descending one
+    takes away, and what does not come back is lost. ``tension_loss_modulus`` is
+    positive where tension is lost, so that the sum of both sides is zero: a relaxing
+    specimen has the *lower* stroke mean ascending. Of the two descriptions in sec. 4.1
+    of [1]_, curves that cross can be true; a modulus "higher with increasing elongation"
+    throughout cannot.
+
+    *A check, not a tautology.* The left side is a mean of regression slopes over up to
+    four equal pieces of each stroke, the right side is two samples; they share the record and
+    nothing else. It fails where strain and tension are mispaired, a branch is
+    mislabelled, or tension changes while strain does not.
+
+    *What is left.* Noise of standard deviation :math:`\sigma` gives a residual of about
+    :math:`\sigma \sqrt{2 + 24 B^2/n} / (A \bar E \Delta\varepsilon)` for B pieces and n samples a
+    branch: 1 % on tests of 60 lbf range with 0.26 lbf of noise at 48 samples. Within a
+    piece of width w regression and chord differ by :math:`E'' w^2 / 60`, which the
+    branches share in part. A dwell at a reversal adds what tension falls in it.
+
+    NaN for a cycle in which a piece has fewer than 3 samples, or whose first or last
+    sample is missing.
+
+    Examples
+    --------
+    A cycle of 1000 N per unit strain up and 1100 down loses 100 N on 1 cm2.
+
+    >>> import numpy as np
+    >>> stroke = np.linspace(1.0, 2.0, 201)
+    >>> strain = np.concatenate([stroke, stroke[::-1]])[None, :]
+    >>> tension = np.concatenate([1000 * stroke, 2000 - 1100 * (2.0 - stroke[::-1])])[None, :]
+    >>> cycles = Cycles(
+    ...     first=np.array([0]), last=np.array([401]),
+    ...     branch_first=np.array([[0, 201]]), branch_last=np.array([[200, 401]]),
+    ...     plateau_rate=np.ones((1, 2)), cycle_number=np.ones(402, dtype=np.int32),
+    ...     branch=np.repeat(np.array([1, 2], dtype=np.int8), 201),
+    ...     is_constant_rate=np.ones(402, dtype=bool), band=0.0,
+    ... )
+    >>> identity = check_identity(strain, tension, area=[1e-4], cycles=cycles)
+    >>> print(identity.stroke_mean_modulus_difference.round(3), identity.tension_loss_modulus)
+    [[-1000000.]] [[1000000.]]
+    """
+    strains, tensions, areas = pair_specimens(strain, tension, area)
+    shape = (areas.size, cycles.n_cycles)
+    difference, loss, residual = np.full((3, *shape), np.nan)
+    if cycles.n_cycles:
+        samples = float(np.median(cycles.branch_last - cycles.branch_first))
+        n_pieces = int(np.clip(samples // _PIECE_SAMPLES, 1, _MOST_PIECES))
+        for row, one_area in enumerate(areas):
+            change, stroke = _tension_change(
+                strains[row], tensions[row], cycles=cycles, n_pieces=n_pieces
+            )
+            per_stroke = 1 / (one_area * np.abs(stroke).mean(axis=1))
+            lost = tensions[row][cycles.first] - tensions[row][cycles.last]
+            difference[row] = change.sum(axis=1) * per_stroke
+            loss[row] = lost * per_stroke
+            mean_modulus = np.abs(change).mean(axis=1) * per_stroke
+            residual[row] = (difference[row] + loss[row]) / mean_modulus
+    return CycleIdentity(
+        stroke_mean_modulus_difference=difference,
+        tension_loss_modulus=loss,
+        identity_residual=residual,
+    )

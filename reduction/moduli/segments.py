@@ -1,0 +1,150 @@
+"""Piecewise-linear moduli of a branch, the form of Tables 5 and 6.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic
+   Modulus of Rubber Mooring Tethers and their Use in Coastal Moorings," Woods
+   Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.checks import as_positive
+from reduction.errors import DataError
+from reduction.moduli.piecewise import PiecewiseLine, fit_piecewise_lines
+from reduction.moduli.product import ModulusCurves, Segments
+from reduction.record import Floats
+from reduction.settings import ModulusSettings
+
+__all__ = ["find_segments"]
+
+_LEAST_SCATTER = 1e-3  # of the branch's tension: finer than a load cell tells
+_FEWEST_BINS = 6  # two shortest segments
+
+
+def _choose(lines: tuple[PiecewiseLine, ...], n_points: int) -> PiecewiseLine:
+    """Fewest segments whose rms residual is within the scatter; else the most."""
+    for line in lines:
+        if line.chi_square <= n_points:
+            return line
+    return lines[-1]
+
+
+def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSettings) -> Segments:
+    r"""Contiguous straight segments of tension against strain, each with its modulus.
+
+    .. math:: E = \frac{F_{high} - F_{low}}{A (\varepsilon_{high} - \varepsilon_{low})}
+
+    Parameters
+    ----------
+    curves : ModulusCurves
+        Mean branch tension on the strain grid, with its uncertainty and count. [SI]
+    area : array_like, shape (n_specimens,)
+        Cross-sectional area at zero tension. [m2]
+    settings : ModulusSettings
+        Largest number of segments. [1]
+
+    Returns
+    -------
+    segments : Segments
+        Of each specimen and branch, in rising strain. [SI]
+
+    Raises
+    ------
+    DataError
+        If an area is not positive, or the areas do not pair up with the curves.
+
+    Notes
+    -----
+    Printed source: Tables 5 and 6 of [1]_, where neighbouring segments meet and
+    E is the chord of each; how [1]_ chose their limits it does not say.
+
+    The line is the best continuous one (`fit_piecewise_lines`). *Number of segments:*
+    the fewest whose root-mean-square distance from the mean branch is within the
+    scatter of single cycles about it (at least 0.1 % of the branch's range of tension),
+    so that one cycle could not refute them. A smooth curve has no true breakpoints:
+    they say where straight lines stand in for it best.
+
+    The uncertainty is type A: that of the tangent modulus, root mean square over the
+    segment, over the root of the windows that fit in it. It is that of the mean modulus
+    of the segment, and says nothing about the curvature inside.
+
+    NaN for a branch with fewer than six bins; bins without tension are left out.
+
+    Examples
+    --------
+    Two lines meet at a strain of 1.2: 100 and 300 N per unit strain on 1 cm2.
+
+    >>> import numpy as np
+    >>> x = np.arange(0.0, 2.0, 0.1) + 0.05
+    >>> load = np.broadcast_to(np.interp(x, [0.0, 1.2, 2.0], [0.0, 120.0, 360.0]), (1, 2, 20))
+    >>> blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((1, 2, 20)))
+    >>> curves = ModulusCurves(
+    ...     **blank | {"strain_bin": x, "branch_tension": load, "window": 0.3}
+    ... )
+    >>> segments = find_segments(curves, area=[1e-4], settings=ModulusSettings())
+    >>> print((segments.segment_modulus[0, 0] / 1e6).round(6))
+    [1. 3.]
+    """
+    areas = np.atleast_1d(as_positive("area", area))
+    n_specimens = curves.branch_tension.shape[0]
+    if areas.shape != (n_specimens,):
+        raise DataError(
+            "the areas do not pair up with the curves",
+            found=f"shape {areas.shape}",
+            needed=f"({n_specimens},)",
+        )
+    table = np.full((6, n_specimens, 2, settings.maximum_segments), np.nan)
+    for at in np.ndindex(n_specimens, 2):
+        if np.count_nonzero(np.isfinite(curves.branch_tension[at])) < _FEWEST_BINS:
+            continue
+        columns = _segment_columns(curves, at, float(areas[at[0]]), settings.maximum_segments)
+        table[:, at[0], at[1], : columns.shape[1]] = columns
+    n_used = int(np.isfinite(table[0]).any(axis=(0, 1)).sum())
+    table = table[..., : max(n_used, 1)].copy()
+    return Segments(
+        segment_modulus=table[0],
+        segment_modulus_standard_uncertainty=table[1],
+        segment_strain_low=table[2],
+        segment_strain_high=table[3],
+        segment_tension_low=table[4],
+        segment_tension_high=table[5],
+        criterion="fewest contiguous segments, best breakpoints, whose rms distance from the "
+        "mean branch is within the scatter of single cycles (at least "
+        f"{_LEAST_SCATTER:g} of the tension range), at most {settings.maximum_segments}",
+    )
+
+
+def _segment_columns(
+    curves: ModulusCurves, at: tuple[int, ...], area: float, maximum_segments: int
+) -> Floats:
+    """Modulus, its uncertainty, strain and tension limits of one branch, (6, n_segments)."""
+    known = np.isfinite(curves.branch_tension[at])
+    strain, tension = curves.strain_bin[known], curves.branch_tension[at][known]
+    scatter = curves.branch_tension_standard_uncertainty[at] * np.sqrt(
+        curves.tangent_modulus_count[at]
+    )
+    # NaN scatter (one cycle without a degree of freedom) leaves the least
+    least = _LEAST_SCATTER * (float(np.ptp(tension)) or 1.0)
+    lines = fit_piecewise_lines(
+        strain,
+        tension,
+        standard_uncertainty=np.fmax(scatter[known], least),
+        maximum_segments=maximum_segments,
+    )
+    line = _choose(lines, strain.size)
+    low, high = line.knot[:-1], line.knot[1:]
+    modulus = np.diff(line.ordinate) / (area * (high - low))
+    variance = curves.tangent_modulus_standard_uncertainty[at] ** 2
+    uncertainty = []
+    for start, stop in zip(low, high, strict=True):
+        inside = variance[(curves.strain_bin >= start) & (curves.strain_bin <= stop)]
+        inside = inside[np.isfinite(inside)]
+        windows = max((stop - start) / curves.window, 1.0)
+        uncertainty.append(np.sqrt(inside.mean() / windows) if inside.size else np.nan)
+    return np.stack(
+        [modulus, np.array(uncertainty), low, high, line.ordinate[:-1], line.ordinate[1:]]
+    )
