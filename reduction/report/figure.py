@@ -1,0 +1,164 @@
+"""A figure as plain plotly dictionaries, and the few shapes that every figure is built from."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from reduction.record import Floats
+from reduction.report.style import faded, plot_text, shorten
+
+__all__ = ["Figure", "Trace", "axis", "band", "line", "make_figure", "plain_numbers", "script_json"]
+
+Trace = dict[str, Any]
+_DIGITS = 6
+_TITLE_LENGTH = 60
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure: what plotly draws, and the words around it.
+
+    ``key`` is the anchor on the page, ``title`` and ``caption`` are plain text.
+    """
+
+    key: str
+    title: str
+    caption: str
+    data: list[Trace]
+    layout: dict[str, Any]
+    height: int = 360
+    is_wide: bool = False
+    synthetic: bool = False
+
+    @property
+    def has_data(self) -> bool:
+        """True where at least one trace has a finite point."""
+        return any(any(value is not None for value in trace["y"]) for trace in self.data)
+
+    @property
+    def label(self) -> str:
+        """What a screen reader says."""
+        names = [trace["name"] for trace in self.data if trace.get("showlegend", True)]
+        axes = [
+            self.layout[name]["title"]["text"]
+            for name in self.layout
+            if name.startswith(("xaxis", "yaxis")) and "title" in self.layout[name]
+        ]
+        prefix = "Synthetic data. " if self.synthetic else ""
+        lines = ", ".join(dict.fromkeys(names))
+        return shorten(f"{prefix}{self.title}. Axes: {'; '.join(axes)}. Lines: {lines}.", 600)
+
+    def json(self) -> str:
+        """The figure for a script element: no markup can close it, no line end can break it."""
+        return script_json({"data": self.data, "layout": self.layout})
+
+
+def script_json(document: object) -> str:
+    r"""Return JSON that is safe inside a script element.
+
+    Examples
+    --------
+    >>> script_json("</script>")
+    '"\\u003c/script\\u003e"'
+    """
+    text = json.dumps(document, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def plain_numbers(values: Floats, digits: int = _DIGITS) -> list[float | None]:
+    """Return numbers of a few digits, None where one is not finite.
+
+    Examples
+    --------
+    >>> plain_numbers(np.array([1.23456789, np.nan]))
+    [1.23457, None]
+    """
+    return [
+        float(f"{value:.{digits}g}") if np.isfinite(value) else None
+        for value in np.asarray(values, dtype=np.float64).tolist()
+    ]
+
+
+def line(
+    x: Floats,
+    y: Floats,
+    *,
+    name: str,
+    colour: str,
+    dash: str = "solid",
+    width: float = 1.8,
+    x_digits: int = _DIGITS,
+    **more: Any,
+) -> Trace:
+    """Return a line trace; ``name`` is plain text."""
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": plot_text(name),
+        "x": plain_numbers(x, x_digits),
+        "y": plain_numbers(y),
+        "line": {"color": colour, "dash": dash, "width": width},
+        **more,
+    }
+
+
+def band(
+    x: Floats, low: Floats, high: Floats, *, name: str, colour: str, alpha: float, **more: Any
+) -> Trace:
+    """Return a filled band; it is broken where an edge is not finite."""
+    finite = np.isfinite(x) & np.isfinite(low) & np.isfinite(high)
+    outline_x: list[Floats] = []
+    outline_y: list[Floats] = []
+    for run in np.split(np.arange(x.shape[0]), np.flatnonzero(np.diff(finite)) + 1):
+        if run.size and finite[run[0]]:
+            outline_x += [x[run], x[run[::-1]], np.array([np.nan])]
+            outline_y += [high[run], low[run[::-1]], np.array([np.nan])]
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": plot_text(name),
+        "x": plain_numbers(np.concatenate(outline_x)) if outline_x else [],
+        "y": plain_numbers(np.concatenate(outline_y)) if outline_y else [],
+        "fill": "toself",
+        "fillcolor": faded(colour, alpha),
+        "line": {"width": 0, "color": faded(colour, alpha)},
+        "hoverinfo": "skip",
+        "showlegend": False,
+        **more,
+    }
+
+
+def axis(label: str, **more: Any) -> dict[str, Any]:
+    """Return an axis with its title; the unit is part of the label."""
+    return {"title": {"text": label}, "hoverformat": ".4~g", **more}
+
+
+def make_figure(
+    key: str,
+    title: str,
+    caption: str,
+    data: Sequence[Trace],
+    *,
+    synthetic: bool,
+    height: int = 360,
+    is_wide: bool = False,
+    **layout: Any,
+) -> Figure:
+    """Return a figure; ``synthetic`` puts the words into the figure itself.
+
+    They stay with it when a reader saves it as a picture.
+    """
+    heading: dict[str, Any] = {"text": plot_text(title, _TITLE_LENGTH)}
+    if synthetic:
+        heading["subtitle"] = {"text": "SYNTHETIC DATA"}
+    return replace(
+        Figure(key, title, caption, list(data), {"title": heading, **layout}),
+        height=height,
+        is_wide=is_wide,
+        synthetic=synthetic,
+    )

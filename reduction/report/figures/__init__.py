@@ -1,0 +1,1 @@
+"""One function a figure: an archive in, plain plotly dictionaries out."""

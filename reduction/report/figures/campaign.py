@@ -1,0 +1,302 @@
+"""Figures over the tests of a campaign: the forms of Figures 31, 34 and 35 of [1]_.
+
+All moduli in one, ratios of specimens, amplitude pairs, start against end of a long test,
+static against dynamic.
+
+References
+----------
+.. [1] WHOI-2005-10, sec. 4.5 to 4.8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from reduction.record import Floats
+from reduction.report.figure import (
+    Figure,
+    Trace,
+    axis,
+    band,
+    line,
+    make_figure,
+    plain_numbers,
+)
+from reduction.report.style import DASHES, Kind, colour, plot_text, shown, symbol
+from reduction.report.view import TestView
+from reduction.units import UnitSystem
+from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
+
+__all__ = [
+    "draw_all_moduli", "draw_amplitude_pairs", "draw_parts", "draw_ratios",
+    "draw_static_dynamic",
+]  # fmt: skip
+
+
+def draw_all_moduli(tests: Sequence[TestView]) -> list[Figure]:
+    """Draw the modulus of every test in one figure a specimen, with the envelope of all."""
+    found = []
+    for order, specimen in enumerate(_specimens(tests)):
+        data: list[Trace] = []
+        for branch in BRANCH_NAMES:
+            envelope = _envelope(tests, specimen, branch)
+            if envelope is not None:
+                data.append(envelope)
+        for index, view in enumerate(tests):
+            data += list(_curves(view, specimen, colour(index), index))
+        if not data:
+            continue
+        units = tests[0].units
+        found.append(
+            make_figure(
+                f"campaign-moduli-{order}", f"All tests: modulus, {specimen}",
+                "Mean tangent modulus of every test against strain; ascending solid, descending"
+                " dashed. Shaded: least to greatest of all cycles of all tests, a branch each.",
+                data, synthetic=_synthetic(tests), height=480, is_wide=True,
+                xaxis=axis(shown("strain", units).label("strain")),
+                yaxis=axis(shown("stress", units).label("tangent modulus"), rangemode="tozero"),
+            )
+        )  # fmt: skip
+    return found
+
+
+def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
+    """Draw the ratio of the specimens of each test, one figure a branch."""
+    found: list[Figure] = []
+    pairs = {(view.text("ratio_numerator"), view.text("ratio_denominator")) for view in tests}
+    for pair in sorted(pairs - {("", "")}):
+        for place, branch in enumerate(BRANCH_NAMES):
+            data: list[Trace] = []
+            for index, view in enumerate(tests):
+                own = (view.text("ratio_numerator"), view.text("ratio_denominator"))
+                strain, ratio = view.array("ratio_strain_bin"), view.array("modulus_ratio")
+                if own != pair or strain is None or ratio is None:
+                    continue
+                low, high = (
+                    view.array_like(f"modulus_ratio_{end}", ratio) for end in ("low", "high")
+                )
+                x = strain * shown("strain", view.units).factor
+                data += [
+                    band(x, low[place], high[place], name=view.id, colour=colour(index), alpha=0.2),
+                    line(x, ratio[place], name=view.id, colour=colour(index), dash=DASHES[branch]),
+                ]
+            figure = make_figure(
+                f"campaign-ratio-{len(found)}", f"{pair[0]} over {pair[1]}, {branch}",
+                f"Tangent modulus of {pair[0]} over that of {pair[1]} at the same strain,"
+                f" {branch} branch, each test; band: 95 % interval. Where the band leaves out 1"
+                " the two differ.",
+                [trace for trace in data if trace["y"]], synthetic=_synthetic(tests),
+                xaxis=axis("strain [%]"), yaxis=axis("ratio of moduli [1]"),
+                shapes=[_level(1.0)],
+            )  # fmt: skip
+            if figure.has_data:
+                found.append(figure)
+    return found
+
+
+def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
+    """Draw dynamic modulus, loss factor and energy against mean strain, bars of amplitude."""
+    panels: tuple[tuple[str, str, Kind], ...] = (
+        ("test_dynamic_modulus", "dynamic modulus", "stress"),
+        ("test_loss_factor", "loss factor", "number"),
+        ("test_hysteresis_energy", "hysteresis energy", "energy"),
+    )
+    found = []
+    for name, words, kind in panels:
+        data: list[Trace] = []
+        units = tests[0].units if tests else "si"
+        unit = shown(kind, units)
+        for order, specimen in enumerate(_specimens(tests)):
+            rows = [row for view in tests if (row := _summary(view, specimen, name)) is not None]
+            if rows:
+                table = np.array([row[1:] for row in rows])
+                data.append(_points(specimen, order, [row[0] for row in rows], table, unit.factor))
+        figure = make_figure(
+            f"campaign-{name}", f"{words.capitalize()} of each test",
+            f"{words.capitalize()}, mean over the cycles of a test, against mean strain. The"
+            " level bar is the strain range of the cycles: tests at one mean strain and two"
+            " amplitudes stand above each other. Upright bar: ± 1 standard uncertainty.",
+            data, synthetic=_synthetic(tests), height=400,
+            xaxis=axis("mean strain [%]"), yaxis=axis(unit.label(words)),
+        )  # fmt: skip
+        if figure.has_data:
+            found.append(figure)
+    return found
+
+
+def draw_parts(tests: Sequence[TestView]) -> list[Figure]:
+    """Draw the logs that repeat parts of one long test together, one figure a specimen."""
+    groups: dict[str, list[TestView]] = {}
+    for view in tests:
+        if view.attribute("part_of"):
+            groups.setdefault(view.attribute("part_of"), []).append(view)
+    found: list[Figure] = []
+    for whole, parts in groups.items():
+        for specimen in _specimens(parts):
+            data = [
+                trace
+                for index, view in enumerate(parts)
+                for trace in _curves(view, specimen, colour(index), index)
+            ]
+            if data and len(parts) > 1:
+                found.append(
+                    make_figure(
+                        f"campaign-parts-{len(found)}", f"{whole}: its parts, {specimen}",
+                        f"Mean tangent modulus in the parts of {whole} that were logged apart:"
+                        " what the long test changed.",
+                        data, synthetic=_synthetic(parts), height=400,
+                        xaxis=axis("strain [%]"),
+                        yaxis=axis(
+                            shown("stress", whole_units(parts)).label("tangent modulus"),
+                            rangemode="tozero",
+                        ),
+                    )
+                )  # fmt: skip
+    return found
+
+
+def draw_static_dynamic(tests: Sequence[TestView]) -> list[Figure]:
+    """Draw interval moduli of stepwise tests over the curves of the cyclic ones."""
+    stepwise = [view for view in tests if view.array("interval_modulus") is not None]
+    dynamic = [view for view in tests if view.array("tangent_modulus") is not None]
+    if not stepwise or not dynamic:
+        return []
+    units = tests[0].units
+    in_stress, in_strain = shown("stress", units), shown("strain", units)
+    found = []
+    for place, branch in enumerate(BRANCH_NAMES):
+        data: list[Trace] = []
+        for index, view in enumerate(dynamic):
+            strain, modulus = view.array("strain_bin"), view.array("tangent_modulus")
+            if strain is None or modulus is None:
+                continue
+            for order, specimen in enumerate(view.specimens):
+                data.append(
+                    line(
+                        strain * in_strain.factor, modulus[order, place] * in_stress.factor,
+                        name=f"{view.id}, {specimen}", colour=colour(index), dash=DASHES[branch],
+                        width=1.4,
+                    )
+                )  # fmt: skip
+        for index, view in enumerate(stepwise):
+            data.append(_static(view, branch, index, in_stress.factor))
+        found.append(
+            make_figure(
+                f"campaign-static-{branch}", f"Static against dynamic, {branch}",
+                "Interval moduli of the stepwise tests (markers) over the tangent moduli of the"
+                f" cyclic tests (lines), {branch}.",
+                data, synthetic=_synthetic(tests), height=420,
+                xaxis=axis(in_strain.label("strain")),
+                yaxis=axis(in_stress.label("modulus"), rangemode="tozero"),
+            )
+        )  # fmt: skip
+    return [figure for figure in found if figure.has_data]
+
+
+def whole_units(tests: Sequence[TestView]) -> UnitSystem:
+    """Return the unit system of the page."""
+    return tests[0].units if tests else "si"
+
+
+def _static(view: TestView, branch: str, index: int, factor: float) -> Trace:
+    strain, modulus = view.array("interval_strain"), view.array("interval_modulus")
+    own = view.array("interval_branch")
+    if strain is None or modulus is None or own is None:
+        return line(np.empty(0), np.empty(0), name=view.id, colour=colour(index))
+    chosen = (own == BRANCH_VALUES[branch]) & np.isfinite(modulus)
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "name": plot_text(f"{view.id} (static)"),
+        "x": plain_numbers(100.0 * strain[chosen]),
+        "y": plain_numbers(modulus[chosen] * factor),
+        "marker": {"symbol": symbol(index), "size": 10, "color": "#8C8C8C", "line": {"width": 1}},
+    }
+
+
+def _curves(view: TestView, specimen: str, tint: str, index: int) -> Iterator[Trace]:
+    strain, modulus = view.array("strain_bin"), view.array("tangent_modulus")
+    if strain is None or modulus is None or specimen not in view.specimens:
+        return
+    unit = shown("stress", view.units)
+    row = view.specimens.index(specimen)
+    for place, branch in enumerate(BRANCH_NAMES):
+        if np.isfinite(modulus[row, place]).any():
+            yield line(
+                100.0 * strain, modulus[row, place] * unit.factor,
+                name=f"{view.id}, {branch}", colour=tint, dash=DASHES[branch],
+                legendgroup=plot_text(view.id), mode="lines+markers",
+                marker={"symbol": symbol(index), "size": 6, "color": tint, "maxdisplayed": 6},
+            )  # fmt: skip
+
+
+def _envelope(tests: Sequence[TestView], specimen: str, branch: str) -> Trace | None:
+    place = BRANCH_NAMES.index(branch)
+    lows: list[tuple[Floats, Floats, Floats]] = []
+    for view in tests:
+        strain = view.array("strain_bin")
+        low, high = view.array("tangent_modulus_minimum"), view.array("tangent_modulus_maximum")
+        if strain is None or low is None or high is None or specimen not in view.specimens:
+            continue
+        row = view.specimens.index(specimen)
+        used = np.isfinite(low[row, place]) & np.isfinite(high[row, place])
+        if used.any():
+            lows.append((strain[used], low[row, place, used], high[row, place, used]))
+    if not lows:
+        return None
+    grid = np.unique(np.concatenate([strain for strain, _, _ in lows]).round(9))
+    outside = {"left": np.nan, "right": np.nan}
+    least = np.fmin.reduce([np.interp(grid, strain, low, **outside) for strain, low, _ in lows])
+    most = np.fmax.reduce([np.interp(grid, strain, high, **outside) for strain, _, high in lows])
+    factor = shown("stress", tests[0].units).factor
+    return band(
+        100.0 * grid, least * factor, most * factor, name=f"envelope, {branch}",
+        colour="#0072B2" if place == 0 else "#D55E00", alpha=0.12, showlegend=True,
+    )  # fmt: skip
+
+
+def _summary(
+    view: TestView, specimen: str, name: str
+) -> tuple[str, float, float, float, float] | None:
+    mean, amplitude = view.array("test_mean_strain"), view.array("test_strain_amplitude")
+    values = view.array(name)
+    if mean is None or amplitude is None or values is None or specimen not in view.specimens:
+        return None
+    row = view.specimens.index(specimen)
+    half = view.array_like(f"{name}_standard_uncertainty", values)
+    return view.id, mean[row], amplitude[row], values[row], half[row]
+
+
+def _points(specimen: str, order: int, labels: list[str], table: Floats, factor: float) -> Trace:
+    tint = colour(order)
+    bars = {"type": "data", "color": tint, "thickness": 1, "width": 3}
+    return {
+        "type": "scatter",
+        "mode": "markers+text",
+        "name": plot_text(specimen),
+        "x": plain_numbers(100.0 * table[:, 0]),
+        "y": plain_numbers(table[:, 2] * factor),
+        "text": [plot_text(label, 18) for label in labels],
+        "textposition": "top center" if order % 2 == 0 else "bottom center",
+        "textfont": {"size": 10},
+        "error_x": {**bars, "array": plain_numbers(100.0 * table[:, 1])},
+        "error_y": {**bars, "array": plain_numbers(table[:, 3] * factor)},
+        "marker": {"color": tint, "symbol": symbol(order), "size": 8},
+    }
+
+
+def _level(height: float) -> Trace:
+    return {
+        "type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": height, "y1": height,
+        "line": {"width": 1, "dash": "dot", "color": "#8C8C8C"},
+    }  # fmt: skip
+
+
+def _specimens(tests: Sequence[TestView]) -> list[str]:
+    return list(dict.fromkeys(name for view in tests for name in view.specimens))
+
+
+def _synthetic(tests: Sequence[TestView]) -> bool:
+    return any(view.is_synthetic for view in tests)

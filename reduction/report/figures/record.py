@@ -1,0 +1,239 @@
+"""The record as it was logged: position and tensions against time, and against each other."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.record import Bools, Floats
+from reduction.report.decimate import POINTS, keep_extremes
+from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
+from reduction.report.style import PHASE_FILLS, colour, plot_text, shown
+from reduction.report.view import TestView
+from reduction.vocabulary import PHASE_VALUES
+
+__all__ = ["draw_record", "draw_tension_position", "position_of"]
+
+TIME_DIGITS = 9
+MOST_PHASES = 150
+FLAG_POINTS = 400
+WHOLE_CYCLES = 8
+# said of whole stretches of a sound record, so not shown until a reader asks for them
+COMMON_FLAGS = ("not_constant_rate", "resampled", "extrapolated")
+
+
+def position_of(view: TestView) -> tuple[str, Floats] | None:
+    """Return what the crosshead channel is called and its values."""
+    for name, words in (
+        ("crosshead_position", "crosshead position"),
+        ("crosshead_displacement", "crosshead displacement"),
+    ):
+        values = view.array(name)
+        if values is not None:
+            return words, values
+    return None
+
+
+def draw_record(view: TestView) -> list[Figure]:
+    """Draw position over tension against time, phases shaded, flagged samples marked."""
+    time, tension = view.array("time"), view.array("tension")
+    if time is None or tension is None or view.is_stepwise:
+        return []
+    in_time, in_tension = shown("time", view.units), shown("tension", view.units)
+    data: list[Trace] = []
+    position = position_of(view)
+    if position is not None:
+        words, values = position
+        length = shown("length", view.units)
+        kept = keep_extremes(time, values)
+        data.append(
+            line(
+                time[kept], values[kept] * length.factor, name=words, colour="#8C8C8C",
+                width=1.2, x_digits=TIME_DIGITS, yaxis="y2",
+            )
+        )  # fmt: skip
+        flags = view.array("crosshead_position_quality_flag")
+        data += _flagged(view, "crosshead_position_quality_flag", time, values * length.factor,
+                         flags, words, "#8C8C8C", "y2")  # fmt: skip
+    flags = view.array("quality_flag")
+    for index, specimen in enumerate(view.specimens):
+        kept = keep_extremes(time, tension[index])
+        force = tension[index] * in_tension.factor
+        data.append(
+            line(
+                time[kept], force[kept], name=f"tension, {specimen}", colour=colour(index),
+                width=1.2, x_digits=TIME_DIGITS,
+            )
+        )  # fmt: skip
+        of_specimen = None if flags is None else flags[index]
+        data += _flagged(
+            view, "quality_flag", time, force, of_specimen, specimen, colour(index), "y"
+        )
+    shapes, labels, left_out = _phases(view, time)
+    layout: dict[str, Any] = {
+        "xaxis": axis(in_time.label("time")),
+        "yaxis": axis(in_tension.label("tension")),
+        "shapes": shapes,
+        "annotations": labels,
+    }
+    if position is not None:
+        layout["yaxis"]["domain"] = [0.0, 0.52]
+        layout["xaxis"]["anchor"] = "y"
+        layout["yaxis2"] = axis(
+            shown("length", view.units).label(position[0].replace("crosshead ", "")),
+            domain=[0.6, 1.0],
+        )
+    caption = (
+        "Position and tension against time. The background is the phase: "
+        + ", ".join(PHASE_VALUES)
+        + ". Marks are flagged samples; flags that hold for whole stretches"
+        + " (rate not constant, resampled, extrapolated) can be switched on in the legend."
+    )
+    if time.shape[0] > POINTS:
+        caption += (
+            f" The {time.shape[0]:,} samples are thinned out so that the least and the greatest"
+            " of every short interval stay."
+        )
+    if left_out:
+        caption += f" {left_out} short phases are not shaded."
+    return [
+        make_figure(
+            f"{view.key}-record", f"{view.id}: record", caption, data,
+            synthetic=view.is_synthetic, height=480, is_wide=True, **layout,
+        )
+    ]  # fmt: skip
+
+
+def draw_tension_position(view: TestView) -> list[Figure]:
+    """Draw tension against position; of a long test some whole cycles, and the rest thinned."""
+    time, tension, position = view.array("time"), view.array("tension"), position_of(view)
+    if time is None or tension is None or position is None:
+        return []
+    words, values = position
+    length, force = shown("length", view.units), shown("tension", view.units)
+    number = view.array("cycle_number")
+    drawn = np.zeros(0)
+    data: list[Trace] = []
+    for index, specimen in enumerate(view.specimens):
+        kept: NDArray[np.intp]
+        if time.shape[0] <= 2 * POINTS or number is None or view.n_cycles == 0:
+            kept = keep_extremes(time, values, tension[index], limit=2 * POINTS)
+            x, y = values[kept], tension[index][kept]
+        else:
+            # a polygon through the extremes of many cycles is no loop: draw whole ones
+            drawn = np.unique(np.geomspace(1, view.n_cycles, WHOLE_CYCLES).round())
+            pieces = [number == 0, *(number == cycle for cycle in drawn)]
+            x, y = _pieces(time, values, tension[index], pieces)
+        data.append(
+            line(
+                x * length.factor, y * force.factor, name=specimen, colour=colour(index), width=1.0
+            )
+        )
+    caption = "Tension against crosshead position over the whole record, as logged."
+    if drawn.size:
+        cycles = ", ".join(f"{cycle:.0f}" for cycle in drawn)
+        caption = (
+            "Tension against crosshead position: what is logged outside the cycles, and of the"
+            f" {view.n_cycles:,} cycles numbers {cycles}."
+        )
+    return [
+        make_figure(
+            f"{view.key}-tension-position", f"{view.id}: tension against position", caption, data,
+            synthetic=view.is_synthetic,
+            xaxis=axis(length.label(words)), yaxis=axis(force.label("tension")),
+        )
+    ]  # fmt: skip
+
+
+def _pieces(
+    time: Floats, values: Floats, tension: Floats, pieces: list[Bools]
+) -> tuple[Floats, Floats]:
+    """Return the pieces one after another, a gap between."""
+    x: list[Floats] = []
+    y: list[Floats] = []
+    for piece in pieces:
+        own = np.flatnonzero(piece)
+        if own.size:
+            # a jump in the index is another visit to the same phase
+            visit = np.split(own, np.flatnonzero(np.diff(own) > 1) + 1)
+            limit = max(POINTS // len(pieces) // len(visit), 20)
+            for part in visit:
+                kept = part[keep_extremes(time[part], values[part], tension[part], limit=limit)]
+                x += [values[kept], np.array([np.nan])]
+                y += [tension[kept], np.array([np.nan])]
+    return np.concatenate(x), np.concatenate(y)
+
+
+def _phases(view: TestView, time: Floats) -> tuple[list[Trace], list[Trace], int]:
+    """Return shaded rectangles, their labels, and how many phases are too many to shade."""
+    phase = view.array("phase")
+    if phase is None:
+        return [], [], 0
+    starts = np.flatnonzero(np.diff(phase, prepend=np.nan) != 0)
+    ends = np.append(starts[1:], phase.shape[0] - 1)
+    duration = time[ends] - time[starts]
+    longest = np.sort(np.argsort(-duration, kind="stable")[:MOST_PHASES])
+    words = {value: name for name, value in PHASE_VALUES.items()}
+    shapes: list[Trace] = []
+    labels: list[Trace] = []
+    whole = float(time[-1] - time[0])
+    for place in longest:
+        name = words.get(int(phase[starts[place]]))
+        if name is None:
+            continue
+        left, right = float(time[starts[place]]), float(time[ends[place]])
+        shapes.append(
+            {
+                "type": "rect", "layer": "below", "xref": "x", "yref": "paper", "x0": left,
+                "x1": right, "y0": 0, "y1": 1, "line": {"width": 0},
+                "fillcolor": PHASE_FILLS[name],
+            }
+        )  # fmt: skip
+        if duration[place] > 0.06 * whole:
+            labels.append(
+                {
+                    "text": name, "x": (left + right) / 2, "y": 0.56, "xref": "x",
+                    "yref": "paper", "showarrow": False, "yanchor": "middle",
+                    "font": {"size": 11},
+                }
+            )  # fmt: skip
+    return shapes, labels, int(starts.size - longest.size)
+
+
+def _flagged(
+    view: TestView, name: str, time: Floats, values: Floats, flags: Floats | None,
+    words: str, marker_colour: str, axis_name: str,
+) -> list[Trace]:  # fmt: skip
+    """Return one marker trace a mask that is set; a missing value is marked on the line."""
+    if flags is None or not flags.any():
+        return []
+    bits = flags.astype(np.int64)
+    finite = np.isfinite(values)
+    data: list[Trace] = []
+    for meaning, mask in view.flag_meanings(name).items():
+        own = np.flatnonzero(bits & mask)
+        if own.size == 0:
+            continue
+        # the place of a missing value is that of its neighbours
+        heights = (
+            np.interp(own, np.flatnonzero(finite), values[finite])
+            if finite.any()
+            else np.zeros(own.size)
+        )
+        kept = keep_extremes(time[own], heights, limit=FLAG_POINTS)
+        label = f"{meaning.replace('_', ' ')}, {words} ({own.size:,})"
+        data.append(
+            {
+                "type": "scatter",
+                "mode": "markers",
+                "name": plot_text(label, 60),
+                "x": plain_numbers(time[own][kept], TIME_DIGITS),
+                "y": plain_numbers(heights[kept]),
+                "yaxis": axis_name,
+                "marker": {"color": marker_colour, "symbol": "x-thin-open", "size": 7},
+                **({"visible": "legendonly"} if meaning in COMMON_FLAGS else {}),
+            }
+        )
+    return data

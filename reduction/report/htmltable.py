@@ -1,0 +1,133 @@
+"""A table as the template prints it: header cells with units, numbers with their uncertainty.
+
+What a reader sees is rounded to what is known; the value of the archive, SI and unrounded,
+is beside it in ``data-value`` for a program that reads the page.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import floor, isfinite, log10
+
+from reduction.report.style import Shown
+
+__all__ = [
+    "NOT_GIVEN",
+    "Cell",
+    "Table",
+    "make_table",
+    "measured",
+    "number",
+    "number_text",
+    "span",
+    "words",
+]
+
+NOT_GIVEN = "\N{EN DASH}"
+_MOST_DECIMALS = 12
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell: text as shown, the archive's own value, and whether it is a number."""
+
+    text: str
+    value: str = ""
+    is_number: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table; the first cell of a row heads it.  ``caption`` is plain text."""
+
+    caption: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    is_tall: bool = False
+
+    @property
+    def number_columns(self) -> tuple[bool, ...]:
+        """Which columns hold numbers: they stand flush right, header and all."""
+        return tuple(
+            any(row[place].is_number for row in self.rows) for place in range(len(self.columns))
+        )
+
+
+def make_table(
+    caption: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[Cell]],
+    *,
+    synthetic: bool,
+    is_tall: bool = False,
+) -> Table:
+    """Return a table; the caption says where the data are synthetic."""
+    text = f"{caption} SYNTHETIC DATA." if synthetic else caption
+    return Table(text, tuple(columns), tuple(tuple(row) for row in rows), is_tall)
+
+
+def words(text: str) -> Cell:
+    """Return a cell of text."""
+    return Cell(text or NOT_GIVEN)
+
+
+def number(value: float, unit: Shown | None = None, *, digits: int = 4) -> Cell:
+    """Return a cell of one number, of so many digits."""
+    scale = 1.0 if unit is None else unit.factor
+    return Cell(number_text(value * scale, digits), _exact(value), is_number=True)
+
+
+def number_text(value: float, digits: int = 4) -> str:
+    """Return a number of so many digits, without a power of ten where it can be read so.
+
+    Examples
+    --------
+    >>> number_text(1234567.0), number_text(0.012345)
+    ('1,234,567', '0.01235')
+    """
+    if not isfinite(value):
+        return NOT_GIVEN
+    if value != 0 and not 1e-4 <= abs(value) < 1e9:
+        return f"{value:.{digits - 1}e}"
+    return f"{value:,.{_decimals(value, digits)}f}"
+
+
+def measured(value: float, uncertainty: float, unit: Shown | None = None) -> Cell:
+    """Return a cell of a value and its standard uncertainty, to two digits of the latter.
+
+    Examples
+    --------
+    >>> measured(1.23456e6, 1.2e4, Shown("MPa", 1e-6)).text
+    '1.235 ± 0.012'
+    """
+    scale = 1.0 if unit is None else unit.factor
+    if not isfinite(value):
+        return Cell(NOT_GIVEN, "", is_number=True)
+    if not isfinite(uncertainty) or uncertainty <= 0:
+        return number(value, unit)
+    half = uncertainty * scale
+    if not 1e-6 <= half < 1e9:
+        return Cell(f"{value * scale:.4g} ± {half:.2g}", _exact(value), is_number=True)
+    places = _decimals(half, 2)
+    return Cell(f"{value * scale:,.{places}f} ± {half:,.{places}f}", _exact(value), is_number=True)
+
+
+def span(low: float, high: float, unit: Shown, *, digits: int = 4) -> Cell:
+    """Return a cell of a range, both ends to the same decimal place."""
+    if not (isfinite(low) and isfinite(high)):
+        return Cell(NOT_GIVEN, "", is_number=True)
+    ends = (low * unit.factor, high * unit.factor)
+    places = _decimals(max(map(abs, ends)), digits)
+    text = " to ".join(f"{end:,.{places}f}" for end in ends)
+    return Cell(text, f"{_exact(low)} {_exact(high)}", is_number=True)
+
+
+def _decimals(value: float, digits: int) -> int:
+    if value == 0:
+        return 0
+    return min(max(digits - 1 - floor(log10(abs(value))), 0), _MOST_DECIMALS)
+
+
+def _exact(value: float) -> str:
+    return repr(float(value)) if isfinite(value) else ""

@@ -1,0 +1,152 @@
+"""The report of a campaign: one page, made from its archives alone, that opens from disk.
+
+Nothing is fetched: plotly stands in the page once, figures are JSON beside their captions
+and are drawn when a reader comes to them.  Names out of files are escaped wherever they
+show, in the text by the template and in the figures by `reduction.report.figure`.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+
+from jinja2 import Environment, StrictUndefined
+from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
+
+from reduction import __version__
+from reduction.archive.open import open_archive
+from reduction.archive.write import write_whole
+from reduction.errors import ArchiveError
+from reduction.report.figures.campaign import (
+    draw_all_moduli,
+    draw_amplitude_pairs,
+    draw_parts,
+    draw_ratios,
+    draw_static_dynamic,
+)
+from reduction.report.section import Section, make_part, make_section
+from reduction.report.specimentables import specimen_table
+from reduction.report.summary import find_faults, test_table, tiles
+from reduction.report.testtables import segment_table
+from reduction.report.view import Status, TestView, natural_order
+from reduction.units import UnitSystem
+
+__all__ = ["write_report"]
+
+_LAST = 10**9
+
+
+def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Path:
+    """Write the page of a campaign.
+
+    Parameters
+    ----------
+    processed : pathlib.Path
+        Folder of the archives; status.csv beside them is read where it is there.
+    out : pathlib.Path
+        Folder of the page; made where it is not there.
+    units : UnitSystem
+        What a reader is shown; ``us`` is psi, lbf and ft.
+
+    Returns
+    -------
+    page : pathlib.Path
+        ``out/index.html``; it appears whole or not at all.
+
+    Raises
+    ------
+    ArchiveError
+        If the folder holds neither an archive nor a status.csv, or the disk refuses.
+    """
+    paths = sorted(processed.glob("*.nc"), key=lambda path: natural_order(path.stem))
+    statuses = _read_statuses(processed / "status.csv")
+    if not paths and not statuses:
+        raise ArchiveError(
+            "there is nothing to report on",
+            found=f"no archive and no status.csv in {processed}",
+            needed="the folder of a campaign, such as processed/CAMPAIGN",
+            hint="Run the campaign first.",
+        )
+    by_test = {row.test: row for row in statuses}
+    tests: list[TestView] = []
+    sections: list[Section] = []
+    unreadable: dict[str, str] = {}
+    for index, path in enumerate(paths):
+        try:
+            with open_archive(path) as data:
+                view = TestView(f"test-{index}", data, units, by_test.get(data.attrs["test"]))
+                sections.append(make_section(view))
+                tests.append(view.without_samples())
+        except ArchiveError as error:
+            unreadable[path.name] = str(error)
+    order = sorted(range(len(tests)), key=lambda place: _place(tests[place]))
+    tests = [tests[place] for place in order]
+    html = _render(
+        tests, [sections[place] for place in order], statuses, unreadable, units, processed.name
+    )
+    page = out / "index.html"
+    write_whole(page, html)
+    return page
+
+
+def _render(
+    tests: Sequence[TestView],
+    sections: Sequence[Section],
+    statuses: Sequence[Status],
+    unreadable: dict[str, str],
+    units: UnitSystem,
+    folder: str,
+) -> str:
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    room = files("reduction.report")
+    template = environment.from_string((room / "templates" / "page.html").read_text("utf-8"))
+    faults = find_faults(tests, statuses, unreadable)
+    comparisons = [
+        make_part("All tests in one figure", draw_all_moduli(tests)),
+        make_part("One specimen over another", draw_ratios(tests)),
+        make_part("Mean strain and amplitude", draw_amplitude_pairs(tests)),
+        make_part("Start against end", draw_parts(tests)),
+        make_part("Static against dynamic", draw_static_dynamic(tests)),
+    ]
+    first = tests[0] if tests else None
+    return template.render(
+        title=(first.attribute("title") if first else "") or f"Campaign {folder}",
+        campaign=first.attribute("campaign") if first else folder,
+        summary=first.attribute("summary") if first else "",
+        institution=first.attribute("institution") if first else "",
+        references=first.attribute("references") if first else "",
+        synthetic=any(view.is_synthetic for view in tests),
+        tiles=tiles(tests, statuses, faults),
+        specimens=specimen_table(tests, units),
+        tests=test_table(tests, statuses),
+        answer=segment_table(tests),
+        faults=faults,
+        comparisons=[part for part in comparisons if part.figures],
+        sections=sections,
+        units="US customary" if units == "us" else "SI",
+        version=__version__,
+        style=(room / "static" / "page.css").read_text("utf-8"),
+        script=(room / "static" / "page.js").read_text("utf-8"),
+        plotly=get_plotlyjs(),
+    )
+
+
+def _read_statuses(path: Path) -> list[Status]:
+    if not path.is_file():
+        return []
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ArchiveError(f"{path} cannot be read", found=str(error)) from error
+    names = Status.__dataclass_fields__
+    return [Status(**{name: row.get(name) or "" for name in names}) for row in rows]
+
+
+def _place(view: TestView) -> tuple[int, tuple[tuple[int, int, str], ...]]:
+    order = view.attribute("test_order")
+    return (int(order) if order.isdigit() else _LAST), natural_order(view.id)

@@ -1,0 +1,121 @@
+"""The section of one test: its parts in reading order, each with figures and tables."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from reduction.report.figure import Figure
+from reduction.report.figures.elastomers import draw_mooney
+from reduction.report.figures.holds import draw_holds
+from reduction.report.figures.loops import draw_loops
+from reduction.report.figures.moduli import draw_cycle_curves, draw_moduli
+from reduction.report.figures.record import draw_record, draw_tension_position
+from reduction.report.figures.steps import draw_steps
+from reduction.report.figures.trends import draw_trends
+from reduction.report.holdtables import hold_table, prony_table
+from reduction.report.htmltable import Table
+from reduction.report.specimentables import (
+    coefficient_table,
+    history_table,
+    mark_table,
+    slope_sentences,
+)
+from reduction.report.steptables import interval_table, step_table
+from reduction.report.testtables import (
+    elastomer_table,
+    flag_table,
+    identity_table,
+    segment_table,
+    slip_table,
+    stress_table,
+    summary_table,
+)
+from reduction.report.view import TestView
+
+__all__ = ["Part", "Section", "make_part", "make_section"]
+
+_LINES = ("raw_file", "raw_file_sha256", "raw_file_bytes")
+_LONG = ("settings", "raw_metadata", "history")
+
+
+@dataclass(frozen=True)
+class Part:
+    """One heading with sentences, figures and tables under it."""
+
+    heading: str
+    figures: tuple[Figure, ...] = ()
+    tables: tuple[Table, ...] = ()
+    sentences: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Section:
+    """One test: its parts, and where its numbers come from."""
+
+    key: str
+    title: str
+    subtitle: str
+    parts: tuple[Part, ...]
+    provenance: tuple[tuple[str, str], ...]
+    documents: tuple[tuple[str, str], ...] = field(default=())
+
+
+def make_part(
+    heading: str,
+    figures: Sequence[Figure] = (),
+    tables: Sequence[Table | None] = (),
+    sentences: Sequence[str] = (),
+) -> Part:
+    """Return a part; tables that a test does not give are left out."""
+    given = tuple(table for table in tables if table is not None)
+    return Part(heading, tuple(figures), given, tuple(sentences))
+
+
+def make_section(view: TestView) -> Section:
+    """Return the section of one test; parts with nothing in them are left out."""
+    parts = [
+        make_part("Stepwise readings", draw_steps(view), [step_table(view), interval_table(view)]),
+        make_part("Modulus against strain", draw_moduli(view), [segment_table([view])]),
+        make_part(
+            "Record",
+            [*draw_record(view), *draw_tension_position(view), *draw_loops(view)],
+            [flag_table(view)],
+        ),
+        make_part(
+            "Cycle by cycle", [*draw_trends(view), *draw_cycle_curves(view)],
+            [summary_table(view), slip_table(view), identity_table(view)],
+        ),
+        make_part("Holds", draw_holds(view), [hold_table(view), prony_table(view)]),
+        make_part(
+            "Strain and splices", (), [coefficient_table(view), mark_table(view)],
+            slope_sentences(view),
+        ),
+        make_part("First loading", draw_mooney(view), [stress_table(view), elastomer_table(view)]),
+        make_part("History of the specimens", (), [history_table(view)]),
+    ]  # fmt: skip
+    known = {*_LINES, *_LONG, "test", "title", "id"}
+    about = [
+        (name, " ".join(str(value).splitlines()))
+        for name, value in view.data.attrs.items()
+        if name not in known
+    ]
+    lines = [(name, view.attribute(name)) for name in _LINES]
+    documents = [(name, _readable(view.attribute(name))) for name in _LONG]
+    return Section(
+        key=view.key,
+        title=view.id,
+        subtitle=f"{view.kind}; specimens: {', '.join(view.specimens)}",
+        parts=tuple(part for part in parts if part.figures or part.tables or part.sentences),
+        provenance=tuple((name, text) for name, text in (*lines, *about) if text),
+        documents=tuple((name, text) for name, text in documents if text),
+    )
+
+
+def _readable(text: str) -> str:
+    """Return JSON with line ends; other text as it is."""
+    try:
+        return json.dumps(json.loads(text), indent=1, ensure_ascii=False)
+    except json.JSONDecodeError:
+        return text

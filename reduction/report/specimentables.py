@@ -1,0 +1,187 @@
+"""Tables about the specimens: what they are, what they had seen, how their strain was found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from reduction.archive.schema import COEFFICIENTS
+from reduction.report.htmltable import (
+    NOT_GIVEN,
+    Cell,
+    Table,
+    make_table,
+    measured,
+    number,
+    span,
+    words,
+)
+from reduction.report.style import Shown, shown
+from reduction.report.view import TestView
+from reduction.units import UnitSystem
+from reduction.vocabulary import QUANTITIES
+
+__all__ = ["coefficient_table", "history_table", "mark_table", "slope_sentences", "specimen_table"]
+
+
+def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> Table:
+    """Return the specimens of a campaign, each once, as its first test has it."""
+    small, area, force = shown("small length", units), shown("area", units), shown("tension", units)
+    rows: dict[str, list[Cell]] = {}
+    for view in tests:
+        notes = list(zip(view.texts("note_stage"), view.texts("note"), strict=True))
+        for place, name in enumerate(view.specimens):
+            if name in rows:
+                continue
+            own = [text for stage, text in notes if stage == f"specimen {name}"]
+            rows[name] = [
+                words(name),
+                words(_text(view, "specimen_kind", place)),
+                words(_text(view, "specimen_material", place)),
+                words(_text(view, "specimen_condition", place)),
+                number(_value(view, "diameter", place), small),
+                number(_value(view, "area", place), area),
+                number(_value(view, "rated_break_strength", place), force),
+                words(" ".join(own)),
+            ]
+    columns = (
+        "specimen", "kind", "material", "condition", small.label("diameter"),
+        area.label("area at zero tension"), force.label("rated break strength"), "notes",
+    )  # fmt: skip
+    return make_table(
+        "Specimens before their first test; the diameter is the mean of the readings.", columns,
+        list(rows.values()), synthetic=any(view.is_synthetic for view in tests),
+    )  # fmt: skip
+
+
+def history_table(view: TestView) -> Table | None:
+    """Return what each specimen had seen before the test."""
+    if "earlier_cycles" not in view.data:
+        return None
+    percent, force = shown("strain", view.units), shown("tension", view.units)
+    rows = [
+        [
+            words(name),
+            words(_text(view, "earlier_tests", place) or "none"),
+            number(_value(view, "earlier_cycles", place), digits=9),
+            number(_value(view, "earlier_maximum_strain", place), percent),
+            number(_value(view, "earlier_maximum_tension", place), force),
+        ]
+        for place, name in enumerate(view.specimens)
+    ]
+    columns = (
+        "specimen", "earlier tests", "earlier cycles [1]", percent.label("greatest strain seen"),
+        force.label("greatest tension seen"),
+    )  # fmt: skip
+    return make_table(
+        "What each specimen had seen before this test.", columns, rows, synthetic=view.is_synthetic
+    )
+
+
+def coefficient_table(view: TestView) -> Table | None:
+    """Return how crosshead position became strain: method, range of the marks, coefficients."""
+    methods = view.texts("strain_method")
+    if not methods:
+        return None
+    rows = []
+    for place, (name, method) in enumerate(zip(view.specimens, methods, strict=True)):
+        for what, cell, unit in _coefficients(view, place):
+            rows.append([words(name), words(method), words(what), cell, words(unit)])
+    return make_table(
+        "Position to strain of the splice-free length: method, and what it goes by; ±: standard"
+        " uncertainty.",
+        ("specimen", "method", "coefficient or range", "value ± standard uncertainty", "unit"),
+        rows, synthetic=view.is_synthetic,
+    )  # fmt: skip
+
+
+def slope_sentences(view: TestView) -> list[str]:
+    """Return what a constant splice fraction would make of the moduli, one sentence a specimen.
+
+    A modulus goes as the inverse of the strain slope.
+    """
+    ratio = view.array("strain_slope_ratio")
+    if ratio is None:
+        return []
+    methods = view.texts("strain_method")
+    found = []
+    for place, name in enumerate(view.specimens):
+        if not np.isfinite(ratio[place]) or ratio[place] <= 0:
+            continue
+        if methods[place] == "constant-fraction":
+            continue
+        excess = 100.0 * (1.0 / ratio[place] - 1.0)
+        side = "high" if excess >= 0 else "low"
+        found.append(
+            f"{name}: a constant splice fraction, the method printed in WHOI-2005-10, reads these"
+            f" moduli {abs(excess):.1f} % {side} (strain slope {ratio[place]:.3f} of the one used"
+            " here)."
+        )
+    return found
+
+
+def mark_table(view: TestView) -> Table | None:
+    """Return the readings at the splice marks, and how far the method is off at each."""
+    position = view.array("mark_position")
+    if position is None:
+        return None
+    length, force = shown("length", view.units), shown("tension", view.units)
+    percent = shown("strain", view.units)
+    strain = view.array_like("mark_strain", position)
+    tension = view.array_like("mark_tension", position)
+    residual = view.array_like("mark_strain_residual", position)
+    labels = (view.texts("mark_specimen"), view.texts("mark_test"), view.texts("mark_hold"))
+    rows = [
+        [
+            *(words(text[place]) for text in labels),
+            number(position[place], length),
+            number(tension[place], force),
+            number(strain[place], percent),
+            number(strain[place] + residual[place], percent),
+            Cell(_signed(residual[place]), repr(float(residual[place])), is_number=True),
+        ]
+        for place in range(position.size)
+    ]
+    columns = (
+        "specimen", "test", "hold", length.label("position"), force.label("tension"),
+        percent.label("strain at the marks"), percent.label("strain by the method"),
+        "method minus marks [points of strain %]",
+    )  # fmt: skip
+    return make_table(
+        "Splice marks: what the tape read, and what the method makes of it.", columns, rows,
+        synthetic=view.is_synthetic, is_tall=len(rows) > 12,
+    )  # fmt: skip
+
+
+def _coefficients(view: TestView, place: int) -> Iterator[tuple[str, Cell, str]]:
+    length, force = shown("length", view.units), shown("tension", view.units)
+    marks_from = _text(view, "strain_marks_from", place)
+    if marks_from:
+        yield "marks from", words(marks_from), ""
+    for name in COEFFICIENTS.values():
+        value = _value(view, name, place)
+        if np.isfinite(value):
+            si_unit = QUANTITIES[name].unit
+            # c of c F**n goes with a force in newton; no other unit would keep its meaning
+            unit = length if si_unit == "m" else Shown("" if si_unit == "1" else si_unit, 1.0)
+            half = _value(view, f"{name}_standard_uncertainty", place)
+            yield QUANTITIES[name].long_name, measured(value, half, unit), unit.unit or "1"
+    for name, unit in (("position", length), ("tension", force)):
+        low, high = (_value(view, f"strain_{name}_{end}", place) for end in ("low", "high"))
+        if np.isfinite(low) and np.isfinite(high):
+            yield f"{name} at the marks", span(low, high, unit), unit.unit
+
+
+def _signed(residual: float) -> str:
+    return f"{100 * residual:+.2f}" if np.isfinite(residual) else NOT_GIVEN
+
+
+def _value(view: TestView, name: str, place: int) -> float:
+    values = view.array(name)
+    return float("nan") if values is None else float(values[place])
+
+
+def _text(view: TestView, name: str, place: int) -> str:
+    values = view.texts(name)
+    return values[place] if values else ""

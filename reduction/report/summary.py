@@ -1,0 +1,165 @@
+"""The first screen: what became of each test, and anything wrong, most serious first."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from reduction.report.htmltable import Cell, Table, make_table, number, span, words
+from reduction.report.style import shown
+from reduction.report.view import Status, TestView
+
+__all__ = ["Finding", "Severity", "Tile", "find_faults", "test_table", "tiles"]
+
+Severity = Literal["failure", "warning", "note", "refusal"]
+_ORDER: tuple[Severity, ...] = ("failure", "warning", "note", "refusal")
+_NOT_SHOWN = "no archive"
+# words of a note after which a reader may have to put a number aside; the rest is background
+_WARNING = re.compile(
+    r"contradict|disagree|inconsisten|differ|extrapolat|outside|saturat|stuck|spike|backward"
+    r"|repeated time|gap|missing|broken|slip|stepped|unstable|implies?|unequal|not constant"
+    r"|fewer|expected|wrong|creep",
+    re.IGNORECASE,
+)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that a reader must know, with the tests it concerns."""
+
+    severity: Severity
+    tests: tuple[str, ...]
+    text: str
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One number at the top of the page, and where it leads."""
+
+    number: str
+    words: str
+    target: str
+    is_bad: bool = False
+
+
+def find_faults(
+    tests: Sequence[TestView], statuses: Sequence[Status], unreadable: Mapping[str, str]
+) -> list[Finding]:
+    """Return failures, then warnings, notes and refusals; the same text of many tests once.
+
+    Parameters
+    ----------
+    tests : sequence of TestView
+        The archives that could be read.
+    statuses : sequence of Status
+        Rows of status.csv.
+    unreadable : mapping of str to str
+        File name to message, of the files that could not be read.
+    """
+    gathered: dict[tuple[Severity, str], list[str]] = {}
+    for severity, test, text in _all_faults(tests, statuses, unreadable):
+        gathered.setdefault((severity, text), []).append(test)
+    found = [
+        Finding(severity, tuple(dict.fromkeys(names)), text)
+        for (severity, text), names in gathered.items()
+    ]
+    return sorted(found, key=lambda one: _ORDER.index(one.severity))
+
+
+def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> Table:
+    """Return what was tested: target, cycles found, status; a test without archive too."""
+    rows = [_test_row(view) for view in tests]
+    shown_ids = {view.id for view in tests}
+    for row in statuses:
+        if row.test not in shown_ids:
+            empty = [words("")] * 5
+            rows.append([words(row.test), *empty, words(f"{_words(row.status)}, {_NOT_SHOWN}")])
+    synthetic = any(view.is_synthetic for view in tests)
+    columns = (
+        "test", "kind", "specimens", "strain reached [%]", "cycles found [1]", "samples [1]",
+        "status",
+    )  # fmt: skip
+    return make_table("Tests in the order they were made.", columns, rows, synthetic=synthetic)
+
+
+def tiles(
+    tests: Sequence[TestView], statuses: Sequence[Status], faults: Sequence[Finding]
+) -> list[Tile]:
+    """Return the numbers at the top: tests, specimens, failures, warnings."""
+    counts = {name: sum(one.severity == name for one in faults) for name in _ORDER}
+    n_tests = len({view.id for view in tests} | {row.test for row in statuses})
+    n_specimens = len({name for view in tests for name in view.specimens})
+    n_cycles = sum(view.n_cycles for view in tests)
+    return [
+        Tile(f"{n_tests:,}", "tests" if n_tests != 1 else "test", "tested"),
+        Tile(f"{n_specimens:,}", "specimens" if n_specimens != 1 else "specimen", "tested"),
+        Tile(f"{n_cycles:,}", "cycles reduced", "answer"),
+        Tile(f"{counts['failure']:,}", "failures", "wrong", counts["failure"] > 0),
+        Tile(f"{counts['warning']:,}", "warnings", "wrong", counts["warning"] > 0),
+        Tile(f"{counts['note'] + counts['refusal']:,}", "other notes", "wrong"),
+    ]
+
+
+def _all_faults(
+    tests: Sequence[TestView], statuses: Sequence[Status], unreadable: Mapping[str, str]
+) -> Iterator[tuple[Severity, str, str]]:
+    for name, message in unreadable.items():
+        yield "failure", name, f"This file is not shown: {message}"
+    archived = {view.id for view in tests}
+    for row in statuses:
+        if row.status == "failed":
+            yield "failure", row.test, row.message or "failed without a message"
+            if row.test in archived:
+                yield "failure", row.test, "What is shown below is an earlier run, kept."
+        elif row.test not in archived:
+            yield "warning", row.test, f"No archive; status is {_words(row.status)}. {row.message}"
+    for view in tests:
+        status = view.status
+        archived_hash = " ".join(view.attribute("raw_file_sha256").split())
+        if status and status.status != "failed" and status.raw_sha256 not in ("", archived_hash):
+            yield "warning", view.id, "The archive was made from other raw files than status.csv."
+        for stage, text in zip(view.texts("note_stage"), view.texts("note"), strict=True):
+            yield _severity(stage, text), view.id, f"{stage}: {text}"
+
+
+def _severity(stage: str, text: str) -> Severity:
+    if text.startswith("refused:"):
+        return "refusal"
+    if stage.startswith("specimen"):
+        return "note"
+    return "warning" if _WARNING.search(text) else "note"
+
+
+def _test_row(view: TestView) -> list[Cell]:
+    strain = view.array("strain")
+    reached = words("")
+    mean, amplitude = view.array("mean_strain"), view.array("strain_amplitude")
+    percent = shown("strain", view.units)
+    if mean is not None and amplitude is not None and np.isfinite(mean).any():
+        reached = span(
+            float(np.nanmean(mean - amplitude)), float(np.nanmean(mean + amplitude)), percent
+        )
+    elif strain is not None and np.isfinite(strain).any():
+        reached = span(float(np.nanmin(strain)), float(np.nanmax(strain)), percent)
+    status = "archived" if view.status is None else _words(view.status.status)
+    asked = view.attribute("n_cycles")
+    cycles = number(float(view.n_cycles), digits=9)
+    if asked and asked != str(view.n_cycles):
+        cycles = Cell(f"{view.n_cycles:,} of {asked}", str(view.n_cycles), is_number=True)
+    return [
+        words(view.id),
+        words(view.kind),
+        words(", ".join(view.specimens)),
+        reached,
+        cycles,
+        number(view.scalar("n_rows_kept"), digits=9),
+        words(status),
+    ]
+
+
+def _words(status: str) -> str:
+    return status.replace("_", " ")

@@ -1,0 +1,136 @@
+"""One reduced test as the page reads it: an archive, and what status.csv says about it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from reduction.record import Floats
+from reduction.units import UnitSystem
+
+__all__ = ["Status", "TestView", "natural_order"]
+
+
+@dataclass(frozen=True)
+class Status:
+    """One row of status.csv."""
+
+    test: str
+    status: str
+    message: str = ""
+    exit_status: str = ""
+    raw_sha256: str = ""
+    seconds: str = ""
+
+
+@dataclass(frozen=True)
+class TestView:
+    """One test on the page; a variable that the archive lacks is None.
+
+    Parameters
+    ----------
+    key : str
+        Prefix of every anchor of the test; made by the page, not from a name.
+    data : xarray.Dataset
+        The archive, strings decoded.
+    units : UnitSystem
+        What a reader is shown.
+    status : Status or None
+        Row of status.csv, where there is one.
+    """
+
+    __test__ = False  # a test of a tether, not of this software
+
+    key: str
+    data: xr.Dataset
+    units: UnitSystem = "si"
+    status: Status | None = None
+
+    @property
+    def id(self) -> str:
+        """Name of the test."""
+        return self.attribute("test")
+
+    @property
+    def kind(self) -> str:
+        """Kind of the test: cyclic, fatigue, relaxation, stepwise, ..."""
+        return self.attribute("test_kind")
+
+    @property
+    def is_synthetic(self) -> bool:
+        """True where no specimen was ever pulled."""
+        return self.attribute("synthetic").lower() == "yes"
+
+    @property
+    def is_stepwise(self) -> bool:
+        """True for weights hung one after another; there is no record then."""
+        return "step" in self.data.sizes
+
+    @property
+    def specimens(self) -> tuple[str, ...]:
+        """Names of the specimens."""
+        return self.texts("specimen")
+
+    @property
+    def n_cycles(self) -> int:
+        """Number of whole cycles."""
+        return int(self.data.sizes.get("cycle", 0))
+
+    def attribute(self, name: str) -> str:
+        """Global attribute as text; empty where there is none."""
+        return str(self.data.attrs.get(name, ""))
+
+    def array(self, name: str) -> Floats | None:
+        """Values of a variable; missing flags and counts keep their numbers."""
+        if name not in self.data:
+            return None
+        return np.asarray(self.data[name].values, dtype=np.float64)
+
+    def array_like(self, name: str, other: Floats) -> Floats:
+        """Values of a variable, or NaN in the shape of another."""
+        found = self.array(name)
+        return np.full(other.shape, np.nan) if found is None else found
+
+    def scalar(self, name: str) -> float:
+        """Value of a variable without dimensions; NaN where there is none."""
+        found = self.array(name)
+        return float("nan") if found is None else float(found)
+
+    def texts(self, name: str) -> tuple[str, ...]:
+        """Values of a text variable; empty where there is none."""
+        if name not in self.data:
+            return ()
+        return tuple(str(value) for value in np.ravel(self.data[name].values))
+
+    def text(self, name: str) -> str:
+        """Value of a text variable without dimensions."""
+        return " ".join(self.texts(name))
+
+    def flag_meanings(self, name: str) -> dict[str, int]:
+        """Meaning to mask or value of a flag variable, as the archive declares them."""
+        attributes = self.data[name].attrs
+        numbers = attributes.get("flag_masks", attributes.get("flag_values", ()))
+        words = str(attributes.get("flag_meanings", "")).split()
+        return {word: int(number) for word, number in zip(words, np.ravel(numbers), strict=True)}
+
+    def without_samples(self) -> TestView:
+        """Return the same test without its record, all in memory: what campaign figures use."""
+        return replace(self, data=self.data.drop_dims("sample", errors="ignore").load())
+
+
+def natural_order(name: str) -> tuple[tuple[int, int, str], ...]:
+    """Sort key that puts T-10 after T-2.
+
+    Examples
+    --------
+    >>> sorted(["T-10", "T-2", "hold"], key=natural_order)
+    ['hold', 'T-2', 'T-10']
+    """
+    return tuple(
+        (0, int(part), "") if part.isdigit() else (1, 0, part.lower())
+        for part in re.split(r"(\d+)", name)
+        if part
+    )
