@@ -103,8 +103,8 @@ def _on_slack(marks: SpliceMarks) -> tuple[str, ...]:
     growth = trend.slope * (length.size - 1)
     return (
         f"{marks.specimen}: the slack length grows by {1e3 * growth:.0f} mm "
-        f"({100 * growth / length[0]:.1f} %) from the first test to the last (permanent set, or a splice "
-        "let out); strain counts from the mean slack length",
+        f"({100 * growth / length[0]:.1f} %) from the first test to the last "
+        "(permanent set, or a splice let out); strain counts from the mean slack length",
     )
 
 
