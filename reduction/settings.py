@@ -90,7 +90,7 @@ class ModulusSettings:
     strain_bin_width: float | None = None
     """Spacing of the strain grid; None: a round number near a fortieth of the stroke. [1]"""
     window: float | None = None
-    """Width of the regression window; None: four bins, wider where samples are few. [1]"""
+    """Width of the regression window; None: five bins, more where samples are few. [1]"""
     minimum_count: int = 4
     """Fewest samples in a window that give a slope. [1]"""
     maximum_segments: int = 5

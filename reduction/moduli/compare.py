@@ -151,12 +151,18 @@ def compare_curves(
 
     Parameters
     ----------
-    numerator, denominator : ModulusCurves
-        Of two tests, or twice of the one that holds both specimens. [SI]
-    numerator_specimen, denominator_specimen : int
-        Place of the specimen in its curves. [1]
-    numerator_name, denominator_name : str
-        What they are called.
+    numerator : ModulusCurves
+        Of one test. [SI]
+    denominator : ModulusCurves
+        Of another, or the same again where one test holds both specimens. [SI]
+    numerator_specimen : int
+        Place of the specimen in the numerator. [1]
+    denominator_specimen : int
+        Place of the specimen in the denominator. [1]
+    numerator_name : str
+        What the numerator is called.
+    denominator_name : str
+        What the denominator is called.
 
     Returns
     -------
@@ -230,8 +236,10 @@ def compare_cycles(
         With the curves of selected cycles. [SI]
     specimen : int
         Place of the specimen in the curves. [1]
-    numerator_cycles, denominator_cycles : sequence of int
+    numerator_cycles : sequence of int
         Cycle numbers, all among ``selected_cycle``. [1]
+    denominator_cycles : sequence of int
+        The same for the denominator. [1]
 
     Returns
     -------

@@ -73,10 +73,14 @@ def chord_modulus(
 
     Parameters
     ----------
-    strain_low, strain_high : array_like, shape (...)
-        Strain at the two points. [1]
-    tension_low, tension_high : array_like, shape (...)
-        Tension there. [N]
+    strain_low : array_like, shape (...)
+        Strain at one point. [1]
+    strain_high : array_like, shape (...)
+        Strain at the other. [1]
+    tension_low : array_like, shape (...)
+        Tension at the first point. [N]
+    tension_high : array_like, shape (...)
+        Tension at the other. [N]
     area : array_like, shape (...)
         Cross-sectional area at zero tension. [m2]
 
