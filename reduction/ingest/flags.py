@@ -72,7 +72,7 @@ def flag_record(
     _set(position_flag, timing.backward, Quality.REPEATED_OR_BACKWARD_TIME)
     _set(position_flag, _spikes(position, settings), Quality.SPIKE)
     if "crosshead_position" in resampled:
-        position_flag |= Quality.RESAMPLED
+        position_flag |= np.uint16(Quality.RESAMPLED)
     for index, (name, load) in enumerate(zip(record.specimens, record.tension, strict=True)):
         flags = tension_flag[index]
         _set(flags, _missing(f"tension of '{name}'", load), Quality.MISSING)
@@ -82,7 +82,7 @@ def flag_record(
         _set(flags, stuck & ~saturated, Quality.STUCK)
         _set(flags, _spikes(load, settings), Quality.SPIKE)
         if f"tension.{index + 1}" in resampled:
-            flags |= Quality.RESAMPLED
+            flags |= np.uint16(Quality.RESAMPLED)
     for (index, start, stop), (low, high) in (verified or {}).items():
         outside = find_outside_range(record.tension[index, start:stop], low, high)
         _set(tension_flag[index, start:stop], outside, Quality.OUTSIDE_VERIFIED_RANGE)
@@ -111,7 +111,7 @@ def flag_record(
 
 def _set(flags: _Flags, where: Bools, mask: Quality) -> None:
     if where.any():
-        flags[where] |= mask
+        flags[where] |= np.uint16(mask)
 
 
 def _missing(name: str, values: Floats) -> Bools:

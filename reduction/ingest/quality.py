@@ -216,8 +216,8 @@ def noise_of(values: Floats) -> tuple[float, float]:
 def find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
     """Single samples far off both neighbours, on the same side.
 
-    The sample is off by ``factor`` times the noise and by three times every step
-    nearby, so that a reversal, the start of a ramp and a step are none.
+    The sample is off by ``factor`` times the noise and by three times the usual step
+    nearby, so that a reversal, the start of a ramp, a step and a rough stretch are none.
 
     Parameters
     ----------
@@ -245,13 +245,20 @@ def find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
             continue
         before, here, after = values[place - 1], values[place], values[place + 1]
         off = np.minimum(np.abs(here - before), np.abs(here - after))
-        last = values.size - 1
-        nearby = np.fmax(
-            np.abs(after - before),
-            np.fmax(
-                np.abs(before - values[np.maximum(place - 2, 0)]),
-                np.abs(values[np.minimum(place + 2, last)] - after),
-            ),
-        )
+        nearby = np.fmax(np.abs(after - before), _usual_step(values, place))
         is_spike[place[(off > limit) & (off > _SPIKE_TO_NEIGHBOURS * nearby)]] = True
     return is_spike
+
+
+def _usual_step(values: Floats, place: Integers) -> Floats:
+    """Third largest of the eight steps around a sample and its neighbours.
+
+    Another spike nearby makes two large steps, which are passed over.
+    """
+    around = np.concatenate([np.arange(-5, -1), np.arange(1, 5)])
+    left = place[:, np.newaxis] + around
+    is_inside = (left >= 0) & (left < values.size - 1)
+    left = np.where(is_inside, left, 0)
+    steps = np.where(is_inside, np.abs(values[left + 1] - values[left]), 0.0)
+    usual: Floats = np.sort(np.nan_to_num(steps), axis=1)[:, -3]
+    return usual
