@@ -95,4 +95,5 @@ class ReducedTest:
     stress_at_strain: Floats | None = None
     stress_at_strain_levels: tuple[float, ...] = ()
     permanent_set: Floats | None = None
+    permanent_set_standard_uncertainty: Floats | None = None
     stepwise: StepwiseResult | None = None

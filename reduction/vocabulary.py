@@ -151,7 +151,7 @@ _ROWS = (
     Quantity("segment_tension_low", "N", "tension at the lower end of the segment"),
     Quantity("segment_tension_high", "N", "tension at the upper end of the segment"),
     Quantity("strain_level", "1", "stated elongation"),
-    Quantity("stress_at_strain", "Pa", "nominal stress at a stated elongation"),
+    Quantity("stress_at_strain", "Pa", "nominal stress of the first loading at an elongation"),
     # elastomer laws
     Quantity("elastomer_specimen", "", "specimen of the elastomer fit"),
     Quantity("elastomer_law", "", "hyperelastic law"),

@@ -21,8 +21,6 @@ __all__ = [
     "stress_at_strain_values",
 ]
 
-EXPONENT_WORDS = ("exponent", "alpha")
-
 
 def curve_values(curves: ModulusCurves) -> Values:
     """Return the tangent modulus curves with their companions."""
@@ -99,7 +97,7 @@ def elastomer_values(fits: Sequence[ElastomerFit]) -> Values:
         for number, fit in enumerate(fits, start=1)
         for name, value in fit.parameters.items()
     ]
-    is_exponent = [any(word in name for word in EXPONENT_WORDS) for _, name, _, _ in rows]
+    is_exponent = ["exponent" in name for _, name, _, _ in rows]
     values: Values = {
         "elastomer_specimen": texts([fit.specimen for fit in fits]),
         "elastomer_law": texts([fit.law for fit in fits]),

@@ -127,6 +127,8 @@ def _all_values(test: ReducedTest) -> Values:
         values |= stress_at_strain_values(test.stress_at_strain, test.stress_at_strain_levels)
     if test.permanent_set is not None:
         values["permanent_set"] = test.permanent_set
+    if test.permanent_set_standard_uncertainty is not None:
+        values["permanent_set_standard_uncertainty"] = test.permanent_set_standard_uncertainty
     return values
 
 

@@ -258,7 +258,7 @@ _ROWS = chain(
     stated("segment_tension_high", _G, BOUND),
     label("segment_criterion"),
     stated("stress_at_strain", ("specimen", "strain_level"), NOT_EVALUATED),
-    stated("permanent_set", _S, NOT_EVALUATED),
+    measured("permanent_set", _S),
     # the ratio of two specimens
     label("ratio_numerator"),
     label("ratio_denominator"),

@@ -13,7 +13,7 @@ from reduction.archive.schema import SCHEMA
 from reduction.archive.variable import count, label, measured
 from reduction.record import Floats
 from reduction.tables.column import Cell, Column
-from reduction.tables.definitions import SYNTHETIC
+from reduction.tables.table import SYNTHETIC
 
 __all__ = ["ENVELOPE_COLUMNS", "Curve", "curves_of", "envelope_rows", "on_grid"]
 

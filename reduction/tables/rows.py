@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from reduction.record import Bools
 from reduction.tables.column import Cell, cells_of
-from reduction.tables.definitions import SYNTHETIC, TEST, Table
+from reduction.tables.table import SYNTHETIC, TEST, Table
 
 __all__ = ["table_rows"]
 

@@ -314,6 +314,7 @@ def rich_test():
         stress_at_strain=array(rng, 2, 2),
         stress_at_strain_levels=(1.0, 0.5),
         permanent_set=np.array([0.02, np.nan]),
+        permanent_set_standard_uncertainty=np.array([0.001, np.nan]),
     )
 
 

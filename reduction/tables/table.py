@@ -1,0 +1,76 @@
+"""What a table is: the variables of an archive that it lays out in rows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import xarray as xr
+
+from reduction.archive.schema import schema_of
+from reduction.archive.variable import Variable, count, label, stated
+from reduction.tables.column import Column, uncertainty_of
+
+__all__ = ["SYNTHETIC", "TEST", "Table"]
+
+TEST = Column("test", label("test")[0])
+SYNTHETIC = Column("synthetic", label("synthetic")[0])
+_OWN = {
+    row.name: row
+    for row in [
+        *count("n_cycles", ()),
+        *stated("strain_bin_low", ("strain_bin",), "bound"),
+        *stated("strain_bin_high", ("strain_bin",), "bound"),
+    ]
+}
+
+
+def _as_it_is(dataset: xr.Dataset) -> xr.Dataset:
+    return dataset
+
+
+@dataclass(frozen=True)
+class Table:
+    """One file of tables: a row for each combination of the entries of ``dims``.
+
+    Parameters
+    ----------
+    name : str
+        File name without suffix.
+    dims : tuple of str
+        Slowest first; a dimension with a coordinate gives a column.
+    variables : tuple of str
+        Of the archive, in order; ``column=variable`` gives it another name here. A
+        measured one is followed by its standard uncertainty.
+    needs : tuple of str
+        A row is written where one of these is known.
+    prepare : callable
+        What has to be done to the archive first.
+    is_stepwise : bool
+        True where the names are those of a stepwise test.
+    """
+
+    name: str
+    dims: tuple[str, ...]
+    variables: tuple[str, ...]
+    needs: tuple[str, ...]
+    prepare: Callable[[xr.Dataset], xr.Dataset] = _as_it_is
+    is_stepwise: bool = False
+
+    @property
+    def columns(self) -> list[Column]:
+        """Every column, the test first and the word on synthetic data last."""
+        schema = schema_of(is_stepwise=self.is_stepwise) | _OWN
+        columns = [TEST]
+        for item in (*(dim for dim in self.dims if dim in schema), *self.variables):
+            name, _, source = item.partition("=")
+            column = _column(name, schema[source or name])
+            columns.append(column)
+            if column.variable.has_uncertainty:
+                columns.append(uncertainty_of(column))
+        return [*columns, SYNTHETIC]
+
+
+def _column(name: str, variable: Variable) -> Column:
+    # the axis is `branch_name`, since `branch` is a flag of the samples
+    return Column("branch" if name == "branch_name" else name, variable)
