@@ -1,0 +1,50 @@
+"""The schema has a place for all that the stages can hand on."""
+
+import inspect
+from dataclasses import fields
+
+import pytest
+
+from reduction.archive.schema import COEFFICIENTS, SCHEMA
+from reduction.cycles.product import Loops
+from reduction.moduli.hyperelastic import PARAMETERS
+from reduction.moduli.product import AmplitudeSummary
+from reduction.strain import methods, splice
+
+PER_CYCLE = [item.name for item in fields(Loops) if item.name != "uncertainty"]
+OF_TEST = [item.name for item in fields(AmplitudeSummary) if item.name != "uncertainty"]
+
+
+@pytest.mark.parametrize(
+    "strain",
+    [
+        methods.marked_line_strain,
+        methods.splice_ratio_strain,
+        methods.tension_driven_strain,
+        methods.gauge_length_strain,
+        splice.free_length_strain,
+    ],
+)
+def test_every_coefficient_of_a_strain_method_has_a_name(strain):
+    coefficients = [
+        name
+        for name, parameter in inspect.signature(strain).parameters.items()
+        if parameter.kind is inspect.Parameter.KEYWORD_ONLY
+    ]
+    assert coefficients
+    assert set(coefficients) - {"tension"} <= set(COEFFICIENTS)
+
+
+def test_only_the_ogden_law_has_exponents():
+    for law, names in PARAMETERS.items():
+        assert any("exponent" in name for name in names) == (law == "ogden-2")
+
+
+@pytest.mark.parametrize("name", PER_CYCLE)
+def test_every_number_of_a_loop_has_a_place(name):
+    assert SCHEMA[name].dims == ("specimen", "cycle")
+
+
+@pytest.mark.parametrize("name", OF_TEST)
+def test_every_mean_over_a_test_has_a_place_of_its_own(name):
+    assert SCHEMA[f"test_{name}"].dims == ("specimen",)
