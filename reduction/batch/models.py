@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -16,14 +16,16 @@ from reduction.strain.model import StrainModel
 __all__ = ["fit_strain_models"]
 
 
-def _pooled_tension(marks: SpliceMarks, surveys: Sequence[Survey]) -> Floats:
+def _pooled(
+    marks: SpliceMarks, surveys: Sequence[Survey], measured: Callable[[Survey], dict[str, Floats]]
+) -> Floats:
     """One tension a mark, in the order of the marks; NaN where its test could not be read."""
     tension = np.full(len(marks.test), np.nan)
     of_test = np.array(marks.test)
     for survey in surveys:
-        measured = survey.mark_tension.get(marks.specimen)
-        if measured is not None:
-            tension[of_test == survey.plan.id] = measured
+        values = measured(survey).get(marks.specimen)
+        if values is not None:
+            tension[of_test == survey.plan.id] = values
     return tension
 
 
@@ -46,7 +48,14 @@ def fit_strain_models(
     errors : dict of test to ReductionError
         Tests that have no way from position to strain.
     """
-    tensions = {name: _pooled_tension(marks, surveys) for name, marks in campaign.marks.items()}
+    at_end = {
+        name: _pooled(marks, surveys, lambda survey: survey.mark_tension)
+        for name, marks in campaign.marks.items()
+    }
+    at_start = {
+        name: _pooled(marks, surveys, lambda survey: survey.mark_tension_at_start)
+        for name, marks in campaign.marks.items()
+    }
     models: dict[tuple[str, str], StrainModel] = {}
     errors: dict[str, ReductionError] = {}
     for survey in surveys:
@@ -58,8 +67,11 @@ def fit_strain_models(
                     campaign.specimens[name],
                     test_id=survey.plan.id,
                     marks=campaign.marks.get(name),
-                    mark_tension=tensions.get(name),
+                    mark_tension=at_end.get(name),
+                    mark_tension_at_start=at_start.get(name),
                     settings=survey.plan.settings.strain,
+                    has_extensometer=survey.has_extensometer,
+                    reference_position=survey.zero_strain_position,
                 )
             except ReductionError as error:
                 errors[survey.plan.id] = error

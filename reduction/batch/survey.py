@@ -18,7 +18,7 @@ from reduction.ingest.steps import read_step_readings
 from reduction.pipeline import Located, locate
 from reduction.provenance import Source
 from reduction.record import Floats, Record, SpliceMarks, StepReadings
-from reduction.strain.fit import measure_mark_tension
+from reduction.strain.fit import measure_mark_tension, zero_strain_position
 
 __all__ = ["Survey", "located_again", "read_test", "survey_campaign"]
 
@@ -42,6 +42,9 @@ class Survey:
     n_rows: int = 0
     n_cycles: int = 0
     mark_tension: dict[str, Floats] = field(default_factory=dict)
+    mark_tension_at_start: dict[str, Floats] = field(default_factory=dict)
+    zero_strain_position: float | None = None
+    has_extensometer: bool = False
     greatest: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     error: ReductionError | None = None
 
@@ -141,6 +144,10 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
 def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Survey:
     located = locate(record, kind=plan.kind, settings=plan.settings)
     survey = Survey(plan, sources, located, n_rows=record.n_samples)
+    survey.zero_strain_position = zero_strain_position(
+        located.standstills, position_is_length=record.position_is_length
+    )
+    survey.has_extensometer = record.measured_strain is not None
     survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
     position = record.crosshead_position
     if np.isfinite(position).any():
@@ -155,14 +162,21 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
 def _measure_marks(survey: Survey, marks: dict[str, SpliceMarks]) -> None:
     if survey.located is None:
         return
+    record, standstills = survey.located.record, survey.located.standstills
     for index, name in enumerate(survey.plan.specimens):
         if name in marks and survey.plan.id in marks[name].test:
-            survey.mark_tension[name] = measure_mark_tension(
-                marks[name],
-                test_id=survey.plan.id,
-                standstills=survey.located.standstills,
-                specimen_index=index,
+            read_at_end, read_at_start = (
+                measure_mark_tension(
+                    marks[name],
+                    test_id=survey.plan.id,
+                    standstills=standstills,
+                    tension=record.tension[index],
+                    reading=reading,
+                )
+                for reading in ("end", "start")
             )
+            survey.mark_tension[name] = read_at_end
+            survey.mark_tension_at_start[name] = read_at_start
 
 
 def survey_campaign(
@@ -201,10 +215,15 @@ def survey_campaign(
     return surveys
 
 
-def located_again(campaign: Campaign, survey: Survey) -> Located | None:
+def located_again(campaign: Campaign, survey: Survey) -> Located:
     """The record of a survey, read again where it was not kept."""
-    if survey.located is not None or survey.plan.kind == "stepwise":
+    if survey.located is not None:
         return survey.located
     whole = campaign.tests.get(survey.plan.id) or campaign.tests[survey.plan.id.rpartition(".")[0]]
-    again: Sequence[Survey] = read_test(campaign, whole)
-    return next(entry.located for entry in again if entry.plan.id == survey.plan.id)
+    for again in read_test(campaign, whole):
+        if again.plan.id == survey.plan.id and again.located is not None:
+            return again.located
+    raise DataError(
+        f"test '{survey.plan.id}' was read before and cannot be read again",
+        needed="raw files that stay as they are while a campaign runs",
+    )
