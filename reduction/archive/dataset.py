@@ -186,6 +186,8 @@ def _encoding(array: NDArray[Any], row: Variable, auxiliary: str) -> dict[str, A
     is_coordinate = row.is_bounds or row.name == "time" or row.dims == (row.name,)
     has_gaps = row.dtype == "f8" and not is_coordinate
     encoding: dict[str, Any] = {"dtype": row.dtype, "_FillValue": np.nan if has_gaps else None}
+    # labels are not listed: they have the names of their dimensions, by which a reader finds
+    # them, and CF advises against listing an array that shares the name of its dimension
     if auxiliary and auxiliary in row.dims and row.name != "time":
         encoding["coordinates"] = "time"
     if array.size >= _COMPRESSED_FROM:

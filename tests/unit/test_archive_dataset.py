@@ -246,6 +246,31 @@ def test_slips_that_were_looked_for_and_not_found_say_so(bare_test):
     assert "slip" not in dataset.sizes
 
 
+def without_cycles(cycles):
+    """The same cycles product with no whole cycle in it."""
+    per_cycle = ("first", "last", "branch_first", "branch_last", "plateau_rate")
+    return replace(cycles, **{name: getattr(cycles, name)[:0] for name in per_cycle})
+
+
+def test_a_log_without_a_whole_cycle_still_makes_an_archive(rich_test, write):
+    without = replace(
+        rich_test,
+        cycles=without_cycles(rich_test.cycles),
+        loops=None,
+        identity=None,
+        curves=None,
+        segments=None,
+        ratio=None,
+        amplitude=None,
+        trend=None,
+    )
+    path = write(without)
+    with open_archive(path) as archive:
+        assert "cycle" not in archive.sizes
+        assert archive["cycles_counted_by"].item() == "reversals"
+        assert archive["cycle_number"].dims == ("sample",)
+
+
 def test_every_note_of_every_stage_is_kept_once(rich_test):
     dataset = build(rich_test)
     notes = dict(zip(dataset["note"].values, dataset["note_stage"].values, strict=True))
