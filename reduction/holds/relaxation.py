@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite, as_increasing, as_same_shape
 from reduction.errors import DataError
-from reduction.holds.blocks import Blocks, sample_noise
+from reduction.holds.blocks import Blocks
+from reduction.moduli.noise import sample_noise
 from reduction.moduli.separable import lag_one_inflation
 from reduction.record import Floats
 

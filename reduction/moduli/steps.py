@@ -25,6 +25,7 @@ from scipy.stats import chi2, norm
 
 from reduction.checks import as_finite
 from reduction.errors import DataError
+from reduction.moduli.noise import sample_noise
 from reduction.record import Bools, Floats
 
 __all__ = ["Step", "find_steps", "ramp_of", "step_sizes"]
@@ -147,12 +148,22 @@ def _without_background(values: Floats) -> Floats:
     return residual
 
 
+def _noise(values: Floats) -> float:
+    """Standard deviation of the noise, from neighbours; steps and wild samples left out."""
+    squares = np.sort(np.diff(values) ** 2)
+    kept = squares[: max(1, int(np.ceil(0.98 * squares.size)))]
+    # Dropping the largest 2 % of Gaussian differences takes 13 % of their mean square.
+    return float(np.sqrt(kept.mean() / 2 / 0.87))
+
+
 def _without_outliers(values: Floats) -> Floats:
     """Replace single wild samples by the running median of five, which keeps every edge."""
     padded = np.pad(values, 2, mode="edge")
     median = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=-1)
     distance = np.abs(values - median)
-    return np.where(distance > 6 * MAD_TO_SIGMA * np.median(distance), median, values)
+    # The median alone would take a rounded series for free of noise.
+    spread = max(MAD_TO_SIGMA * float(np.median(distance)), _noise(values))
+    return np.where(distance > 6 * spread, median, values)
 
 
 def _windows(n_samples: int) -> list[tuple[int, int]]:
@@ -236,14 +247,6 @@ def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[Step, 
     return step, bool(is_step)
 
 
-def _noise(values: Floats) -> float:
-    """Standard deviation of the noise, from neighbours; steps and wild samples left out."""
-    squares = np.sort(np.diff(values) ** 2)
-    kept = squares[: max(1, int(np.ceil(0.98 * squares.size)))]
-    # Dropping the largest 2 % of Gaussian differences takes 13 % of their mean square.
-    return float(np.sqrt(kept.mean() / 2 / 0.87))
-
-
 def _is_recovery(step: Step, earlier: list[Step], reach: int) -> bool:
     """Return whether a change belongs to a larger, opposite step just before it.
 
@@ -319,7 +322,8 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
     begin before half the sample number: there softening is as fast as a step.  A change
     that takes longer than twice the window, or that a change of slope explains as
     well, is drift.  An opposite change of less than half the size just after a step is
-    its recovery, not a step.
+    its recovery, not a step.  Where the digitizer's step is coarser than the noise, a
+    drift moves in jumps of it, and nothing below one and a half of them is a step.
 
     Examples
     --------
@@ -344,10 +348,12 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
     sigma = max(_noise(remaining), 1e-9 * float(np.ptp(remaining)))
     if sigma == 0:
         return ()
+    _, quantum = sample_noise(series)
+    smallest = 1.5 * quantum if quantum > sigma else 0.0
     allowed = np.ones(series.size, dtype=bool)
     steps: list[Step] = []
-    recoveries = 0
-    while len(steps) + recoveries < MOST_STEPS:
+    explained = 0
+    while len(steps) + explained < MOST_STEPS:
         candidate, tried = _scan(_without_background(remaining), sigma, allowed)
         if candidate is None or abs(candidate.score) < norm.isf(false_alarm / (2 * tried)):
             break
@@ -360,8 +366,8 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
             remaining = remaining - step.size * ramp_of(
                 series.size, onset=step.onset, extent=step.extent
             )
-            if _is_recovery(step, steps, 2 * candidate.window):
-                recoveries += 1
+            if abs(step.size) < smallest or _is_recovery(step, steps, 2 * candidate.window):
+                explained += 1
             else:
                 steps.append(step)
         allowed[max(0, blocked[0]) : blocked[1] + 1] = False
