@@ -1,4 +1,4 @@
-"""Every note of every stage in one list, each once, with the stage that gave it."""
+"""Every note of every stage in one list, with the stage that gave it."""
 
 from __future__ import annotations
 
@@ -13,15 +13,18 @@ __all__ = ["note_values"]
 def note_values(test: ReducedTest) -> Values:
     """Return the notes in the order of the stages.
 
-    A note that is given twice is kept once, under the stage that is nearest to it.
+    The notes of the test repeat some of its stages; those are kept under the stage alone.
     """
-    once: dict[str, str] = {}
-    for stage, text in _all_notes(test):
-        once.setdefault(text, stage)
-    return {"note": texts(list(once)), "note_stage": texts(list(once.values()))}
+    pairs = list(dict.fromkeys(_stage_notes(test)))
+    said = {text for _, text in pairs}
+    pairs += [("test", text) for text in dict.fromkeys(test.notes) if text not in said]
+    return {
+        "note": texts([text for _, text in pairs]),
+        "note_stage": texts([stage for stage, _ in pairs]),
+    }
 
 
-def _all_notes(test: ReducedTest) -> Iterator[tuple[str, str]]:
+def _stage_notes(test: ReducedTest) -> Iterator[tuple[str, str]]:
     if test.record is not None:
         yield from (("ingest", text) for text in test.record.notes)
     for specimen in test.specimens:
@@ -46,4 +49,3 @@ def _all_notes(test: ReducedTest) -> Iterator[tuple[str, str]]:
         yield from (
             (f"hold {number} {hold.specimen}", f"refused: {text}") for text in hold.refusals
         )
-    yield from (("test", text) for text in test.notes)
