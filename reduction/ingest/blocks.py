@@ -88,7 +88,7 @@ def read_blocks(path: Path, layout: Layout, *, name: str) -> RawLog:
     kept = np.frombuffer(data, np.uint8)[np.repeat(used, lines.stops - starts)].tobytes()
     line_row = np.flatnonzero(used) + 1
     rows = TextRows(path, memoryview(kept.rstrip(b"\r\n")), int(line_row[0]), line_row)
-    columns, text = read_fields(rows, layout, wanted, len(names))
+    columns, text, _ = read_fields(rows, layout, wanted, len(names))
 
     metadata: dict[str, str] = {}
     loose = np.flatnonzero((in_block < 0) | (below & ~is_row))

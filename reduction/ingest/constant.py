@@ -15,9 +15,11 @@ from reduction.record import Bools, Floats, Integers
 __all__ = ["Runs", "constant_runs", "find_saturated", "find_stuck", "find_stuck_position", "moves"]
 
 _SATURATED_SAMPLES = 5
-_SATURATED_STEPS = 32
+_SATURATED_STEPS = 16.0
 _MOVING_NOISE = 10.0
 _MOVING_SHARE = 1e-3
+# places in a run at which position is looked at; uneven, or cycles could hide in between
+_LOOKS = np.sort(np.arange(16) * (np.sqrt(5) - 1) / 2 % 1)
 _SLACK_SHARE = 0.02
 _JUMP_SHARE = 0.1
 _RISE_SHARE = 0.25
@@ -91,9 +93,9 @@ def moves(position: Floats, runs: Runs) -> Bools:
         return np.empty(0, dtype=bool)
     noise, _ = noise_of(position)
     tolerance = _MOVING_NOISE * noise + _MOVING_SHARE * np.nanmax(np.abs(position - position[0]))
-    first, middle = position[runs.start], position[(runs.start + runs.stop) // 2]
-    last = position[runs.stop - 1]
-    travel = np.fmax(np.abs(middle - first), np.fmax(np.abs(last - middle), np.abs(last - first)))
+    length = (runs.stop - runs.start)[:, np.newaxis]
+    looks = position[runs.start[:, np.newaxis] + (_LOOKS * length).astype(np.int64)]
+    travel = np.fmax.reduce(looks, axis=1) - np.fmin.reduce(looks, axis=1)
     return np.asarray(travel > tolerance)
 
 
@@ -161,14 +163,28 @@ def find_saturated(tension: Floats, position: Floats) -> Bools:
         runs = runs.where(length >= _SATURATED_SAMPLES)
         if not runs.start.size:
             continue
-        _, step = noise_of(tension)
-        length = runs.stop - runs.start
-        before = np.abs(level - tension[np.maximum(runs.start - length, 0)])
-        after = np.abs(level - tension[np.minimum(runs.stop - 1 + length, tension.size - 1)])
-        steep = np.fmax(before, after) >= _SATURATED_STEPS * step
-        runs = runs.where(steep)
+        runs = runs.where(_comes_from_afar(tension, runs))
         is_saturated |= runs.where(moves(position, runs)).mask(tension.size)
     return is_saturated
+
+
+def _comes_from_afar(tension: Floats, runs: Runs) -> Bools:
+    """Whether the load beside a run changes by far more than it does at a rounded peak.
+
+    Where the top of a sine is one printed step high and as wide as the run, the load one
+    width further out is eight such steps lower; that of a triangle, two.
+    """
+    length, last = runs.stop - runs.start, tension.size - 1
+    level = tension[runs.start]
+    step = np.fmin(
+        np.abs(level - tension[np.maximum(runs.start - 1, 0)])
+        + np.where(runs.start == 0, np.inf, 0),
+        np.abs(level - tension[np.minimum(runs.stop, last)])
+        + np.where(runs.stop > last, np.inf, 0),
+    )
+    before = np.abs(level - tension[np.maximum(runs.start - length, 0)])
+    after = np.abs(level - tension[np.minimum(runs.stop - 1 + length, last)])
+    return np.asarray(np.fmax(before, after) >= _SATURATED_STEPS * step)
 
 
 def find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> Bools:
@@ -192,10 +208,14 @@ def find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> B
     if not runs.start.size:
         return runs.mask(position.size)
     rises = np.zeros(runs.start.size, dtype=bool)
-    edges = np.ravel(np.column_stack([runs.start, runs.stop - 1]))
+    middle = (runs.start + runs.stop) // 2
+    edges = np.ravel(np.column_stack([runs.start, middle, runs.stop - 1]))
     for load in tension:
         noise, _ = noise_of(load)
-        most = np.fmax.reduceat(load, edges)[::2]
         enough = max(_RISE_SHARE * float(np.nanmax(load) - np.nanmin(load)), _RISE_NOISE * noise)
-        rises |= most - load[runs.start] > enough
+        most = np.fmax.reduceat(load, edges).reshape(-1, 3)
+        least = np.fmin.reduceat(load, edges).reshape(-1, 3)
+        rises |= most[:, 1] - least[:, 0] > enough
+        rises |= np.fmax(most[:, 0], most[:, 1]) - load[runs.start] > enough
+        rises |= load[runs.stop - 1] - np.fmin(least[:, 0], least[:, 1]) > enough
     return runs.where(rises).mask(position.size)

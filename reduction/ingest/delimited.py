@@ -72,7 +72,7 @@ def read_delimited(path: Path, layout: Layout, *, name: str) -> RawLog:
             place = find_column(path, want, names[:n_fields], row=head.name_row)
             wanted.append((want, place))
         check_units(path, wanted, names=names, units=head.units, unit_row=head.unit_row)
-        columns, text = read_fields(rows, layout, wanted, n_fields)
+        columns, text, rows = read_fields(rows, layout, wanted, n_fields)
         n_rows = check_lengths(path, columns)
         row = rows.rows(n_rows)
     return RawLog(

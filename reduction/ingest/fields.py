@@ -105,7 +105,7 @@ def split_line(line: str, layout: Layout) -> list[str]:
 
 def read_fields(
     rows: TextRows, layout: Layout, wanted: Sequence[tuple[Wanted, int]], n_fields: int
-) -> tuple[dict[str, Floats], dict[str, tuple[str, ...]]]:
+) -> tuple[dict[str, Floats], dict[str, tuple[str, ...]], TextRows]:
     """Declared columns of delimited rows: numbers, and the text of a clock.
 
     Parameters
@@ -125,6 +125,8 @@ def read_fields(
         In the file's unit; declared missing marks are NaN.
     text : dict of str to tuple of str
         Clock text.
+    rows : TextRows
+        What was parsed: lines of blanks alone are empty in it.
 
     Raises
     ------
@@ -167,7 +169,7 @@ def read_fields(
                 column = _parse_as_text(rows, layout, n_fields, [place]).column(str(place))
             values = _second_look(rows, layout, want, column)
         columns[want.key] = without_marks(values, layout)
-    return columns, text
+    return columns, text, rows
 
 
 def _filled(table: pa.Table, place: int) -> Floats | None:
@@ -221,7 +223,7 @@ def _parse_as_text(
 def _blank_to_empty(rows: TextRows, layout: Layout) -> TextRows:
     """Lines of blanks alone made empty, so that they are no rows; line numbers stay."""
     blank = rb"(?m)^[ \t]+(?=\r?$)" if layout.delimiter != "\t" else rb"(?m)^ +(?=\r?$)"
-    text = re.sub(blank, b"", rows.text)
+    text = re.sub(blank, b"", rows.text).rstrip(b"\r\n")
     return TextRows(rows.path, memoryview(text), rows.first_row, rows.line_row)
 
 

@@ -109,6 +109,10 @@ def _to_matrix(path: Path, rows: Any, layout: Layout) -> Floats:
             found=type(rows).__name__,
             needed="a list of rows, each a list of numbers",
         )
+    if not rows:
+        raise LogError(
+            path, "there are no data rows", found=f"'{layout.matrix}' is empty", needed="rows"
+        )
     widths = [len(row) for row in rows]
     if len(set(widths)) > 1:
         bad = next(index for index, width in enumerate(widths) if width != widths[0])
@@ -121,7 +125,7 @@ def _to_matrix(path: Path, rows: Any, layout: Layout) -> Floats:
         rows = [
             [_number(path, value, index, layout) for value in row] for index, row in enumerate(rows)
         ]
-    return np.array(rows, dtype=np.float64).reshape(len(rows), -1)
+    return np.array(rows, dtype=np.float64)
 
 
 def _number(path: Path, value: object, index: int, layout: Layout) -> float:

@@ -1,0 +1,48 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from reduction.errors import LogError
+from reduction.ingest.clock import clock_to_seconds
+
+LOG = Path("log.csv")
+
+
+def seconds(*texts, row=None):
+    return clock_to_seconds(
+        LOG, texts, channel="clock", missing=("", "-"), row=row, first_row=2
+    ).tolist()
+
+
+def test_readings_count_from_the_first():
+    assert seconds("0945", "0955", "1009") == [0.0, 600.0, 1440.0]
+
+
+def test_colons_seconds_and_short_hours_are_read():
+    assert seconds("9:45", "09:45:30", "10:00:00.5") == [0.0, 30.0, 900.5]
+
+
+def test_midnight_starts_a_new_day():
+    assert seconds("2350", "0010", "2340", "0005") == [0.0, 1200.0, 85800.0, 87300.0]
+
+
+def test_a_small_step_back_is_kept():
+    assert seconds("1009", "1008") == [0.0, -60.0]
+
+
+def test_a_missing_mark_is_missing():
+    np.testing.assert_equal(seconds("-", "0945", "", "0946"), [np.nan, 0.0, np.nan, 60.0])
+
+
+@pytest.mark.parametrize("text", ["2400", "0960", "noon", "9.45", "12345"])
+def test_text_that_is_no_clock_time_names_its_row(text):
+    with pytest.raises(
+        LogError, match=rf"log\.csv:3 \[clock\]: a reading is not a clock time; found '{text}'"
+    ):
+        seconds("0945", text)
+
+
+def test_rows_that_are_not_consecutive_are_named():
+    with pytest.raises(LogError, match=r"log\.csv:17 "):
+        seconds("0945", "x", row=np.array([2, 17]))

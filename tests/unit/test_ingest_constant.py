@@ -1,0 +1,148 @@
+import numpy as np
+import pytest
+
+from reduction.ingest.constant import (
+    constant_runs,
+    find_saturated,
+    find_stuck,
+    find_stuck_position,
+    moves,
+)
+
+RANDOM = np.random.default_rng(20051010)
+TIME = np.arange(0, 200, 0.1)
+
+
+def triangle(low, high, period=20.0):
+    return high - (high - low) * np.abs((TIME / period) % 1 - 0.5) * 2
+
+
+def quantised(values, step):
+    return np.round(values / step) * step
+
+
+POSITION = quantised(triangle(19.37, 24.12) + RANDOM.normal(0, 0.004, TIME.size), 0.0122)
+
+
+def loops(mask):
+    return [
+        (int(run[0]), int(run[-1]) + 1)
+        for run in np.split(
+            np.flatnonzero(mask), np.flatnonzero(np.diff(np.flatnonzero(mask)) > 1) + 1
+        )
+        if run.size
+    ]
+
+
+def brute(values, minimum):
+    edges = np.flatnonzero(np.diff(values) != 0) + 1
+    starts, stops = np.r_[0, edges], np.r_[edges, values.size]
+    keep = stops - starts >= minimum
+    return list(zip(starts[keep].tolist(), stops[keep].tolist(), strict=True))
+
+
+@pytest.mark.parametrize("minimum", [2, 3, 5, 50])
+@pytest.mark.parametrize("seed", range(5))
+def test_runs_are_those_that_a_plain_search_finds(minimum, seed):
+    source = np.random.default_rng(seed)
+    values = np.repeat(source.integers(0, 3, 300), source.integers(1, 120, 300)).astype(float)
+    runs = constant_runs(values, minimum)
+    assert list(zip(runs.start.tolist(), runs.stop.tolist(), strict=True)) == brute(values, minimum)
+    assert runs.mask(values.size).sum() == sum(
+        stop - start for start, stop in brute(values, minimum)
+    )
+
+
+def test_a_series_shorter_than_a_run_has_none():
+    assert constant_runs(np.ones(10), 50).start.size == 0
+    assert not constant_runs(np.ones(10), 50).mask(10).any()
+
+
+def test_a_noisy_hold_does_not_move_and_a_ramp_does():
+    position = np.concatenate([np.full(500, 20.0), np.linspace(20, 25, 500)])
+    position += RANDOM.normal(0, 0.004, 1000)
+    load = np.repeat(np.arange(10.0), 100)
+    assert moves(position, constant_runs(load, 50)).tolist() == [False] * 5 + [True] * 5
+
+
+def test_a_channel_that_repeats_a_value_while_the_crosshead_moves_is_stuck():
+    load = triangle(50, 120) + RANDOM.normal(0, 0.3, TIME.size)
+    load[730:830] = load[730]
+    assert loops(find_stuck(load, POSITION, samples=50)) == [(730, 830)]
+
+
+def test_a_hold_is_not_stuck_however_even_its_load():
+    position = np.concatenate([POSITION[:300], np.full(1000, POSITION[300]), POSITION[300:1000]])
+    load = np.concatenate(
+        [triangle(50, 120)[:300], np.full(1000, 80.0), triangle(50, 120)[300:1000]]
+    )
+    assert not find_stuck(load, position, samples=50).any()
+
+
+def test_a_slack_specimen_that_reads_zero_while_the_crosshead_moves_is_not_stuck():
+    load = np.maximum(triangle(-100, 120), 0.0)
+    assert (load == 0).sum() > 500
+    assert not find_stuck(load, POSITION, samples=50).any()
+    assert not find_saturated(load, POSITION).any()
+
+
+def test_a_load_that_falls_to_zero_at_once_is_stuck():
+    load = np.maximum(triangle(-100, 120), 0.0)
+    load[1065:1130] = 0.0  # at 43 N, a cable comes loose
+    assert loops(find_stuck(load, POSITION, samples=50)) == [(1065, 1130)]
+
+
+def test_a_dead_channel_is_stuck_throughout():
+    assert find_stuck(np.zeros(TIME.size), POSITION, samples=50).all()
+
+
+def test_a_clipped_channel_is_saturated_at_each_peak():
+    load = np.minimum(quantised(triangle(50, 120), 0.244), 100.04)
+    found = find_saturated(load, POSITION)
+    assert np.array_equal(found, load == load.max())
+    assert found.sum() > 500
+
+
+def test_a_channel_clipped_in_compression_is_saturated():
+    load = np.maximum(triangle(-120, 120), -100.0)
+    whole = slice(50, -50)  # at the ends a trough is cut in half
+    assert np.array_equal(find_saturated(load, POSITION)[whole], (load == -100.0)[whole])
+
+
+@pytest.mark.parametrize("step", [0.244, 1.0, 3.0])
+@pytest.mark.parametrize("shape", ["triangle", "sine"])
+def test_quantised_peaks_are_not_saturated(shape, step):
+    wave = triangle(50, 120) if shape == "triangle" else 85 + 35 * np.sin(2 * np.pi * TIME / 20)
+    assert not find_saturated(quantised(wave, step), POSITION).any()
+    assert not find_stuck(quantised(wave, step), POSITION, samples=50).any()
+
+
+def test_a_hold_at_the_greatest_load_is_not_saturated():
+    ramp = np.linspace(20, 25, 100)
+    position = np.concatenate([ramp, np.full(500, 25.0), ramp[::-1]])
+    load = np.concatenate([np.linspace(0, 400, 100), np.full(500, 400.0), np.linspace(380, 0, 100)])
+    assert not find_saturated(load, position).any()
+
+
+def test_a_position_that_stands_still_while_the_load_cycles_is_stuck():
+    load = np.vstack([triangle(50, 120), triangle(60, 130)]) + RANDOM.normal(0, 0.3, (2, TIME.size))
+    position = POSITION.copy()
+    position[700:1130] = position[700]
+    assert loops(find_stuck_position(position, load, samples=50)) == [(700, 1130)]
+
+
+def test_relaxation_in_a_hold_does_not_make_position_stuck():
+    time = np.arange(0, 3600, 1.0)
+    load = (400 - 20 * np.log1p(time) + RANDOM.normal(0, 0.25, time.size))[np.newaxis]
+    assert not find_stuck_position(np.full(time.size, 38.37), load, samples=50).any()
+    overnight = quantised(68 + RANDOM.normal(0, 0.25, time.size), 0.244)[np.newaxis]
+    assert not find_stuck_position(np.full(time.size, 21.75), overnight, samples=50).any()
+
+
+def test_missing_loads_do_not_upset_the_search():
+    load = triangle(50, 120)
+    load[730:830] = load[730]
+    load[5] = np.nan
+    assert loops(find_stuck(load, POSITION, samples=50)) == [(730, 830)]
+    assert not find_saturated(load, POSITION).any()
+    assert not find_stuck_position(POSITION, load[np.newaxis], samples=50).any()

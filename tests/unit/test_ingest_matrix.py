@@ -1,0 +1,98 @@
+import json
+
+import numpy as np
+import pytest
+
+from reduction.errors import LogError
+from reduction.ingest.layout import Layout
+from reduction.ingest.matrix import read_json
+
+CHANNELS = {
+    "time": {"column": 1, "unit": "s"},
+    "crosshead_position": {
+        "column": 2, "unit": "in", "datum": "displacement", "unit_key": "displacement units",
+    },
+    "tension.1": {"column": 3, "unit": "lbf"},
+}  # fmt: skip
+UNITS = {"displacement units": "inch", "sampling freq": 1024}
+
+
+@pytest.fixture
+def read(tmp_path):
+    def read_content(content, channels=None, **settings):
+        path = tmp_path / "log.json"
+        path.write_text(content if isinstance(content, str) else json.dumps(content))
+        layout = Layout(
+            format="json", channels=channels or CHANNELS, **{"matrix": "data"} | settings
+        )
+        return read_json(path, layout, name="log.json")
+
+    return read_content
+
+
+def test_columns_are_numbers_of_the_matrix(read):
+    log = read({"data": [[0, 1.5, 2], [1, 2.5, 3]], **UNITS})
+    assert log.columns["crosshead_position"].tolist() == [1.5, 2.5]
+    assert (log.n_rows_read, log.first_row) == (2, 0)
+    assert log.metadata == {"displacement units": "inch", "sampling freq": "1024"}
+
+
+def test_columns_have_names_where_the_file_gives_them(read):
+    channels = {"tension.1": {"column": "force", "unit": "lbf"}}
+    content = {"data": [[0, 1]], "columns": ["time", "force"], "units": ["s", "lb"]}
+    log = read(content, channels, matrix_names="columns", matrix_units="units")
+    assert log.columns["tension.1"].tolist() == [1.0]
+
+
+def test_null_and_declared_words_are_missing(read):
+    log = read('{"data": [[0, 1, null], [1, NaN, 3], [2, "--", 4]], "displacement units": "in"}',
+               missing=("", "NaN", "--"))  # fmt: skip
+    np.testing.assert_equal(log.columns["tension.1"], [np.nan, 3.0, 4.0])
+    np.testing.assert_equal(log.columns["crosshead_position"], [1.0, np.nan, np.nan])
+
+
+@pytest.mark.parametrize("value", ["Infinity", '"ovrflw"', "true", "[1]"])
+def test_a_value_that_is_no_number_names_its_row(read, value):
+    with pytest.raises(LogError, match="a value in row 2 of 'data' is not a number"):
+        read(f'{{"data": [[0, 1, 2], [1, 2, {value}]], "displacement units": "in"}}')
+
+
+def test_a_unit_that_contradicts_the_layout_is_refused(read):
+    with pytest.raises(LogError, match=r"the unit in the file is not the declared one; found 'mm'"):
+        read({"data": [[0, 1, 2]], "displacement units": "mm"})
+
+
+def test_a_key_that_is_not_there_lists_what_is(read):
+    with pytest.raises(LogError, match="there is no key 'data'; found 'rows'; needed .* as matrix"):
+        read({"rows": []})
+    with pytest.raises(
+        LogError, match="no key 'displacement units'.*unit_key of crosshead_position"
+    ):
+        read({"data": [[0, 1, 2]]})
+    with pytest.raises(LogError, match="there is no key 'data'; found no object"):
+        read([1, 2])
+
+
+def test_names_that_are_no_texts_are_refused(read):
+    with pytest.raises(LogError, match="'columns' is not a list of texts; found dict"):
+        read({"data": [[0, 1, 2]], "columns": {}, **UNITS}, matrix_names="columns")
+
+
+def test_rows_of_unequal_length_are_refused(read):
+    with pytest.raises(LogError, match="row 2 of 'data' has 2 values, the first 3"):
+        read({"data": [[0, 1, 2], [1, 2]], **UNITS})
+
+
+def test_what_is_no_matrix_is_refused(read):
+    with pytest.raises(LogError, match="'data' is not a matrix; found dict"):
+        read({"data": {}, **UNITS})
+
+
+def test_a_matrix_without_rows_is_refused(read):
+    with pytest.raises(LogError, match="there are no data rows"):
+        read({"data": [], **UNITS})
+
+
+def test_what_is_no_json_names_the_row(read):
+    with pytest.raises(LogError, match=r"log\.json:2: the file is not JSON"):
+        read('{"data":\n oops}')
