@@ -1,0 +1,80 @@
+"""Cycles as the machine itself counted them.
+
+References
+----------
+.. [1] ASTM E1049-85(2017), "Standard Practices for Cycle Counting in Fatigue Analysis,"
+   ASTM International, West Conshohocken, PA.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.record import Floats, Integers
+
+__all__ = ["counted_cycles"]
+
+Indices = NDArray[np.intp]
+
+
+def counted_cycles(
+    cycle_counter: Integers, values: Floats
+) -> tuple[Indices, Indices, Indices, Indices, Integers]:
+    """First and last sample, the turns, and the machine's number of every counted cycle.
+
+    Parameters
+    ----------
+    cycle_counter : ndarray of int, shape (n_samples,)
+        The machine's count; zero or less outside cycles. [1]
+    values : ndarray, shape (n_samples,)
+        Control channel; NaN where missing. [m] or [N]
+
+    Returns
+    -------
+    first, last : ndarray of int, shape (n_cycles,)
+        Samples with the same count, both inside. [1]
+    branch_first, branch_last : ndarray of int, shape (n_cycles, 2)
+        Ascending and descending branch: from the valley before the peak to the peak, and
+        to the valley after it, all within the counted samples. [1]
+    number : ndarray of int, shape (n_cycles,)
+        The machine's number. [1]
+
+    Raises
+    ------
+    IndexError
+        If the series do not pair up.
+
+    Notes
+    -----
+    A machine changes its count at a phase of its own command, which the crosshead follows
+    late, so that a count may begin a little before the valley; the cycle is as counted,
+    and its extremes are those the machine prints, while its branches run between the
+    extremes.  Missing samples are passed over.
+
+    Examples
+    --------
+    >>> counter = np.array([0, 1, 1, 1, 1, 2, 2, 2])
+    >>> first, last, begin, end, number = counted_cycles(
+    ...     counter, np.array([9.0, 0, 1, 2, 1, 0, 3, 0]))
+    >>> print(first, last, begin.tolist(), end.tolist(), number)
+    [1 5] [4 7] [[1, 3], [5, 6]] [[3, 4], [6, 7]] [1 2]
+    """
+    change = np.flatnonzero(cycle_counter[1:] != cycle_counter[:-1])
+    first = np.concatenate([[0], change + 1])
+    last = np.concatenate([change, [cycle_counter.size - 1]])
+    counted = cycle_counter[first] > 0
+    first, last = first[counted], last[counted]
+    branch_first = np.stack([first, first], axis=1)
+    branch_last = np.stack([last, last], axis=1)
+    for i, (begin, end) in enumerate(zip(first, last, strict=True)):
+        level = values[begin : end + 1]
+        if np.isnan(level).all():
+            branch_last[i, 0] = branch_first[i, 1] = begin
+            continue
+        peak = begin + int(np.nanargmax(level))
+        rising, falling = values[begin : peak + 1], values[peak : end + 1]
+        branch_first[i, 0] = begin + rising.size - 1 - int(np.nanargmin(rising[::-1]))
+        branch_last[i, 0] = branch_first[i, 1] = peak
+        branch_last[i, 1] = peak + int(np.nanargmin(falling))
+    return first, last, branch_first, branch_last, cycle_counter[first]

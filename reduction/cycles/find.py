@@ -1,0 +1,284 @@
+"""Cycles of a record: found, counted, cut at the ends, checked and labelled.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of
+   Rubber Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst.,
+   Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reduction.checks import as_same_shape
+from reduction.cycles.counter import counted_cycles
+from reduction.cycles.halves import HalfCycles, find_half_cycles
+from reduction.cycles.product import Cycles
+from reduction.cycles.reversals import find_reversals, first_pass
+from reduction.cycles.trim import constant_rate_span, stroke_span
+from reduction.errors import DataError
+from reduction.phases.noise import estimate_noise
+from reduction.phases.standstill import Standstills
+from reduction.record import Floats, Integers
+from reduction.settings import CycleSettings
+from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
+
+__all__ = ["find_cycles"]
+
+_HINT = (
+    "Check cycles.control, cycles.band and the layout, or give the test the kind it is "
+    "(relaxation, creep, quasi-static)."
+)
+
+_BRANCHES = np.array([BRANCH_VALUES[name] for name in BRANCH_NAMES], dtype=np.int8)
+
+Indices = NDArray[np.intp]
+
+
+def _control_channel(position: Floats, tension: Floats, settings: CycleSettings) -> Floats:
+    if settings.control == "position":
+        return position
+    return np.asarray(tension.mean(axis=0))
+
+
+def _reversals(values: Floats, settings: CycleSettings) -> tuple[Indices, float]:
+    """Reversals and the band that they were found with."""
+    load = settings.control == "load"
+    channel, unit = ("tension", "N") if load else ("crosshead position", "m")
+    if np.isfinite(values).sum() < 8:
+        raise DataError(
+            f"{channel} is missing", found=f"{values.size} rows", needed="8 values or more"
+        )
+    if settings.band is not None:
+        reversals, band = find_reversals(values, band=settings.band), settings.band
+    elif np.nanmax(values) > np.nanmin(values):
+        reversals, band = first_pass(values)
+    else:
+        reversals, band = np.empty(0, dtype=np.intp), 0.0
+    if reversals.size < 3:
+        raise DataError(
+            f"no cycle: {channel} does not reverse",
+            found=f"a range of {np.nanmax(values) - np.nanmin(values):.4g} {unit}, "
+            f"{max(reversals.size - 1, 0)} movements of {band:.4g} {unit} or more",
+            needed="two half cycles or more",
+            hint=_HINT,
+        )
+    return reversals, band
+
+
+def _whole_cycles(halves: HalfCycles) -> tuple[Indices, Indices]:
+    """Branches, shape (n_cycles, 2): an ascending half cycle and the descending one after it."""
+    rising = np.flatnonzero(
+        halves.rises[:-1] & ~halves.rises[1:] & (halves.run[:-1] == halves.run[1:])
+    )
+    both = np.stack([rising, rising + 1], axis=1)
+    return halves.first[both], halves.last[both]
+
+
+def _labels(first: Indices, last: Indices, values: NDArray[Any], n_samples: int) -> NDArray[Any]:
+    """Value of the interval of each sample, 0 outside; a shared sample is the later one's."""
+    end = last + 1
+    end[:-1] = np.minimum(end[:-1], first[1:])
+    edges = np.column_stack([first, end]).ravel()
+    lengths = np.diff(np.concatenate([[0], edges, [n_samples]]))
+    labels = np.zeros(lengths.size, dtype=values.dtype)
+    labels[1::2] = values
+    return np.repeat(labels, lengths)
+
+
+def _trimmed(
+    time: Floats,
+    values: Floats,
+    branch_first: Indices,
+    branch_last: Indices,
+    settings: CycleSettings,
+) -> tuple[Indices, Indices, Floats, list[str]]:
+    first, last, rate = constant_rate_span(
+        time,
+        values,
+        branch_first,
+        branch_last,
+        noise=estimate_noise(values)[0],
+        trim_threshold=settings.trim_threshold,
+    )
+    if settings.waveform != "triangular":
+        first, last = stroke_span(values, branch_first, branch_last)
+        return (
+            first,
+            last,
+            rate,
+            [
+                f"a {settings.waveform} waveform has no plateau of rate: the trimmed branches "
+                "leave out 5 % of the stroke at each end"
+            ],
+        )
+    bare = int(np.sum(last < first))
+    return (
+        first,
+        last,
+        rate,
+        [
+            f"{bare} of {first.size} branches have no part at a constant rate, first near "
+            f"{time[branch_first[np.argmax(last < first)]]:g} s"
+        ]
+        if bare
+        else [],
+    )
+
+
+def find_cycles(
+    time: ArrayLike,
+    position: ArrayLike,
+    tension: ArrayLike,
+    standstills: Standstills,
+    *,
+    settings: CycleSettings,
+    cycle_counter: Integers | None = None,
+) -> Cycles:
+    """Find the whole cycles of a record, valley to peak to valley.
+
+    Parameters
+    ----------
+    time : array_like, shape (n_samples,)
+        Elapsed time. [s]
+    position : array_like, shape (n_samples,)
+        Crosshead position; NaN where missing. [m]
+    tension : array_like, shape (n_specimens, n_samples)
+        Tension; their mean is the control channel of a load-controlled test. [N]
+    standstills : Standstills
+        From `reduction.phases.standstill.find_standstills`. [SI]
+    settings : CycleSettings
+        Control channel, waveform, band, threshold, plan. [SI]
+    cycle_counter : ndarray of int, shape (n_samples,), optional
+        The machine's own count: it says where each cycle begins, and the reversals are
+        held against it. [1]
+
+    Returns
+    -------
+    cycles : Cycles
+        One or more, with notes on what was cut, left out, or differs. [SI]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up, the control channel is missing or does not
+        reverse, or no whole cycle is left.
+
+    Notes
+    -----
+    Reversals by a hysteresis band (`first_pass` where none is stated), half cycles by
+    the rules of `find_half_cycles`.  An ascending half cycle with the descending one after
+    it is a cycle; a run that begins at a peak loses its first half cycle.  At a dwell the
+    branches end where the crosshead arrives and begin where it leaves.  A sample that
+    two branches or cycles share is labelled with the later cycle and the earlier branch
+    of a cycle.  Constant rate: `constant_rate_span`; without a triangular waveform
+    `stroke_span`.
+
+    Examples
+    --------
+    Slack, two cycles between 1 and 3 m, and back.
+
+    >>> from reduction.phases.standstill import find_standstills
+    >>> from reduction.settings import PhaseSettings
+    >>> time = np.arange(0, 90, 0.5)
+    >>> position = np.interp(time, [0, 20, 40, 50, 60, 70, 90], [0, 0, 3, 1, 3, 1, 0])
+    >>> tension = [100 * position]
+    >>> stand = find_standstills(time, position, tension, settings=PhaseSettings())
+    >>> cycles = find_cycles(time, position, tension, stand, settings=CycleSettings())
+    >>> print(time[cycles.first], time[cycles.last], cycles.plateau_rate[1].round(3))
+    [26.5 50. ] [50. 70.] [0.2 0.2]
+    """
+    tension = np.atleast_2d(np.asarray(tension, dtype=np.float64))
+    time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
+    values = _control_channel(position, tension, settings)
+    notes: list[str] = []
+    reversals, band = _reversals(values, settings)
+    halves = find_half_cycles(time, values, reversals, standstills, band=band)
+    branch_first, branch_last = _whole_cycles(halves)
+    first, last = branch_first[:, 0], branch_last[:, 1]
+    counted_by = "reversals"
+    if cycle_counter is not None and (cycle_counter[1:] != cycle_counter[:-1]).any():
+        n_reversals = first.size
+        first, last, branch_first, branch_last, number = counted_cycles(cycle_counter, values)
+        counted_by = "machine counter"
+        notes += _counter_notes(number, values, first, branch_first, branch_last, n_reversals, band)
+    else:
+        notes += halves.notes
+        if cycle_counter is not None:
+            notes.append("the machine's cycle counter never changes: reversals are counted instead")
+    if first.size == 0:
+        raise DataError(
+            "no whole cycle",
+            found=f"{reversals.size - 1} movements of {band:.4g} or more, none followed by one "
+            "of similar range without a standstill or a gap between",
+            needed="an ascending and a descending half cycle of similar range",
+            hint=_HINT,
+        )
+    if first.size == 1:
+        notes.append("one cycle only: there is no scatter from cycle to cycle")
+    if settings.expected_cycles is not None and settings.expected_cycles != first.size:
+        notes.append(f"{first.size} whole cycles found, {settings.expected_cycles} planned")
+
+    start, stop, rate, trim_notes = _trimmed(
+        time, values, branch_first.ravel(), branch_last.ravel(), settings
+    )
+    notes += trim_notes
+    kept = stop >= start
+    n_samples = time.size
+    # branches in turn: a shared peak is the end of the ascending one, a valley the begin of it
+    begin = branch_first.copy()
+    begin[:, 1] += branch_first[:, 1] == branch_last[:, 0]
+    return Cycles(
+        first=first,
+        last=last,
+        branch_first=branch_first,
+        branch_last=branch_last,
+        plateau_rate=rate.reshape(-1, 2),
+        cycle_number=_labels(first, last, np.arange(1, first.size + 1, dtype=np.int32), n_samples),
+        branch=_labels(
+            begin.ravel(), branch_last.ravel(), np.tile(_BRANCHES, first.size), n_samples
+        ),
+        is_constant_rate=_labels(
+            start[kept], stop[kept], np.ones(int(kept.sum()), dtype=np.bool_), n_samples
+        ),
+        band=float(band),
+        counted_by=counted_by,
+        notes=tuple(notes),
+    )
+
+
+def _counter_notes(
+    number: Integers,
+    values: Floats,
+    first: Indices,
+    branch_first: Indices,
+    branch_last: Indices,
+    n_reversals: int,
+    band: float,
+) -> list[str]:
+    """What the machine's counter says that the reversals do not."""
+    notes = []
+    stroke = np.abs(values[branch_last] - values[branch_first]).max(axis=1)
+    still = stroke < band
+    if still.any():
+        notes.append(
+            f"{int(still.sum())} counted cycles have no stroke, machine cycle "
+            f"{int(number[np.argmax(still)])} first"
+        )
+    if number.size and (np.diff(number) != 1).any():
+        row = int(np.argmax(np.diff(number) != 1))
+        notes.append(
+            f"the log holds {number.size} of the machine's cycles {int(number[0])} to "
+            f"{int(number[-1])}: {int(number[row + 1])} follows {int(number[row])}"
+        )
+    moving = int((~still).sum())
+    if moving != n_reversals:
+        notes.append(
+            f"the machine counted {moving} cycles with a stroke, the reversals give {n_reversals} "
+            "whole ones"
+        )
+    return notes
