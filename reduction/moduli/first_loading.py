@@ -41,16 +41,11 @@ def _without_single_spikes(strain: Floats) -> Floats:
     return smooth
 
 
-def _end_of_rise(strain: Floats, start: float) -> int:
-    """First sample near the greatest strain that is not a single spike."""
-    while True:
-        top = int(np.nanargmax(strain))
-        tolerance = _BAND / 2 * (strain[top] - start)
-        around = strain[max(top - 1, 0) : top + 2]
-        if np.count_nonzero(around >= strain[top] - tolerance) > 1 or tolerance == 0:
-            return int(np.argmax(strain >= strain[top] - tolerance))
-        strain = strain.copy()
-        strain[top] = np.nan
+def _end_of_rise(smooth: Floats, start: float) -> int:
+    """First sample near the greatest strain; a single spike is not in the smoothed series."""
+    greatest = float(np.nanmax(smooth))
+    tolerance = _BAND / 2 * (greatest - start)
+    return int(np.argmax(smooth >= greatest - tolerance))
 
 
 def _rising_pieces(strain: Floats, tension: Floats, is_still: Bools) -> NDArray[np.int64]:
@@ -62,16 +57,26 @@ def _rising_pieces(strain: Floats, tension: Floats, is_still: Bools) -> NDArray[
     if known.size == 0:
         return np.empty(0, dtype=np.int64)
     start = float(strain[known[0]])
-    end = _end_of_rise(strain, start) + 1
-    smooth = _without_single_spikes(strain[:end])
+    smooth = _without_single_spikes(strain)
+    end = _end_of_rise(smooth, start) + 1
+    smooth = smooth[:end]
     highest = np.fmax.accumulate(smooth)
     floor = highest - _BAND * (highest[-1] - start)
     is_still, tension = is_still[:end], tension[:end]
     # comparisons with NaN are false: a missing sample rises nowhere, and breaks nothing
-    rises = (smooth >= floor) & ~is_still & np.isfinite(tension)
+    is_spike = np.abs(strain[:end] - smooth) > highest - floor
+    rises = (smooth >= floor) & ~is_still & ~is_spike & np.isfinite(tension)
     breaks = np.cumsum(is_still | (smooth < floor))
     piece = np.full(end, -1, dtype=np.int64)
-    piece[rises] = np.unique(breaks[rises], return_inverse=True)[1]
+    samples = np.flatnonzero(rises)
+    reached, number = -np.inf, 0
+    for part in np.split(samples, np.flatnonzero(np.diff(breaks[samples])) + 1):
+        # not the way down from its top, nor the way up to where the one before it ended
+        kept = part[: int(np.argmax(smooth[part])) + 1] if part.size else part
+        kept = kept[smooth[kept] >= reached]
+        if kept.size:
+            piece[kept] = number
+            reached, number = float(smooth[kept[-1]]), number + 1
     return piece
 
 
@@ -197,14 +202,17 @@ def first_loading_curves(
             strains[row], tensions[row], piece, grid=grid, minimum_count=settings.minimum_count
         )
         weight = np.ones(fits.slope.shape[0])
-        slopes = RunningStatistics.of(fits.slope, fits.slope_variance, weight=weight)
+        # by piece: the step of modulus at a hold is not a bend
+        blur, gain = window_blur(fits.slope, half_window=grid.half_window)
+        slopes = RunningStatistics.of(
+            fits.slope - blur, gain**2 * fits.slope_variance, weight=weight
+        )
         loads = RunningStatistics.of(fits.tension, fits.tension_variance, weight=weight)
         slope[row, 0], slope_uncertainty[row, 0] = slopes.value(), slopes.standard_uncertainty()
         load[row, 0], load_uncertainty[row, 0] = loads.value(), loads.standard_uncertainty()
         count[row, 0] = slopes.count
-    blur, gain = window_blur(slope, half_window=grid.half_window)
     per_area = 1 / areas[:, None, None]
-    modulus, uncertainty = (slope - blur) * per_area, gain * slope_uncertainty * per_area
+    modulus, uncertainty = slope * per_area, slope_uncertainty * per_area
     none_selected = np.empty((areas.size, 0, 2, grid.n_bins))
     return ModulusCurves(
         strain_bin=grid.centres,
