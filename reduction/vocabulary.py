@@ -222,7 +222,7 @@ _ROWS = (
     Quantity("standstill_position_tolerance", "m", "range of position allowed in a standstill"),
     Quantity("slack_tension", "N", "tension at or below which a standstill is a rest"),
     # holds
-    Quantity("hold", "1", "number of the hold"),
+    Quantity("hold", "1", "number of the hold, each specimen counted"),
     Quantity("hold_specimen", "", "specimen of the hold"),
     Quantity("hold_kind", "", "relaxation or creep"),
     Quantity("hold_criterion", "", "how the number of Prony terms was chosen"),
