@@ -12,7 +12,6 @@ from reduction.errors import DataError, SettingsError
 from reduction.ingest.flags import flag_record
 from reduction.ingest.layout import Layout
 from reduction.ingest.piece import Piece, to_piece
-from reduction.ingest.quality import noise_of
 from reduction.ingest.rawlog import RawLog
 from reduction.record import Floats, Integers, Record
 from reduction.settings import QualitySettings
@@ -23,7 +22,6 @@ __all__ = ["to_record"]
 _WORKERS = 4
 _NO_COUNT = -1
 _DATUM_SHARE = 0.05
-_DATUM_NOISE = 10.0
 
 
 def to_record(
@@ -259,13 +257,16 @@ def _datum_notes(record: Record, piece: Piece) -> tuple[str, ...]:
         return ()
     zero = parse_quantity(channel.reference_length, "length")
     stated = parse_quantity(channel.reference_tension or "0 N", "force")
-    noise, _ = noise_of(record.crosshead_position)
-    near = np.flatnonzero(np.abs(record.crosshead_position - zero) <= _DATUM_NOISE * noise)
-    if not near.size:
+    away = record.crosshead_position - zero
+    crossing = np.flatnonzero(away[:-1] * away[1:] <= 0)[:1]
+    if not crossing.size:
         return ()
+    before, after = int(crossing[0]), int(crossing[0]) + 1
+    span = away[before] - away[after]
+    weight = away[before] / span if span else 0.0
     notes = []
     for name, load in zip(record.specimens, record.tension, strict=True):
-        found = float(load[near[0]])
+        found = float(load[before] + weight * (load[after] - load[before]))
         if abs(found - stated) > _DATUM_SHARE * float(np.nanmax(load) - np.nanmin(load)):
             notes.append(
                 f"reference_length is stated at {stated:.4g} N, but where displacement is first "

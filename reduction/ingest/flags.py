@@ -66,7 +66,7 @@ def flag_record(
     timing = time_faults(
         record.time, gap_factor=settings.gap_factor, rate_tolerance=settings.rate_tolerance
     )
-    _set(position_flag, find_missing(record.time), Quality.MISSING)
+    _set(position_flag, _missing("time", record.time), Quality.MISSING)
     _set(position_flag, _missing("crosshead_position", position), Quality.MISSING)
     _set(position_flag, timing.gap, Quality.GAP)
     _set(position_flag, timing.backward, Quality.REPEATED_OR_BACKWARD_TIME)

@@ -148,8 +148,8 @@ def _check_restart(piece: Piece) -> None:
     for last in np.flatnonzero(time[1:] < time[:-1]):
         first, top = np.nanmin(time[: last + 1]), np.nanmax(time[: last + 1])
         after = time[last + 1 : last + 2 + _RESTART_SAMPLES]
-        falls = top - after[0] > (top - first) / 2
-        if falls and after.size > _RESTART_SAMPLES and np.all(np.diff(after) > 0):
+        falls = top - after[0] > (top - first) / 2 and after.size > _RESTART_SAMPLES
+        if falls and after[-1] < top and np.all(np.diff(after) > 0):
             raise DataError(
                 "the log has two time bases: time starts again",
                 found=f"{after[0]:g} s after {time[last]:g} s at {piece.row_of(int(last) + 1)}",

@@ -81,7 +81,7 @@ def on_common_time(
     Raises
     ------
     DataError
-        If a channel has no time, or the time axes do not overlap.
+        If a channel has no time or fewer than two stamps, or the axes do not overlap.
     """
     axes: list[_Axis] = []
     trimmed: dict[str, Floats] = {}
@@ -94,10 +94,16 @@ def on_common_time(
                 needed="a time channel, a time_column, or a sample_interval in the layout",
             )
         if own:  # the column of a slower channel ends before the table does
-            n_stamped = int(np.flatnonzero(np.isfinite(time))[-1]) + 1 if time.size else 0
-            time, series = time[:n_stamped], series[:n_stamped]
+            stamped = np.flatnonzero(np.isfinite(time))
+            if stamped.size < 2:
+                raise DataError(
+                    f"channel '{key}' has too few time stamps",
+                    found=str(stamped.size),
+                    needed="two or more",
+                )
+            time, series = time[: stamped[-1] + 1], series[: stamped[-1] + 1]
         trimmed[key] = series
-        same = next((axis for axis in axes if np.array_equal(axis.time, time, True)), None)
+        same = next((axis for axis in axes if _is_same(axis.time, time)), None)
         if same is None:
             axes.append(_Axis(time, [key]))
         else:
@@ -121,6 +127,10 @@ def on_common_time(
         )
     moved = frozenset(key for axis in axes if axis is not base for key in axis.keys)
     return CommonTime(base.time, {key: result[key] for key in values}, moved, tuple(notes))
+
+
+def _is_same(one: Floats, other: Floats) -> bool:
+    return one is other or np.array_equal(one, other, equal_nan=True)
 
 
 def _check_overlap(base: _Axis, axis: _Axis) -> None:

@@ -1,0 +1,98 @@
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.ingest.flags import flag_record
+from reduction.record import Quality, Record
+from reduction.settings import QualitySettings
+
+RANDOM = np.random.default_rng(20051010)
+TIME = np.arange(0, 200, 0.1)
+WAVE = np.abs(TIME % 20 - 10)
+
+
+def record(*, time=TIME, position=None, load=None, **settings):
+    return Record(
+        test_id="T-1",
+        specimens=("new",),
+        time=np.array(time, float),
+        crosshead_position=6.0 + 0.1 * WAVE + RANDOM.normal(0, 1e-3, TIME.size)
+        if position is None
+        else np.array(position, float),
+        tension=(200 + 10 * WAVE + RANDOM.normal(0, 0.3, TIME.size) if load is None else load)[
+            np.newaxis
+        ],
+        quality_flag=np.zeros((1, TIME.size), dtype=np.uint16),
+        crosshead_position_quality_flag=np.zeros(TIME.size, dtype=np.uint16),
+        n_rows_read=TIME.size,
+        **settings,
+    )
+
+
+def flagged(one, **settings):
+    return flag_record(one, settings=QualitySettings(), **settings)
+
+
+def where(flags, mask):
+    return np.flatnonzero(flags & mask).tolist()
+
+
+def test_a_clean_record_gets_no_flag_and_no_note():
+    result = flagged(record(notes=("kept",)))
+    assert not result.quality_flag.any() and not result.crosshead_position_quality_flag.any()
+    assert result.notes == ("kept",)
+
+
+def test_every_fault_gets_its_mask_and_a_line_in_the_notes():
+    load = 200 + 10 * WAVE + RANDOM.normal(0, 0.3, TIME.size)
+    position = 6.0 + 0.1 * WAVE + RANDOM.normal(0, 1e-3, TIME.size)
+    time = TIME.copy()
+    load[100], load[300] = np.nan, 500.0
+    load[730:830] = load[730]
+    position[55] = np.nan
+    time[1500:] += 3.0
+    time[1700] = time[1699]
+    result = flagged(record(time=time, position=position, load=load))
+    assert where(result.quality_flag[0], Quality.MISSING) == [100]
+    assert where(result.quality_flag[0], Quality.SPIKE) == [300]
+    assert where(result.quality_flag[0], Quality.STUCK) == list(range(730, 830))
+    along = result.crosshead_position_quality_flag
+    assert where(along, Quality.MISSING) == [55]
+    assert where(along, Quality.GAP) == [1500]
+    assert where(along, Quality.REPEATED_OR_BACKWARD_TIME) == [1700]
+    assert result.notes[-1] == (
+        "2000 rows read, 2000 kept, flagged: crosshead_position missing 1, gap 1, "
+        "repeated_or_backward_time 1; tension of new missing 1, stuck 100, spike 1"
+    )
+
+
+def test_a_saturated_run_is_not_called_stuck_as_well():
+    load = np.minimum(200 + 10 * WAVE, 260.0)
+    result = flagged(record(load=load))
+    assert where(result.quality_flag[0], Quality.SATURATED)
+    assert not where(result.quality_flag[0], Quality.STUCK)
+
+
+def test_an_uneven_rate_is_a_note():
+    time = np.cumsum(np.tile([0.1, 0.1, 0.1, 0.15], TIME.size // 4))
+    (note,) = flagged(record(time=time)).notes
+    assert note == (
+        "the sampling rate is not constant: 500 of 1999 time steps differ by more than 20% from "
+        "their median 0.1 s (0.1 to 0.15 s, gaps apart)"
+    )
+
+
+def test_resampled_channels_are_flagged_throughout():
+    result = flagged(record(), resampled=("tension.1", "crosshead_position"))
+    assert np.all(result.quality_flag & Quality.RESAMPLED)
+    assert np.all(result.crosshead_position_quality_flag & Quality.RESAMPLED)
+
+
+def test_a_channel_without_a_number_is_refused():
+    empty = np.full(TIME.size, np.nan)
+    with pytest.raises(DataError, match="tension of 'new' holds no number; found 2000 missing"):
+        flagged(record(load=empty))
+    with pytest.raises(DataError, match="crosshead_position holds no number"):
+        flagged(record(position=empty))
+    with pytest.raises(DataError, match="time holds no number"):
+        flagged(record(time=empty))

@@ -1,0 +1,99 @@
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.ingest.resample import on_common_time
+
+FAST, SLOW = np.arange(0, 10, 0.01), np.arange(0, 10, 0.1)
+NAN = np.nan
+
+
+def common(shared, values, own):
+    values = {key: np.asarray(series, float) for key, series in values.items()}
+    own = {key: np.asarray(series, float) for key, series in own.items()}
+    shared = None if shared is None else np.asarray(shared, float)
+    return on_common_time(shared, values, own, gap_factor=3.5)
+
+
+def test_one_time_axis_is_handed_on_untouched():
+    position = 2 * FAST
+    result = on_common_time(FAST, {"crosshead_position": position}, {}, gap_factor=3.5)
+    assert result.time is FAST and result.values["crosshead_position"] is position
+    assert result.resampled == frozenset() and result.notes == ()
+
+
+def test_own_time_stamps_equal_to_the_shared_time_are_no_second_axis():
+    result = common(FAST, {"crosshead_position": FAST, "tension.1": FAST}, {"tension.1": FAST})
+    assert result.resampled == frozenset()
+
+
+def test_the_faster_channel_comes_to_the_slower_one():
+    result = common(
+        FAST, {"crosshead_position": 2 * FAST + 1, "tension.1": SLOW}, {"tension.1": SLOW + 0.003}
+    )
+    np.testing.assert_allclose(result.time, SLOW + 0.003)
+    inside = slice(None, -1)
+    np.testing.assert_allclose(
+        result.values["crosshead_position"][inside], 2 * (SLOW + 0.003)[inside] + 1
+    )
+    np.testing.assert_allclose(result.values["tension.1"], SLOW)
+    assert result.resampled == {"crosshead_position"}
+    assert result.notes == (
+        "crosshead_position: 100 Hz resampled to the 10 Hz of tension.1 by linear interpolation",
+    )
+
+
+def test_a_slower_column_that_ends_before_the_table_is_cut_to_its_stamps():
+    stamps = np.full(FAST.size, NAN)
+    stamps[: SLOW.size] = SLOW
+    result = common(FAST, {"crosshead_position": FAST, "tension.1": stamps}, {"tension.1": stamps})
+    np.testing.assert_allclose(result.time, SLOW)
+
+
+def test_nothing_is_interpolated_over_a_gap_or_beyond_the_ends():
+    stamps = np.concatenate([np.arange(2.0, 4.0, 0.01), np.arange(6.0, 8.0, 0.01)])
+    result = common(SLOW, {"crosshead_position": SLOW, "tension.1": stamps}, {"tension.1": stamps})
+    known = np.isfinite(result.values["tension.1"])
+    expected = ((SLOW > 1.995) & (SLOW < 3.995)) | ((SLOW > 5.995) & (SLOW < 7.995))
+    assert np.array_equal(known, expected)
+
+
+def test_a_missing_value_is_not_bridged():
+    load = FAST.copy()
+    load[500:520] = NAN
+    result = common(SLOW, {"crosshead_position": SLOW, "tension.1": load}, {"tension.1": FAST})
+    missing = np.flatnonzero(np.isnan(result.values["tension.1"]))
+    assert set(missing) <= {50, 51, 52} and 51 in missing
+
+
+def test_stamps_that_go_back_are_passed_over():
+    stamps = FAST.copy()
+    stamps[300:310] -= 0.5
+    result = common(SLOW, {"crosshead_position": SLOW, "tension.1": FAST}, {"tension.1": stamps})
+    known = np.isfinite(result.values["tension.1"])
+    np.testing.assert_allclose(result.values["tension.1"][known], SLOW[known], atol=1e-9)
+
+
+def test_a_counter_keeps_the_count_of_the_sample_before():
+    count = np.floor(FAST)
+    result = common(FAST, {"tension.1": SLOW, "cycle_counter": count}, {"tension.1": SLOW + 0.005})
+    counted = result.values["cycle_counter"]
+    np.testing.assert_equal(counted[:-1], np.floor(SLOW + 0.005)[:-1])
+
+
+def test_a_channel_without_time_is_refused():
+    with pytest.raises(DataError, match="channel 'tension.1' has no time; found neither"):
+        common(None, {"tension.1": SLOW}, {})
+
+
+def test_a_channel_with_a_single_stamp_is_refused():
+    with pytest.raises(DataError, match="channel 'tension.1' has too few time stamps; found 1"):
+        common(SLOW, {"crosshead_position": SLOW, "tension.1": SLOW[:2]}, {"tension.1": [0.0, NAN]})
+
+
+def test_time_axes_that_do_not_overlap_are_two_time_bases():
+    with pytest.raises(
+        DataError,
+        match=r"two time bases; found crosshead_position from 0 to 9.9 s, tension.1 from 1e",
+    ):
+        common(SLOW, {"crosshead_position": SLOW, "tension.1": FAST}, {"tension.1": FAST + 1e6})
