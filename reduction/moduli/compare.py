@@ -95,7 +95,7 @@ class _Side:
     freedom: Floats
 
 
-def _ratio(strain: Floats, above: _Side, below: _Side, *notes: str) -> Ratio:
+def _ratio(strain: Floats, above: _Side, below: _Side) -> Ratio:
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = above.modulus / below.modulus
         relative = [(side.uncertainty / side.modulus) ** 2 for side in (above, below)]
@@ -104,6 +104,9 @@ def _ratio(strain: Floats, above: _Side, below: _Side, *notes: str) -> Ratio:
         freedom = total**2 / (relative[0] ** 2 / above.freedom + relative[1] ** 2 / below.freedom)
         uncertainty = np.abs(ratio) * np.sqrt(total)
         reach = uncertainty * student_t.ppf((1 + _CONFIDENCE) / 2, np.where(total > 0, freedom, 1))
+    notes = [_TYPE_A]
+    if not np.isfinite(ratio).any():
+        notes.append(f"{above.name} and {below.name} have no strain in common")
     low, high = ratio - reach, ratio + reach
     return Ratio(
         numerator=above.name,
@@ -114,7 +117,7 @@ def _ratio(strain: Floats, above: _Side, below: _Side, *notes: str) -> Ratio:
         ratio_low=low,
         ratio_high=high,
         is_different=(low > 1) | (high < 1),
-        notes=(_TYPE_A, *notes),
+        notes=tuple(notes),
     )
 
 
@@ -172,7 +175,7 @@ def compare_curves(
     Raises
     ------
     DataError
-        If the two have no strain in common.
+        If a curve does not have a value a bin.
 
     Notes
     -----
@@ -181,7 +184,8 @@ def compare_curves(
     The interval is :math:`r \pm t_{95}(\nu)\,u(r)` with u from the type A uncertainty
     of both, taken as independent, and :math:`\nu` after Welch and Satterthwaite ([2]_).
     It is that of one strain: of a hundred bins of equal curves five stand out. Where one
-    of the two has no modulus the ratio is NaN and ``is_different`` False.
+    of the two has no modulus the ratio is NaN and ``is_different`` False; a note says
+    where that is so at every strain.
 
     Examples
     --------
@@ -206,19 +210,7 @@ def compare_curves(
     axis = max((numerator, denominator), key=_spacing).strain_bin
     above = _side(numerator, numerator_specimen, numerator_name, axis)
     below = _side(denominator, denominator_specimen, denominator_name, axis)
-    if not np.isfinite(above.modulus * below.modulus).any():
-        raise DataError(
-            f"'{numerator_name}' and '{denominator_name}' have no strain in common",
-            found=f"{_range(numerator, numerator_specimen)} and "
-            f"{_range(denominator, denominator_specimen)}",
-            needed="overlapping strains",
-        )
     return _ratio(axis, above, below)
-
-
-def _range(curves: ModulusCurves, specimen: int) -> str:
-    known = curves.strain_bin[np.isfinite(curves.tangent_modulus[specimen]).any(axis=0)]
-    return f"{known[0]:g} to {known[-1]:g}" if known.size else "no modulus"
 
 
 def compare_cycles(
@@ -311,7 +303,7 @@ def compare_static(stepwise: StepwiseResult, curves: ModulusCurves, *, specimen:
     Raises
     ------
     DataError
-        If no interval lies within the strains of the cyclic test.
+        If a curve does not have a value a bin.
 
     Notes
     -----
@@ -346,11 +338,4 @@ def compare_static(stepwise: StepwiseResult, curves: ModulusCurves, *, specimen:
     modulus = np.where(on_branch, stepwise.interval_modulus[order], np.nan)
     uncertainty = np.where(on_branch, stepwise.interval_modulus_standard_uncertainty[order], np.nan)
     static = _Side("static", modulus, uncertainty, np.full(modulus.shape, np.inf))
-    dynamic = _side(curves, specimen, "dynamic", strain)
-    if not np.isfinite(static.modulus * dynamic.modulus).any():
-        raise DataError(
-            "the stepwise and the cyclic test have no strain in common",
-            found=f"{strain[0]:g} to {strain[-1]:g} and {_range(curves, specimen)}",
-            needed="overlapping strains on a branch",
-        )
-    return _ratio(strain, static, dynamic)
+    return _ratio(strain, static, _side(curves, specimen, "dynamic", strain))

@@ -30,6 +30,8 @@ from reduction.settings import ModulusSettings
 __all__ = ["first_loading_curves"]
 
 _BAND = 0.01  # of the rise: a sample this far below the greatest strain so far has unloaded
+_NEIGHBOURS = 25  # on each side, to tell the usual step from a spike
+_SPIKE_STEPS = 6  # usual steps above both neighbours
 _BINS = 200  # of the rise, the finest grid
 
 
@@ -41,11 +43,22 @@ def _without_single_spikes(strain: Floats) -> Floats:
     return smooth
 
 
-def _end_of_rise(smooth: Floats, start: float) -> int:
-    """First sample near the greatest strain; a single spike is not in the smoothed series."""
-    greatest = float(np.nanmax(smooth))
-    tolerance = _BAND / 2 * (greatest - start)
-    return int(np.argmax(smooth >= greatest - tolerance))
+def _end_of_rise(strain: Floats, start: float) -> int:
+    """First sample near the greatest strain, single spikes left out."""
+    is_copy = False
+    while True:
+        top = int(np.nanargmax(strain))
+        tolerance = _BAND / 2 * (strain[top] - start)
+        near = strain[max(top - _NEIGHBOURS, 0) : top + _NEIGHBOURS + 1]
+        steps = np.abs(np.diff(near))
+        steps = steps[np.isfinite(steps)]
+        beside = np.append(strain[max(top - 1, 0) : top], strain[top + 1 : top + 2])
+        beside = beside[np.isfinite(beside)]
+        usual = _SPIKE_STEPS * float(np.median(steps)) if steps.size else 0.0
+        if beside.size == 0 or strain[top] - beside.max() <= max(usual, tolerance):
+            return int(np.argmax(strain >= strain[top] - tolerance))
+        strain = strain if is_copy else strain.copy()
+        strain[top], is_copy = np.nan, True
 
 
 def _rising_pieces(strain: Floats, tension: Floats, is_still: Bools) -> NDArray[np.int64]:

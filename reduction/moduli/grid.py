@@ -147,7 +147,7 @@ def strain_grid(strain: ArrayLike, *, cycles: Cycles, settings: ModulusSettings)
     Raises
     ------
     DataError
-        If there is no cycle, if no cycle has strain at both ends of a branch, if
+        If there is no cycle, no branch of any specimen has strain at both ends,
         the stroke is zero, or if the grid would have more than 5,000 bins.
     SettingsError
         If the bin width is not positive, or the window is not wider than a bin.
@@ -193,13 +193,14 @@ def strain_grid(strain: ArrayLike, *, cycles: Cycles, settings: ModulusSettings)
         raise DataError("there is no cycle to make a strain grid from", needed="a whole cycle")
     ends = strain[:, np.stack([cycles.branch_first, cycles.branch_last])]
     travel = np.abs(ends[:, 1] - ends[:, 0])
-    if not np.isfinite(travel).any(axis=(1, 2)).all():
+    live = np.isfinite(travel).any(axis=(1, 2))  # a dead channel does not take the other along
+    if not live.any():
         raise DataError(
-            "a specimen has no branch with strain at both ends",
+            "no branch has strain at both ends",
             needed="at least one branch without missing ends",
             hint="See the quality flags of position and tension.",
         )
-    stroke = float(np.min(np.nanmedian(travel, axis=(1, 2))))
+    stroke = float(np.min(np.nanmedian(travel[live], axis=(1, 2))))
     if not stroke > 0:
         raise DataError("the strain does not move over the cycles", found=f"a stroke of {stroke:g}")
 

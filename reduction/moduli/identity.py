@@ -22,6 +22,7 @@ __all__ = ["check_identity"]
 _MOST_PIECES = 4  # of a stroke: more follow its curvature better, with more noise
 _PIECE_SAMPLES = 6
 _FEWEST_SAMPLES = 3  # in a piece
+_LEAST_SPREAD = 0.5  # of the variance that samples spread evenly over a piece have
 _BLOCK_SAMPLES = 1 << 16  # a block's temporaries stay in the processor's cache
 
 
@@ -57,10 +58,26 @@ def _tension_change(
         rows[0] += np.bincount(cell, minlength=n_cells)
         for row, weight in zip(rows[1:], (u, y, u * u, u * y), strict=True):
             row += np.bincount(cell, weights=weight, minlength=n_cells)
+    by_branch = sums.reshape(5, -1, n_pieces)
+    own = np.arange(2 * cycles.n_cycles).reshape(-1, 2)
+    for reversal, u_there, piece_there in (
+        (cycles.branch_first, 0.0, 0),
+        (cycles.branch_last, 1.0, -1),
+    ):
+        # a reversal is labelled once, and is the end of two branches
+        label = 2 * cycles.cycle_number[reversal].astype(np.int64) + cycles.branch[reversal] - 3
+        load = tension[reversal]
+        shared = (label != own) & np.isfinite(strain[reversal]) & np.isfinite(load)
+        y, one = load[shared] - reference, np.ones(np.count_nonzero(shared))
+        by_branch[:, own[shared], piece_there] += np.stack(
+            [one, u_there * one, y, u_there * one, u_there * y]
+        )
     n, su, sy, suu, suy = sums
     with np.errstate(divide="ignore", invalid="ignore"):
-        slope = (suy - su * sy / n) / (suu - su * su / n)
-    slope = np.where(n >= _FEWEST_SAMPLES, slope, np.nan)
+        spread = suu - su * su / n
+        slope = (suy - su * sy / n) / spread
+        covered = (n >= _FEWEST_SAMPLES) & (spread >= _LEAST_SPREAD * n / (12 * n_pieces**2))
+    slope = np.where(covered, slope, np.nan)
     return slope.reshape(cycles.n_cycles, 2, n_pieces).mean(axis=-1), stroke
 
 
@@ -111,13 +128,13 @@ def check_identity(
     mislabelled, or tension changes while strain does not.
 
     *What is left.* Noise of standard deviation :math:`\sigma` gives a residual of about
-    :math:`\sigma \sqrt{2 + 24 B^2/n} / (A \bar E \Delta\varepsilon)` for B pieces and n samples a
+    :math:`\sigma B \sqrt{24 / n} / (A \bar E \Delta\varepsilon)` for B pieces and n samples a
     branch: 1 % on tests of 60 lbf range with 0.26 lbf of noise at 48 samples. Within a
     piece of width w regression and chord differ by :math:`E'' w^2 / 60`, which the
     branches share in part. A dwell at a reversal adds what tension falls in it.
 
-    NaN for a cycle in which a piece has fewer than 3 samples, or whose first or last
-    sample is missing.
+    NaN for a cycle in which a piece has fewer than 3 samples or samples in less than
+    about two thirds of it, or whose first or last sample is missing.
 
     Examples
     --------
@@ -150,9 +167,10 @@ def check_identity(
             )
             per_stroke = 1 / (one_area * np.abs(stroke).mean(axis=1))
             lost = tensions[row][cycles.first] - tensions[row][cycles.last]
-            difference[row] = change.sum(axis=1) * per_stroke
+            rise = change * np.sign(stroke)
+            difference[row] = (rise[:, 0] - rise[:, 1]) * per_stroke
             loss[row] = lost * per_stroke
-            mean_modulus = np.abs(change).mean(axis=1) * per_stroke
+            mean_modulus = rise.mean(axis=1) * per_stroke
             residual[row] = (difference[row] + loss[row]) / mean_modulus
     return CycleIdentity(
         stroke_mean_modulus_difference=difference,

@@ -9,7 +9,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -345,11 +345,13 @@ def tangent_curves(
         tangent_modulus_by_cycle_standard_uncertainty=gain
         * np.sqrt(by_cycle_variance)
         * per_area[..., None],
-        notes=tuple(_notes(grid, groups, break_in_cycles, sum(one.n_outside for one in specimens))),
+        notes=tuple(_notes(grid, groups, break_in_cycles, specimens)),
     )
 
 
-def _notes(grid: StrainGrid, groups: _Groups, break_in_cycles: int, n_outside: int) -> list[str]:
+def _notes(
+    grid: StrainGrid, groups: _Groups, break_in_cycles: int, specimens: Sequence[_SpecimenCurves]
+) -> list[str]:
     notes = [f"tangent modulus by local regression in a window of {grid.window:g} of strain"]
     if break_in_cycles:
         notes.append(f"the first {break_in_cycles} cycles (break-in) are not in the mean")
@@ -359,6 +361,12 @@ def _notes(grid: StrainGrid, groups: _Groups, break_in_cycles: int, n_outside: i
             f"consecutive cycles ({groups.first.size} curves), and a curve by cycle is that of "
             "the group that begins with the cycle"
         )
+    notes += [
+        f"specimen {place} of the record has no tangent modulus: no window has enough samples"
+        for place, one in enumerate(specimens, start=1)
+        if not (one.trimmed.n_curves > 0).any()
+    ]
+    n_outside = sum(one.n_outside for one in specimens)
     if n_outside:
         notes.append(
             f"{n_outside} samples of branches lie off the strain grid and are in no curve: "

@@ -1,0 +1,43 @@
+"""Cyclic tests made from a law, for the tests of the stages that reduce them."""
+
+import numpy as np
+import pytest
+
+from reduction.cycles.product import Cycles
+
+
+def make_triangle(
+    n_cycles=10, per_cycle=100, low=1.0, high=1.5, *, trimmed=0, begins="valley", phase=0.0
+):
+    """Strain of a triangular test and its cycles; ``trimmed`` samples go from each branch end."""
+    half = per_cycle // 2
+    n_samples = 2 * half * n_cycles + 1
+    turn = np.arange(2 * n_cycles + 1) * half
+    strain = (
+        low
+        + (high - low) * np.abs((np.arange(n_samples) + phase + half) % (2 * half) - half) / half
+    )
+    if begins == "peak":
+        strain = low + high - strain
+    edges = np.stack([turn[:-1], turn[1:]], axis=-1).reshape(n_cycles, 2, 2)
+    ascending, descending = (0, 1) if begins == "valley" else (1, 0)
+    half_number = np.minimum(np.arange(n_samples) // half, 2 * n_cycles - 1)
+    within = np.arange(n_samples) - half * half_number
+    first_is_up = begins == "valley"
+    cycles = Cycles(
+        first=turn[:-1:2],
+        last=turn[2::2],
+        branch_first=edges[:, [ascending, descending], 0],
+        branch_last=edges[:, [ascending, descending], 1],
+        plateau_rate=np.ones((n_cycles, 2)),
+        cycle_number=(half_number // 2 + 1).astype(np.int32),
+        branch=np.where((half_number % 2 == 0) == first_is_up, 1, 2).astype(np.int8),
+        is_constant_rate=(within >= trimmed) & (within <= half - trimmed),
+        band=0.01,
+    )
+    return strain, cycles
+
+
+@pytest.fixture
+def triangle():
+    return make_triangle

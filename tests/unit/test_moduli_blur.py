@@ -1,0 +1,60 @@
+"""Blur of a moving window: the derived bias, and the noise that taking it off costs."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.moduli.blur import window_blur
+from reduction.moduli.grid import StrainGrid
+from reduction.moduli.moments import accumulate_moments, fit_windows
+
+
+def slopes_of(strain, tension, half_window, n_curves=1):
+    grid = StrainGrid(low=0.0, width=0.01, n_bins=100, half_window=half_window)
+    moments, _ = accumulate_moments(
+        strain.ravel(), tension.ravel(), n_curves=n_curves, grid=grid, tension_reference=0.0,
+        curve=np.repeat(np.arange(n_curves), strain.size // n_curves),
+    )  # fmt: skip
+    return grid, fit_windows(moments, minimum_count=4).slope
+
+
+@pytest.mark.parametrize("half_window", [2, 4, 8])
+def test_window_slope_of_a_cubic_is_high_by_a_fortieth_of_its_bend(half_window):
+    strain = (np.arange(100_000) + 0.5) / 100_000
+    grid, slope = slopes_of(strain, 1000 * strain**3, half_window)
+    inside = slice(2 * half_window + 2, 98 - 2 * half_window)
+    excess = slope[0] - 3000 * grid.centres**2
+    assert excess[inside] == pytest.approx(6000 * grid.window**2 / 40, rel=1e-3)
+    blur, _ = window_blur(slope, half_window=half_window)
+    assert blur[0][inside] == pytest.approx(excess[inside], rel=1e-3)
+
+
+@pytest.mark.parametrize("half_window", [2, 6])
+def test_stated_noise_gain_is_that_of_simulated_noise(half_window):
+    n_curves = 300
+    strain = np.tile((np.arange(2000) + 0.5) / 2000, (n_curves, 1))
+    noise = np.random.default_rng(5).normal(0, 1, strain.shape)
+    _, slope = slopes_of(strain, noise, half_window, n_curves)
+    blur, gain = window_blur(slope, half_window=half_window)
+    inside = slice(20, 80)
+    measured = np.sqrt(np.mean((slope - blur)[:, inside] ** 2) / np.mean(slope[:, inside] ** 2))
+    assert gain == pytest.approx(measured, rel=0.03)
+
+
+def test_blur_near_an_end_or_a_gap_is_that_of_the_nearest_bin():
+    slope = 3 * np.arange(40.0) ** 2
+    slope[20] = np.nan
+    blur, _ = window_blur(slope, half_window=2)
+    assert blur == pytest.approx(np.full(40, blur[3]))
+
+
+def test_curve_too_short_to_bend_has_no_blur():
+    blur, _ = window_blur([1.0, 5.0, 2.0, 7.0], half_window=2)
+    assert not blur.any()
+    blur, _ = window_blur(np.full(40, np.nan), half_window=2)
+    assert not blur.any()
+
+
+def test_window_of_one_bin_is_refused():
+    with pytest.raises(DataError, match="a window is a bin wide; found half_window 0"):
+        window_blur([1.0, 2.0], half_window=0)

@@ -1,0 +1,110 @@
+"""First loading: the rise alone, gaps at holds, no reloading, no spikes."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.moduli.first_loading import first_loading_curves
+from reduction.phases.standstill import Standstills
+from reduction.settings import ModulusSettings
+
+AREA = 5e-4
+SETTINGS = ModulusSettings()
+
+
+def rise_with_a_hold():
+    """Up to 1.2, a hold in which 10 % of tension goes, stiff recovery, up to 2, then cycles."""
+    up, hold, on = np.linspace(0, 1.2, 600), np.full(300, 1.2), np.linspace(1.2, 2.0, 400)
+    cycling = 1.6 + 0.4 * np.cos(np.linspace(0, 20 * np.pi, 2000))
+    strain = np.concatenate([up, hold, on, cycling])
+    tension = 300 * strain
+    tension[600:900] -= np.linspace(0, 36, 300)
+    tension[900:1300] -= 36 * np.exp(-(on - 1.2) / 0.02)
+    tension[1300:] -= 20
+    where = slice(600, 899)
+    standstills = Standstills(
+        first=np.array([where.start]), last=np.array([where.stop]), start_time=np.zeros(1),
+        end_time=np.ones(1), mean_position=np.ones(1), mean_tension=np.ones((1, 1)),
+        is_rest=np.zeros(1, dtype=bool), position_tolerance=0.0, slack_tension=0.0,
+    )  # fmt: skip
+    return strain, tension, standstills
+
+
+def curves_of(strain, tension, standstills=None, settings=SETTINGS):
+    return first_loading_curves(
+        np.atleast_2d(strain), np.atleast_2d(tension), area=[AREA], settings=settings,
+        standstills=standstills,
+    )  # fmt: skip
+
+
+def test_window_does_not_reach_over_a_hold():
+    strain, tension, standstills = rise_with_a_hold()
+    curves = curves_of(strain, tension, standstills)
+    modulus = curves.tangent_modulus[0, 0] * AREA
+    near = np.abs(curves.strain_bin - 1.2) < curves.window / 8
+    assert np.isnan(modulus[near]).all()
+    before = np.isfinite(modulus) & (curves.strain_bin < 1.2)
+    assert modulus[before] == pytest.approx(300)
+    recovered = np.isfinite(modulus) & (curves.strain_bin > 1.4)
+    assert modulus[recovered] == pytest.approx(300, rel=1e-2)
+    assert curves.strain_bin[np.isfinite(modulus)][-1] > 1.9
+    assert np.isnan(curves.tangent_modulus[0, 1]).all()
+
+
+def test_tension_stands_beside_the_modulus():
+    strain, tension, standstills = rise_with_a_hold()
+    curves = curves_of(strain, tension, standstills)
+    at = np.argmin(np.abs(curves.strain_bin - 0.6))
+    assert curves.branch_tension[0, 0, at] == pytest.approx(300 * curves.strain_bin[at])
+
+
+def test_reloading_below_the_greatest_strain_is_left_out():
+    up, back = np.linspace(0, 1, 500), np.linspace(1, 0.4, 300)
+    strain = np.concatenate([up, back, back[::-1], np.linspace(1, 2, 500)])
+    tension = 300 * strain
+    tension[501:1099] -= 50  # softened on the way back and up again
+    curves = curves_of(strain, tension)
+    modulus = curves.tangent_modulus[0, 0]
+    assert modulus[np.isfinite(modulus)] * AREA == pytest.approx(300, rel=1e-6)
+
+
+def test_single_spike_is_not_the_greatest_strain():
+    strain, tension, standstills = rise_with_a_hold()
+    spiked = strain.copy()
+    spiked[200] = 30.0
+    spiked[2500] = 25.0
+    curves = curves_of(spiked, tension, standstills)
+    assert curves.strain_bin[-1] < 2.1
+    plain = curves_of(strain, tension, standstills)
+    middle = np.argmin(np.abs(curves.strain_bin - 1.7))
+    assert curves.tangent_modulus[0, 0, middle] == pytest.approx(
+        plain.tangent_modulus[0, 0, middle], rel=1e-3
+    )
+
+
+def test_missing_samples_are_skipped():
+    strain, tension, standstills = rise_with_a_hold()
+    strain, tension = strain.copy(), tension.copy()
+    strain[100:110] = np.nan
+    tension[300:305] = np.nan
+    modulus = curves_of(strain, tension, standstills).tangent_modulus[0, 0]
+    at = np.isfinite(modulus)[: modulus.size // 3]
+    assert at.sum() > 10
+
+
+def test_record_that_does_not_rise_has_no_first_loading():
+    assert curves_of(np.linspace(2, 1, 100), np.linspace(600, 300, 100)) is None
+    assert curves_of(np.full(100, np.nan), np.ones(100)) is None
+    assert curves_of(np.full(100, 1.0), np.ones(100)) is None
+
+
+def test_given_bins_and_window_are_used():
+    strain, tension, standstills = rise_with_a_hold()
+    settings = ModulusSettings(strain_bin_width=0.05, window=0.15)
+    curves = curves_of(strain, tension, standstills, settings)
+    assert curves.window == pytest.approx(0.15)
+
+
+def test_series_that_do_not_pair_up_are_refused():
+    with pytest.raises(DataError, match="strain, tension and area do not pair up"):
+        curves_of(np.ones((2, 5)), np.ones((2, 5)))

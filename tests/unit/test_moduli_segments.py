@@ -1,0 +1,106 @@
+"""Segments of branches: their number by the criterion, their limits contiguous."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.moduli.product import ModulusCurves
+from reduction.moduli.segments import find_segments
+from reduction.settings import ModulusSettings
+
+AREA = 5e-4
+X = 0.8 + 0.01 * np.arange(45)
+
+
+def curves_of(tension, *, uncertainty=0.1, count=10, modulus_uncertainty=100.0):
+    tension = np.broadcast_to(np.asarray(tension, dtype=float), (1, 2, X.size))
+    blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((1, 2, X.size)))
+    return ModulusCurves(
+        **blank
+        | {
+            "strain_bin": X,
+            "window": 0.09,
+            "branch_tension": tension.copy(),
+            "branch_tension_standard_uncertainty": np.full(tension.shape, uncertainty),
+            "tangent_modulus_count": np.full(tension.shape, count),
+            "tangent_modulus_standard_uncertainty": np.full(tension.shape, modulus_uncertainty),
+        }
+    )
+
+
+def segments_of(curves, **settings):
+    return find_segments(curves, area=[AREA], settings=ModulusSettings(**settings))
+
+
+@pytest.mark.parametrize("n_segments", [1, 2, 3])
+def test_as_many_segments_are_found_as_the_branch_has(n_segments):
+    knots = [0.8, 0.955, 1.105, 1.24][: n_segments + 1]
+    knots[-1] = 1.24
+    loads = np.cumsum([50, *(np.diff(knots) * [100, 250, 500][:n_segments])])
+    segments = segments_of(curves_of(np.interp(X, knots, loads)))
+    assert segments.segment_modulus.shape == (1, 2, n_segments)
+    expected = np.array([100, 250, 500][:n_segments])
+    assert segments.segment_modulus[0, 0] * AREA == pytest.approx(expected, rel=0.05)
+
+
+def test_segments_are_contiguous_and_their_modulus_is_the_chord():
+    segments = segments_of(curves_of(100 * np.exp(X)))
+    for low, high in (("strain_low", "strain_high"), ("tension_low", "tension_high")):
+        lows, highs = (getattr(segments, f"segment_{name}")[0, 0] for name in (low, high))
+        assert lows[1:] == pytest.approx(highs[:-1])
+    chord = (segments.segment_tension_high - segments.segment_tension_low) / (
+        AREA * (segments.segment_strain_high - segments.segment_strain_low)
+    )
+    assert segments.segment_modulus == pytest.approx(chord)
+    assert segments.segment_strain_low[0, 0, 0] == X[0]
+    assert segments.segment_strain_high[0, 0, -1] == X[-1]
+
+
+def test_scatter_of_the_cycles_decides_how_many_segments():
+    tension = 100 * np.exp(X)
+    counts = [
+        np.isfinite(segments_of(curves_of(tension, uncertainty=u)).segment_modulus[0, 0]).sum()
+        for u in (0.01, 0.3, 3.0)
+    ]
+    assert counts[0] > counts[1] > counts[2] == 1
+
+
+def test_number_of_segments_stays_within_the_setting():
+    segments = segments_of(curves_of(1e4 * X**3, uncertainty=1e-9), maximum_segments=2)
+    assert segments.segment_modulus.shape[-1] == 2
+    assert "at most 2" in segments.criterion
+
+
+def test_branch_with_fewer_segments_is_filled_with_nan():
+    both = np.stack([200 * X, np.interp(X, (0.8, 1.0, 1.24), (50, 70, 142))])[None]
+    segments = segments_of(curves_of(both))
+    assert np.isnan(segments.segment_modulus[0, 0, 1])
+    assert np.isfinite(segments.segment_modulus[0, 1]).all()
+
+
+def test_branch_without_tension_has_no_segment():
+    tension = np.full((1, 2, X.size), np.nan)
+    tension[0, 0] = 200 * X
+    tension[0, 1, :5] = 1.0
+    segments = segments_of(curves_of(tension))
+    assert np.isfinite(segments.segment_modulus[0, 0, 0])
+    assert np.isnan(segments.segment_modulus[0, 1]).all()
+
+
+def test_one_cycle_without_scatter_still_has_segments():
+    segments = segments_of(curves_of(200 * X, uncertainty=np.nan, count=1))
+    assert segments.segment_modulus[0, 0, 0] * AREA == pytest.approx(200)
+
+
+def test_uncertainty_is_that_of_the_windows_in_the_segment():
+    segments = segments_of(curves_of(200 * X, modulus_uncertainty=100.0))
+    assert segments.segment_modulus_standard_uncertainty[0, 0, 0] == pytest.approx(
+        100 / np.sqrt(0.44 / 0.09)
+    )
+
+
+def test_areas_that_do_not_pair_up_are_refused():
+    with pytest.raises(
+        DataError, match=r"areas do not pair up with the curves; found shape \(2,\)"
+    ):
+        find_segments(curves_of(200 * X), area=[AREA, AREA], settings=ModulusSettings())
