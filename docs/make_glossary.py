@@ -44,7 +44,7 @@ def _symbol(text: str) -> str:
 
 
 def _row(*cells: str) -> str:
-    return "| " + " | ".join(cells).replace("|  |", "| |") + " |"
+    return "|" + "|".join(f" {cell} " if cell else " " for cell in cells) + "|"
 
 
 def glossary() -> str:
