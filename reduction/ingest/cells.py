@@ -7,10 +7,12 @@ cell by cell, because arrow would be given 1 for ``TRUE`` and 12 for the text ``
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import fastexcel
 import numpy as np
@@ -118,17 +120,22 @@ def _exact_columns(
             .get_sheet_by_index(sheet)
             .to_python(skip_empty_area=False)[first:]
         )
-        errors = _error_cells(workbook, sheet, first)
+        columns: list[list[Any]] = [[row[place] for row in rows] for place in places]
+        if any("" in cells for cells in columns):  # an error value looks blank here
+            errors = _error_cells(workbook, sheet, first)
+            for (row, place), mark in errors.items():
+                for index in (i for i, wanted_place in enumerate(places) if wanted_place == place):
+                    columns[index][row - first] = mark
     except (python_calamine.CalamineError, fastexcel.FastExcelError) as error:
         raise LogError(
             path, f"sheet {sheet + 1} cannot be read", found=str(error).splitlines()[0]
         ) from error
     found = SheetCells()
-    for place, want in zip(places, wanted, strict=True):
-        cells = [errors.get((first + index, place), row[place]) for index, row in enumerate(rows)]
-        found.blanks.append(
-            np.array([isinstance(cell, str) and not cell.strip() for cell in cells], dtype=bool)
-        )
+    for cells, want in zip(columns, wanted, strict=True):
+        odd = [index for index, cell in enumerate(cells) if type(cell) is not float]
+        blank = np.zeros(len(cells), dtype=bool)
+        blank[[i for i in odd if isinstance(cells[i], str) and not cells[i].strip()]] = True
+        found.blanks.append(blank)
         if want.unit == CLOCK:
             found.text[want.key] = tuple(_clock_text(cell) for cell in cells)
             found.values.append(
@@ -142,24 +149,27 @@ def _exact_columns(
                 )
             )
             continue
-        values = np.full(len(cells), np.nan)
-        for index, cell in enumerate(cells):
-            if type(cell) is float or type(cell) is int:  # a bool is no number
-                values[index] = cell
-            elif not isinstance(cell, str) or (cell.strip() and cell.strip() not in layout.missing):
-                raise LogError(
-                    path,
-                    "a cell does not hold a number",
-                    row=first + index + 1,
-                    channel=str(want.column),
-                    found=f"the text {cell!r}"
-                    if isinstance(cell, str)
-                    else f"{type(cell).__name__} {cell}",
-                    needed=f"a number in {want.unit}",
-                    hint="Make the cell a number, or add its text to the missing marks.",
-                )
-        found.values.append(without_marks(values, layout))
+        for index in odd:
+            cells[index] = _number(path, cells[index], want, layout, row=first + index + 1)
+        found.values.append(without_marks(np.array(cells, dtype=np.float64), layout))
     return found
+
+
+def _number(path: Path, cell: object, want: Wanted, layout: Layout, *, row: int) -> float:
+    """A cell that is no float: a whole number, or NaN for a blank or a missing mark."""
+    if type(cell) is int:  # a bool is no number
+        return float(cell)
+    if isinstance(cell, str) and (not cell.strip() or cell.strip() in layout.missing):
+        return math.nan
+    raise LogError(
+        path,
+        "a cell does not hold a number",
+        row=row,
+        channel=str(want.column),
+        found=f"the text {cell!r}" if isinstance(cell, str) else f"{type(cell).__name__} {cell}",
+        needed=f"a number in {want.unit}",
+        hint="Make the cell a number, or add its text to the missing marks.",
+    )
 
 
 def read_cells(

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
 from reduction.ingest.rawlog import RawLog
-from reduction.ingest.source import hash_source, unchanged
+from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, matrix_table, read_columns
 
 __all__ = [
@@ -208,11 +208,10 @@ def read_hdf5(path: Path, layout: Layout, *, name: str) -> RawLog:
     LogError
         If the file, a data set or a column cannot be used.
     """
-    with unchanged(path):
-        source = hash_source(path, name)
-        with open_hdf5(path) as file:
-            columns, n_rows = read_columns(path, layout, hdf5_table(path, file, layout))
-            metadata = _attributes(file) | _attributes(find_member(path, file, layout.group))
+    source = hash_source(path, name)
+    with open_hdf5(path) as file:
+        columns, n_rows = read_columns(path, layout, hdf5_table(path, file, layout))
+        metadata = _attributes(file) | _attributes(find_member(path, file, layout.group))
     return RawLog(
         source=source, columns=columns, first_row=0, n_rows_read=n_rows, metadata=metadata
     )

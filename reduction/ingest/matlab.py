@@ -23,10 +23,10 @@ from reduction.errors import LogError
 from reduction.ingest.hdf5 import find_member, open_hdf5, read_data_set
 from reduction.ingest.layout import Layout
 from reduction.ingest.rawlog import RawLog
-from reduction.ingest.source import hash_source, unchanged
+from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, matrix_table, read_columns
 
-__all__ = ["matlab_table", "open_matlab", "read_matlab"]
+__all__ = ["matlab_table", "open_matlab", "read_cell_texts", "read_matlab", "struct_fields"]
 
 _NOT_MATLAB = (
     MatReadError, ValueError, IndexError, OSError, TypeError, KeyError, EOFError, zlib.error,
@@ -121,7 +121,7 @@ class _Struct(Mapping[str, Any]):
         return len(self.names)
 
 
-def _fields(value: Any) -> Mapping[str, Any] | None:
+def struct_fields(value: Any) -> Mapping[str, Any] | None:
     """Fields of a scalar struct, or None where the value is none."""
     if isinstance(value, _Struct):
         return value
@@ -145,7 +145,7 @@ def _member(path: Path, scope: Mapping[str, Any], name: str) -> Any:
                 hint=_HINT,
             )  # fmt: skip
         value = scope[part]
-        scope = _fields(value) or {}
+        scope = struct_fields(value) or {}
     return value
 
 
@@ -153,7 +153,7 @@ def _scope(path: Path, scope: Mapping[str, Any], name: str) -> Mapping[str, Any]
     if not name:
         return scope
     value = _member(path, scope, name)
-    fields = _fields(value)
+    fields = struct_fields(value)
     if fields is None:
         raise LogError(
             path, f"'{name}' is not a struct", found=f"{type(value).__name__} {np.shape(value)}",
@@ -182,7 +182,8 @@ def _series(path: Path, name: str, value: Any) -> NDArray[Any]:
     return values.ravel()
 
 
-def _texts(path: Path, name: str, value: Any) -> tuple[str, ...]:
+def read_cell_texts(path: Path, name: str, value: Any) -> tuple[str, ...]:
+    """Texts of a cell array or of a character matrix."""
     cells = _array(path, name, value).ravel(order="F").tolist()
     texts = [
         "".join(cell.ravel().tolist())
@@ -203,7 +204,7 @@ def matlab_table(path: Path, scope: Mapping[str, Any], layout: Layout) -> Column
     scope = _scope(path, scope, layout.group)
     if layout.matrix:
         names, units = (
-            _texts(path, entry, _member(path, scope, entry)) if entry else None
+            read_cell_texts(path, entry, _member(path, scope, entry)) if entry else None
             for entry in (layout.matrix_names, layout.matrix_units)
         )
         matrix = _array(path, layout.matrix, _member(path, scope, layout.matrix))
@@ -251,12 +252,11 @@ def read_matlab(path: Path, layout: Layout, *, name: str) -> RawLog:
     LogError
         If the file, a variable or a column cannot be used.
     """
-    with unchanged(path):
-        source = hash_source(path, name)
-        with open_matlab(path) as scope:
-            columns, n_rows = read_columns(path, layout, matlab_table(path, scope, layout))
-        with path.open("rb") as stream:
-            header = stream.read(116)
+    source = hash_source(path, name)
+    with open_matlab(path) as scope:
+        columns, n_rows = read_columns(path, layout, matlab_table(path, scope, layout))
+    with path.open("rb") as stream:
+        header = stream.read(116)
     return RawLog(
         source=source,
         columns=columns,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
 from reduction.ingest.rawlog import RawLog
-from reduction.ingest.source import hash_source, unchanged
+from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, read_columns
 
 __all__ = ["open_parquet", "parquet_table", "read_parquet"]
@@ -80,11 +80,10 @@ def read_parquet(path: Path, layout: Layout, *, name: str) -> RawLog:
     LogError
         If the file or a column cannot be used.
     """
-    with unchanged(path):
-        source = hash_source(path, name)
-        with open_parquet(path) as file:
-            columns, n_rows = read_columns(path, layout, parquet_table(path, file))
-            properties = file.metadata.metadata or {}
+    source = hash_source(path, name)
+    with open_parquet(path) as file:
+        columns, n_rows = read_columns(path, layout, parquet_table(path, file))
+        properties = file.metadata.metadata or {}
     return RawLog(
         source=source,
         columns=columns,

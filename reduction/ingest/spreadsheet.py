@@ -19,7 +19,7 @@ from reduction.ingest.columns import check_lengths, find_column, wanted_columns
 from reduction.ingest.layout import Layout
 from reduction.ingest.preamble import check_units
 from reduction.ingest.rawlog import RawLog
-from reduction.ingest.source import hash_source, unchanged
+from reduction.ingest.source import hash_source
 
 __all__ = ["find_sheet", "open_workbook", "read_rows", "read_spreadsheet"]
 
@@ -148,33 +148,32 @@ def read_spreadsheet(path: Path, layout: Layout, *, name: str) -> RawLog:
     LogError
         If the file, the sheet, a column or a cell cannot be used.
     """
-    with unchanged(path):
-        source = hash_source(path, name)
-        _check_archive(path)
-        workbook = open_workbook(path)
-        sheet = find_sheet(path, workbook.sheet_names, layout.sheet)
-        sheet_name = workbook.sheet_names[sheet]
-        preamble, names, units = _head(path, workbook, sheet, layout)
-        first = layout.preamble_rows + layout.has_name_row + layout.has_unit_row
-        wanted = wanted_columns(layout)
-        places = [
-            find_column(
-                path,
-                want,
-                names,
-                where=f"sheet '{sheet_name}'",
-                row=layout.preamble_rows + 1 if layout.has_name_row else None,
-            )
-            for want in wanted
-        ]
-        check_units(
+    source = hash_source(path, name)
+    _check_archive(path)
+    workbook = open_workbook(path)
+    sheet = find_sheet(path, workbook.sheet_names, layout.sheet)
+    sheet_name = workbook.sheet_names[sheet]
+    preamble, names, units = _head(path, workbook, sheet, layout)
+    first = layout.preamble_rows + layout.has_name_row + layout.has_unit_row
+    wanted = wanted_columns(layout)
+    places = [
+        find_column(
             path,
-            list(zip(wanted, places, strict=True)),
-            names=names,
-            units=units,
-            unit_row=first if layout.has_unit_row else None,
+            want,
+            names,
+            where=f"sheet '{sheet_name}'",
+            row=layout.preamble_rows + 1 if layout.has_name_row else None,
         )
-        cells = read_cells(path, workbook, sheet, first, places, wanted, layout)
+        for want in wanted
+    ]
+    check_units(
+        path,
+        list(zip(wanted, places, strict=True)),
+        names=names,
+        units=units,
+        unit_row=first if layout.has_unit_row else None,
+    )
+    cells = read_cells(path, workbook, sheet, first, places, wanted, layout)
     all_blank = np.logical_and.reduce(cells.blanks)
     n_rows = all_blank.size - int(np.argmin(all_blank[::-1])) if not all_blank.all() else 0
     for want, blank in zip(wanted, cells.blanks, strict=True):

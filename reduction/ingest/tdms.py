@@ -24,7 +24,7 @@ from reduction.errors import LogError
 from reduction.ingest.columns import Wanted, check_unit, find_column, wanted_columns
 from reduction.ingest.layout import Layout
 from reduction.ingest.rawlog import RawLog
-from reduction.ingest.source import hash_source, unchanged
+from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, read_columns
 from reduction.record import Floats
 
@@ -181,15 +181,14 @@ def read_tdms(path: Path, layout: Layout, *, name: str) -> RawLog:
     LogError
         If the file, the group or a channel cannot be used.
     """
-    with unchanged(path):
-        source = hash_source(path, name)
-        with open_tdms(path) as file:
-            group = tdms_group(path, file, layout.group)
-            table = tdms_table(path, group)
-            made = _waveform_times(path, layout, group, table)
-            columns, n_rows = read_columns(path, layout, table, made)
-            properties = {**file.properties, **group.properties}
-            cut = file.file_status.incomplete_final_segment
+    source = hash_source(path, name)
+    with open_tdms(path) as file:
+        group = tdms_group(path, file, layout.group)
+        table = tdms_table(path, group)
+        made = _waveform_times(path, layout, group, table)
+        columns, n_rows = read_columns(path, layout, table, made)
+        properties = {**file.properties, **group.properties}
+        cut = file.file_status.incomplete_final_segment
     return RawLog(
         source=source,
         columns=columns,

@@ -8,6 +8,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 import pytest
+import python_calamine
 
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
@@ -314,6 +315,15 @@ def test_a_workbook_with_a_broken_sheet_is_an_error(tmp_path, place):
             broken.writestr(name, whole.read(name).replace(place, place[:-1] + b"</row>"))
     with pytest.raises(LogError, match="sheet 1 cannot be read"):
         read_spreadsheet(path, layout(), name="log.xlsx")
+
+
+def test_a_sheet_that_cannot_be_read_cell_by_cell_is_an_error(tmp_path, monkeypatch):
+    def fail(path):
+        raise python_calamine.CalamineError("no such cell")
+
+    monkeypatch.setattr("python_calamine.CalamineWorkbook.from_path", fail)
+    with pytest.raises(LogError, match="sheet 1 cannot be read; found no such cell"):
+        read(tmp_path, [*HEAD, [0.0, "x"]], missing=["x"])
 
 
 def test_an_empty_file_is_an_error(tmp_path):

@@ -1,0 +1,259 @@
+"""Look at workbooks, binary files and JSON: which table is the log, and what its columns say."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import h5py  # type: ignore[import-untyped]
+import numpy as np
+
+from reduction.errors import LogError
+from reduction.ingest.hdf5 import hdf5_table, open_hdf5, read_data_set, read_texts
+from reduction.ingest.layout import Format, Layout
+from reduction.ingest.matlab import matlab_table, open_matlab, read_cell_texts, struct_fields
+from reduction.ingest.parquet import open_parquet, parquet_table
+from reduction.ingest.sniff_channels import SeenColumn, is_unit
+from reduction.ingest.sniff_table import TableShape, look_at_table, seen_columns
+from reduction.ingest.source import read_bytes
+from reduction.ingest.spreadsheet import open_workbook, read_rows
+from reduction.ingest.table import ColumnTable, matrix_table
+from reduction.ingest.tdms import WAVEFORM_COLUMN, open_tdms, tdms_table
+
+__all__ = ["SeenTable", "look_at_binary", "look_at_json", "look_at_sheet", "table_sheets"]
+
+_ROWS = 400
+Candidate = tuple[dict[str, object], ColumnTable]
+"""Layout settings and the table that they read."""
+
+
+@dataclass(frozen=True)
+class SeenTable:
+    """A table that may be the log: its columns, the layout settings that read it, remarks."""
+
+    format: Format
+    columns: list[SeenColumn]
+    settings: dict[str, object] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
+
+
+def table_sheets(path: Path) -> list[tuple[str, TableShape]]:
+    """Sheets of a workbook that hold a table of two or more rows of numbers."""
+    workbook = open_workbook(path)
+    found = []
+    for place, name in enumerate(workbook.sheet_names):
+        table = look_at_table(read_rows(path, workbook, place, _ROWS), ".")
+        if table is not None and len(table.rows) > 1:
+            found.append((name, table))
+    return found
+
+
+def look_at_sheet(path: Path, sheet: str | None) -> SeenTable:
+    """One sheet of a workbook, or the one that holds the longest table."""
+    found = table_sheets(path)
+    chosen = [entry for entry in found if sheet in (None, entry[0])]
+    if not chosen:
+        raise LogError(
+            path, "no sheet holds a table of numbers",
+            found=", ".join(repr(name) for name, _ in found) or "no such sheet",
+            needed=repr(sheet) if sheet else "rows of two or more numbers",
+        )  # fmt: skip
+    name, table = max(chosen, key=lambda entry: len(entry[1].rows))
+    remarks = [f"guess: the log is on sheet '{name}'"] if sheet is None else []
+    if sheet is None and len(found) > 1:
+        others = ", ".join(repr(other) for other, _ in found if other != name)
+        remarks.append(f"sure: tables stand also on {others}")
+    settings: dict[str, object] = {"sheet": name}
+    top = table.start if table.name_row is None else table.name_row
+    if top:
+        settings["preamble_rows"] = top
+        remarks.append(f"sure: the table begins below row {top}")
+    settings["has_name_row"] = table.name_row is not None
+    settings["has_unit_row"] = table.unit_row is not None
+    return SeenTable("spreadsheet", seen_columns(table, "."), settings, tuple(remarks))
+
+
+def _seen(table: ColumnTable) -> list[SeenColumn]:
+    """Columns of numbers that share the most common length."""
+    columns, sizes = [], []
+    for place, (name, unit) in enumerate(zip(table.names, table.units, strict=True)):
+        try:
+            values = table.load(place)
+        except LogError:  # not a series: no column
+            continue
+        if values.ndim == 1 and values.size > 1 and values.dtype.kind in "fiu":
+            first = values[:_ROWS].astype(np.float64)
+            columns.append(SeenColumn(place + 1, name, unit, first, is_named=bool(name)))
+            sizes.append(values.size)
+    if not sizes:
+        return []
+    length = Counter(sizes).most_common(1)[0][0]
+    return [column for column, size in zip(columns, sizes, strict=True) if size == length]
+
+
+def _named_matrix(
+    path: Path, key: str, matrix: Any, texts: Mapping[str, Sequence[str]], group: str = ""
+) -> tuple[dict[str, object], ColumnTable]:
+    """A matrix with the lists of texts beside it that may be its names and units."""
+    settings: dict[str, object] = {"group": group} if group else {}
+    settings["matrix"] = key
+    given: dict[str, tuple[str, ...]] = {}
+    for name, entries in texts.items():
+        if matrix.ndim == 2 and len(entries) == matrix.shape[1]:
+            filled = [text for text in entries if text]
+            kind = "units" if 2 * sum(map(is_unit, filled)) >= len(filled) else "names"
+            if kind not in given:
+                given[kind] = tuple(entries)
+                settings[f"matrix_{kind}"] = name
+    return settings, matrix_table(
+        path, matrix, where=key, names=given.get("names"), units=given.get("units")
+    )
+
+
+def _is_matrix(values: Any) -> bool:
+    return isinstance(values, np.ndarray) and (
+        bool(values.dtype.names and values.size > 1)
+        or (values.ndim == 2 and min(values.shape) > 1 and values.dtype.kind in "fiu")
+    )
+
+
+def _hdf5_candidates(path: Path, group: h5py.Group, file: h5py.File) -> Iterator[Candidate]:
+    place = group.name.strip("/")
+    settings = {"group": place} if place else {}
+    yield settings, hdf5_table(path, file, Layout(format="hdf5", group=place, channels={}))
+    members = {
+        name: group[name]
+        for name in group
+        if isinstance(group.get(name, getlink=True), h5py.HardLink)
+    }
+    texts, matrices = {}, {}
+    for name, member in members.items():
+        if isinstance(member, h5py.Group):
+            yield from _hdf5_candidates(path, member, file)
+            continue
+        try:
+            values = read_data_set(path, member)
+            if _is_matrix(values):
+                matrices[name] = values
+            else:
+                texts[name] = read_texts(path, member)
+        except LogError:  # neither a matrix nor texts
+            continue
+    for name, values in matrices.items():
+        yield _named_matrix(path, name, values, texts, place)
+
+
+def _matlab_candidates(path: Path, scope: Mapping[str, Any], group: str) -> Iterator[Candidate]:
+    yield (
+        {"group": group} if group else {},
+        matlab_table(path, scope, Layout(format="matlab", channels={})),
+    )
+    texts, matrices = {}, {}
+    for name in scope:
+        try:
+            value = scope[name]
+            fields = struct_fields(value)
+            if fields is not None:
+                yield from _matlab_candidates(path, fields, f"{group}.{name}".strip("."))
+            elif _is_matrix(value) and not value.dtype.names:
+                matrices[name] = value
+            else:
+                texts[name] = read_cell_texts(path, name, value)
+        except LogError:  # neither a struct, a matrix nor texts
+            continue
+    for name, values in matrices.items():
+        yield _named_matrix(path, name, values, texts, group)
+
+
+def _tdms_candidates(path: Path, file: Any) -> Iterator[Candidate]:
+    groups = file.groups()
+    for group in groups:
+        yield {"group": group.name} if len(groups) > 1 else {}, tdms_table(path, group)
+
+
+def look_at_binary(path: Path, kind: Format) -> SeenTable:
+    """The largest table of a TDMS, MATLAB, HDF5 or Parquet file."""
+    with ExitStack() as stack:
+        candidates: Iterator[Candidate]
+        if kind == "tdms":
+            file = stack.enter_context(open_tdms(path))
+            candidates = _tdms_candidates(path, file)
+        elif kind == "hdf5":
+            hdf5 = stack.enter_context(open_hdf5(path))
+            candidates = _hdf5_candidates(path, hdf5, hdf5)
+        elif kind == "matlab":
+            candidates = _matlab_candidates(path, stack.enter_context(open_matlab(path)), "")
+        else:
+            parquet = stack.enter_context(open_parquet(path))
+            candidates = iter([({}, parquet_table(path, parquet))])
+        best: tuple[dict[str, object], list[SeenColumn]] = ({}, [])
+        count = 0
+        for settings, table in candidates:
+            columns = _seen(table)
+            count += len(columns) > 1
+            if sum(c.values.size for c in columns) > sum(c.values.size for c in best[1]):
+                best = settings, columns
+        settings, columns = best
+        if kind == "tdms" and columns:
+            columns = columns + _waveform(file, settings, columns)
+    remarks = [f"sure: {len(columns)} columns of numbers of one length"]
+    if count > 1:
+        remarks.append(f"guess: the largest of {count} tables of the file is the log")
+    return SeenTable(kind, columns, settings, tuple(remarks))
+
+
+def _waveform(
+    file: Any, settings: Mapping[str, object], columns: list[SeenColumn]
+) -> list[SeenColumn]:
+    """Time by the waveform properties, as one more column where the channels have them."""
+    group = file[settings["group"]] if "group" in settings else file.groups()[0]
+    if all(channel.properties.get(WAVEFORM_COLUMN, 0) for channel in group.channels()):
+        return [SeenColumn(len(columns) + 1, WAVEFORM_COLUMN, "s", np.arange(2.0))]
+    return []
+
+
+def look_at_json(path: Path) -> SeenTable:
+    """The largest matrix of a JSON object."""
+    try:
+        content = json.loads(read_bytes(path).decode("utf-8-sig"))
+    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+        raise LogError(
+            path, "the file is not JSON", found=str(error), needed="a JSON object"
+        ) from error
+    texts, matrices = {}, {}
+    for key, value in content.items():
+        if not isinstance(value, list) or not value:
+            continue
+        if all(isinstance(entry, str) for entry in value):
+            texts[key] = value
+        elif isinstance(value[0], list):
+            first = [
+                row for row in value[:_ROWS] if isinstance(row, list) and len(row) == len(value[0])
+            ]
+            numbers = [[x if isinstance(x, (int, float)) else np.nan for x in row] for row in first]
+            matrices[key] = np.array(numbers, dtype=np.float64)
+    if not matrices:
+        raise LogError(
+            path, "no key holds a matrix of numbers", found=", ".join(map(repr, content)),
+            needed="a list of rows",
+        )  # fmt: skip
+    key = max(matrices, key=lambda name: matrices[name].size)
+    settings, table = _named_matrix(path, key, matrices[key], texts)
+    columns = _seen(table)
+    stated = {
+        name: value for name, value in content.items() if isinstance(value, str) and is_unit(value)
+    }
+    of_time = [value for name, value in stated.items() if "time" in name.lower()]
+    if columns and len(of_time) == 1 and not columns[0].name:
+        columns[0] = replace(columns[0], unit=of_time[0])
+    remarks = [f"sure: '{key}' is a matrix of {len(table.names)} columns"]
+    remarks += [
+        f"sure: the file states {name!r} as {value!r}; give it as unit_key of its channel"
+        for name, value in stated.items()
+    ]
+    return SeenTable("json", columns, settings, tuple(remarks))

@@ -1,0 +1,169 @@
+"""A first campaign for a folder of logs: text for a person to complete, never a campaign yet.
+
+Every ``?`` has to be replaced before the campaign loads.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from reduction.errors import LogError
+from reduction.ingest.sniff import SniffedLayout, format_of, sniff_layout
+from reduction.ingest.sniff_binary import table_sheets
+
+__all__ = ["starter_campaign"]
+
+_WRITTEN = ("campaign.toml", "tests.csv")
+_MARKS = {"test", "specimen", "hold"}
+_COLUMNS = ("id", "kind", "file", "layout", "order", "specimens")
+_SPECIMEN = """[specimens.specimen-{number}]
+kind = "?"  # rubber tether, stretch hose, rope, wire or elastomer
+diameter = ["?"]  # readings before stretch, with their unit: ["1.04 in"]
+"""
+
+
+@dataclass(frozen=True)
+class _Log:
+    """A file, or a sheet of one, that may be a log."""
+
+    file: str
+    sheet: str | None
+    sniffed: SniffedLayout
+
+    @property
+    def n_specimens(self) -> int:
+        return max(1, sum(key.startswith("tension.") for key in self.sniffed.keys))
+
+
+def _slug(text: str) -> str:
+    """A name that may stand as an id: letters, digits, underscore and hyphen."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "-", text).strip("-_")[:80] or "log"
+
+
+def _unique(name: str, taken: set[str]) -> str:
+    number, made = 1, name
+    while made in taken:
+        number += 1
+        made = f"{name}-{number}"
+    taken.add(made)
+    return made
+
+
+def _is_marks(path: Path) -> bool:
+    """Whether a file is a table of tape readings, by its header."""
+    if path.suffix.lower() != ".csv":
+        return False
+    with path.open("rb") as stream:
+        header = stream.readline(4096).decode("utf-8-sig", errors="replace")
+    names = {name.strip() for name in header.split(",")}
+    return names >= _MARKS and any(name.startswith("near_toe") for name in names)
+
+
+def _logs_of(path: Path) -> list[_Log]:
+    sheets: list[str | None] = [None]
+    if format_of(path) == "spreadsheet":
+        sheets = [name for name, _ in table_sheets(path)]
+    found = [_Log(path.name, sheet, sniff_layout(path, sheet=sheet)) for sheet in sheets]
+    return [log for log in found if {"crosshead_position", "tension.1"} & set(log.sniffed.keys)]
+
+
+def starter_campaign(folder: Path) -> dict[str, str]:
+    """Text of ``campaign.toml`` and ``tests.csv`` for the logs of a folder.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Its own files are looked at; folders inside it are not.
+
+    Returns
+    -------
+    files : dict of str to str
+        Text by file name.  One row of ``tests.csv`` a log (a sheet of a workbook is a
+        log), one layout for all logs that look alike.
+
+    Raises
+    ------
+    LogError
+        If the folder holds no log.
+    """
+    logs: list[_Log] = []
+    marks: list[str] = []
+    refused: list[str] = []
+    for path in sorted(folder.iterdir(), key=lambda entry: _natural(entry.name)):
+        if not path.is_file() or path.name.startswith(".") or path.name in _WRITTEN:
+            continue
+        try:
+            if _is_marks(path):
+                marks.append(path.name)
+                continue
+            found = _logs_of(path)
+        except LogError as error:
+            refused.append(f"{path.name}: {error.problem}")
+            continue
+        if not found:
+            refused.append(f"{path.name}: no column looks like a position or a load")
+        logs += found
+    if not logs:
+        raise LogError(
+            folder, "the folder holds no log", found="; ".join(refused) or "no files",
+            needed="a file with a table of numbers, one column of it a position or a load",
+        )  # fmt: skip
+    return _texts(folder, logs, marks, refused)
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """Sort key under which T-10 comes after T-9."""
+    parts = re.split(r"(\d+)", name.lower())
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in parts if part]
+
+
+def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str]) -> dict[str, str]:
+    layouts: dict[str, tuple[str, SniffedLayout]] = {}
+    taken: set[str] = set()
+    rows = []
+    for log in logs:
+        if log.sniffed.settings not in layouts:
+            wish = _slug(f"{Path(log.file).suffix[1:]}-{log.sheet}") if log.sheet else "log"
+            layouts[log.sniffed.settings] = _unique(wish, taken), log.sniffed
+        name = f"{Path(log.file).stem}-{log.sheet}" if log.sheet else Path(log.file).stem
+        rows.append((_slug(name), log))
+    n_specimens = max(log.n_specimens for log in logs)
+    lines = [
+        "# A first draft. Replace every ?, check every line, then: reduction check campaign.toml",
+        "",
+        'tests = "tests.csv"  # one row a log; order is its place in the specimens\' history',
+        "",
+        "[campaign]",
+        f'id = "{_slug(folder.resolve().name)}"',
+        'title = "?"',
+        'institution = "?"',
+        'source = "?"',
+        "",
+        *(_SPECIMEN.format(number=number + 1) for number in range(n_specimens)),
+        "[defaults]",
+        f"specimens = {json.dumps([f'specimen-{n + 1}' for n in range(n_specimens)])}",
+        'kind = "cyclic"  # fatigue, relaxation, creep, stepwise, quasi-static, tensile, snap',
+        'control = "position"  # or load',
+    ]
+    if marks:
+        lines.append(f"strain = {{ marks = {json.dumps(marks[0], ensure_ascii=False)} }}")
+        refused += [f"{name}: another table of marks" for name in marks[1:]]
+    for name, sniffed in layouts.values():
+        lines += ["", *(f"# {remark}" for remark in sniffed.remarks)]
+        lines.append(sniffed.toml.replace("[layouts.log", f"[layouts.{name}").rstrip())
+    if refused:
+        lines += ["", "# not taken for logs:", *(f"#   {entry}" for entry in refused)]
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(_COLUMNS)
+    ids: set[str] = set()
+    for wish, log in rows:
+        specimens = ";".join(f"specimen-{n + 1}" for n in range(log.n_specimens))
+        layout, _ = layouts[log.sniffed.settings]
+        writer.writerow((_unique(wish, ids), "", log.file, layout, "", specimens))
+    return {"campaign.toml": "\n".join(lines) + "\n", "tests.csv": table.getvalue()}

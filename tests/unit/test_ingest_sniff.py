@@ -1,0 +1,425 @@
+"""A proposal is right when, its ``?`` filled in by hand, it reads the log it was made from."""
+
+import tomllib
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+import scipy.io
+from nptdms import ChannelObject, TdmsWriter
+from pydantic import ValidationError
+
+from reduction.errors import LogError
+from reduction.ingest.layout import Layout
+from reduction.ingest.read import read_log
+from reduction.ingest.sniff import format_of, sniff_layout
+
+SHARED = Path(__file__).parents[2].parent / "shared"
+DATA = SHARED / "data"
+needs_logs = pytest.mark.skipif(not SHARED.exists(), reason="the reference logs are not there")
+
+
+def proposed(path, **kwargs):
+    return tomllib.loads(sniff_layout(path, **kwargs).toml)["layouts"]["log"]
+
+
+def filled(settings, **channels):
+    """The proposal with a person's answers: channels as given, datum always pin-to-pin."""
+    made = {**settings, "channels": {**settings["channels"], **channels}}
+    made["channels"] = {key: entry for key, entry in made["channels"].items() if entry is not None}
+    if "crosshead_position" in made["channels"]:
+        made["channels"]["crosshead_position"]["datum"] = "pin-to-pin"
+    if made.get("sample_interval") == "?":
+        made["sample_interval"] = "0.1 s"
+    return Layout.model_validate(made)
+
+
+def columns(settings):
+    """Column and unit by channel."""
+    flat = {}
+    for key, entry in settings["channels"].items():
+        many = entry if "column" not in entry else {"": entry}
+        for place, one in many.items():
+            flat[f"{key}.{place}".rstrip(".")] = (one["column"], one["unit"])
+    return flat
+
+
+def write(tmp_path, text, name="log.csv", encoding="utf-8"):
+    (tmp_path / name).write_bytes(text.encode(encoding))
+    return tmp_path / name
+
+
+TEXT_LOGS = [
+    (
+        "tmt-synthetic/T-1.csv",
+        {"delimiter": ",", "decimal": ".", "comment": "#", "has_unit_row": False},
+        {
+            "time": ("time_s", "s"),
+            "crosshead_position": ("crosshead_ft", "ft"),
+            "tension.1": ("load_new_lb", "lbf"),
+            "tension.2": ("load_used_lb", "lbf"),
+        },
+        7632,
+    ),
+    (
+        "machine-exports/example.csv",
+        {"delimiter": "\t", "decimal": ".", "encoding": "latin-1", "preamble_rows": 16, "has_unit_row": True},
+        {
+            "time": ("Prüfzeit", "s"),
+            "crosshead_position": ("Traverse abs.", "mm"),
+            "tension.1": ("Standardkraft", "N"),
+            "strain.1": ("Dehnung", "%"),
+        },
+        18876,
+    ),
+    (
+        "machine-exports/example2.csv",
+        {"delimiter": "\t", "decimal": ".", "encoding": "utf-8", "preamble_rows": 1, "has_unit_row": False},
+        {
+            "time": ("Zeit [s]", "s"),
+            "crosshead_position": ("Maschine [mm]", "mm"),
+            "tension.1": ("Kraft [kN]", "kN"),
+        },
+        712,
+    ),
+    (
+        "machine-exports/example4.csv",
+        {"delimiter": "\t", "format": "blocks", "block_marker": "Datenerfassung", "has_unit_row": True},
+        {
+            "time": ("Laufzeit", "s"),
+            "crosshead_position": ("Ch 1 Weg", "mm"),
+            "tension.1": ("Ch 1 Kraft", "kN"),
+        },
+        931,
+    ),
+    (
+        "bluehill-compression/Specimen_RawData_6.csv",
+        {"delimiter": ",", "decimal": ".", "preamble_rows": 3, "has_name_row": True, "has_unit_row": True},
+        {
+            "time": ("Time", "sec"),
+            "crosshead_position": ("Extension", "mm"),
+            "tension.1": ("Load", "N"),
+            "cycle_counter": ("Total Cycle Count", "1"),
+        },
+        18011,
+    ),
+    (
+        "damper-hysteresis/clt_SPC1/SPC1.csv",
+        {"delimiter": ",", "decimal": ".", "has_unit_row": True, "sample_interval": "?"},
+        {
+            "crosshead_position": ("Lead Actuator Displacment", "mm"),
+            "tension.1": ("Lead Actuator Force", "kN"),
+        },
+        33028,
+    ),
+    *(
+        (
+            f"instron-elastomer/{name}",
+            {"delimiter": ",", "decimal": ".", "encoding": "utf-8", "has_unit_row": False},
+            {
+                "time": ("Total Time (s)", "s"),
+                "crosshead_position": ("Position (mm)", "mm"),
+                "tension.1": ("Force (kN)", "kN"),
+                "cycle_counter": ("Total Cycles", "1"),
+            },
+            rows,
+        )
+        for name, rows in [
+            ("latex_glove/Test6.steps.tracking.csv", 1650),
+            ("latex_glove/Test6.Stop.csv", 1430),
+            ("silicone_10a/Test7.steps.tracking.csv", 1941),
+            ("silicone_10a/Test7.Stop.csv", 1495),
+        ]
+    ),
+]  # fmt: skip
+
+
+@needs_logs
+@pytest.mark.parametrize(("name", "settings", "channels", "n_rows"), TEXT_LOGS)
+def test_the_proposal_for_a_text_log_reads_it(name, settings, channels, n_rows):
+    found = proposed(DATA / name)
+    assert settings.items() <= found.items()
+    assert columns(found) == channels
+    assert "preamble_rows" in settings or "preamble_rows" not in found
+    log = read_log(DATA / name, filled(found), name=name)
+    assert abs(log.n_rows_read - n_rows) <= 1  # the last line may lack its end
+
+
+@needs_logs
+@pytest.mark.parametrize(
+    "name", [f"T-{n}" for n in range(1, 7)] + ["T-4_extended", "overnight_hold"]
+)
+def test_logs_of_one_logger_have_one_proposal(name):
+    first = sniff_layout(DATA / "tmt-synthetic" / "T-1.csv").settings
+    assert sniff_layout(DATA / "tmt-synthetic" / f"{name}.csv").settings == first
+
+
+@needs_logs
+@pytest.mark.parametrize(
+    "path", sorted((DATA / "soft-silicones").glob("*.csv")), ids=lambda p: p.stem
+)
+def test_a_log_with_stresses_has_no_load(path):
+    found = proposed(path)
+    assert {"delimiter": ";", "decimal": ".", "preamble_rows": 17}.items() <= found.items()
+    assert columns(found) == {"time": ("Time (s)", "s"), "strain.1": ("Engineering Strain", "?")}
+    strain = {"1": {"column": "Engineering Strain", "unit": "1"}}
+    log = read_log(path, filled(found, strain=strain), name=path.name)
+    assert log.n_rows_read > 250
+
+
+@needs_logs
+def test_columns_without_names_are_listed_by_number():
+    path = DATA / "damper-hysteresis" / "ganey_damper" / "xyTestData.csv"
+    sniffed = sniff_layout(path)
+    found = proposed(path)
+    assert found["has_name_row"] is False
+    assert "# not used: column 1, -2.87" in sniffed.toml
+    position = {"column": 1, "unit": "mm"}
+    tension = {"1": {"column": 2, "unit": "kN"}}
+    log = read_log(path, filled(found, crosshead_position=position, tension=tension), name="x")
+    assert log.n_rows_read == 308
+
+
+@needs_logs
+def test_the_proposal_for_json_names_the_matrix_and_the_units():
+    path = DATA / "friction-damper" / "0.5Hz30lbtension1.5amplitude.json"
+    found = proposed(path)
+    assert (found["format"], found["matrix"]) == ("json", "data")
+    assert columns(found)["time"] == (1, "s")
+    remarks = " ".join(sniff_layout(path).remarks)
+    assert "'actuator force units' as 'lb'" in remarks
+    made = filled(found, crosshead_position=None, tension={"1": {"column": 6, "unit": "lb"}})
+    assert read_log(path, made, name="x").n_rows_read == 14 * 1024 + 1
+
+
+@needs_logs
+def test_the_proposal_for_a_workbook_names_the_sheet_and_the_others():
+    path = DATA / "knit-yarn" / "compressionTests.xls"
+    found = proposed(path)
+    assert {"sheet": "cotton-1", "preamble_rows": 1, "has_unit_row": True}.items() <= found.items()
+    assert columns(found) == {
+        "time": ("Test time", "s"),
+        "crosshead_position": ("Tool separation", "mm"),
+        "tension.1": ("Standard force", "mN"),
+    }
+    assert any("'acrylic-3'" in remark for remark in sniff_layout(path).remarks)
+    assert read_log(path, filled(found), name="x").n_rows_read == 872
+    assert proposed(path, sheet="cotton-3")["sheet"] == "cotton-3"
+    with pytest.raises(LogError, match="no sheet holds a table of numbers"):
+        sniff_layout(path, sheet="cotton-9")
+
+
+@needs_logs
+@pytest.mark.parametrize("name", ["machine-exports/example3.csv", "instron-elastomer/LICENSE"])
+def test_a_file_without_a_table_is_refused(name):
+    with pytest.raises(LogError, match="no table of numbers stands at the start of the file"):
+        sniff_layout(DATA / name)
+
+
+def test_a_proposal_with_question_marks_does_not_load(tmp_path):
+    for header in (
+        "time_s,crosshead_ft,load_lb",
+        "time,crosshead_ft,load_lb",
+        "time_s,load_lb,load",
+    ):
+        found = proposed(write(tmp_path, f"{header}\n0,1,2\n1,2,3\n2,3,4\n"))
+        with pytest.raises((ValidationError, LogError, ValueError), match=r"\?|datum"):
+            Layout.model_validate(found)
+
+
+def test_decimal_commas_and_thousands_are_seen(tmp_path):
+    text = "Zeit;Kraft;Weg\ns;N;mm\n" + "".join(f"0,{i};1.{i:03},5;{i},25\n" for i in range(1, 9))
+    found = proposed(write(tmp_path, text))
+    assert (found["delimiter"], found["decimal"], found["thousands"]) == (";", ",", ".")
+    assert found["has_unit_row"] is True
+    log = read_log(tmp_path / "log.csv", filled(found), name="x")
+    assert log.columns["tension.1"].tolist() == [1000.5 + i for i in range(1, 9)]
+
+
+def test_a_decimal_comma_that_may_part_thousands_is_a_guess(tmp_path):
+    path = write(tmp_path, "a;b\n" + "".join(f"1,{i:03};2,{i:03}\n" for i in range(9)))
+    assert any(
+        "could also have it for thousands" in remark for remark in sniff_layout(path).remarks
+    )
+
+
+def test_whole_numbers_leave_the_decimal_mark_a_guess(tmp_path):
+    path = write(tmp_path, "a;b\n1;2\n3;4\n5;6\n")
+    assert "guess: decimal mark '.', because no number has one" in sniff_layout(path).remarks
+
+
+def test_missing_marks_are_proposed(tmp_path):
+    rows = [f"{i / 10},{i}" for i in range(20)]
+    rows[7] = "0.7,ovrflw"
+    found = proposed(write(tmp_path, "time_s,load_kN\n" + "\n".join(rows) + "\n"))
+    assert found["missing"] == ["", "NaN", "nan", "ovrflw"]
+    log = read_log(tmp_path / "log.csv", filled(found), name="x")
+    assert int(log.missing("tension.1").sum()) == 1
+
+
+def test_blanks_that_part_fields_are_seen(tmp_path):
+    path = write(tmp_path, "time_s load_kN\n" + "".join(f"{i}.0   {i}.5\n" for i in range(5)))
+    found = proposed(path)
+    assert found["delimiter"] == " "
+    assert read_log(path, filled(found), name="x").n_rows_read == 5
+
+
+def test_a_trailing_delimiter_is_no_column(tmp_path):
+    path = write(tmp_path, "time_s,load_kN,\n0,1,\n1,2,\n2,3,\n")
+    sniffed = sniff_layout(path)
+    assert "sure: each row ends with a delimiter ','" in sniffed.remarks
+    assert "not used" not in sniffed.toml
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_a_byte_order_mark_settles_the_encoding(tmp_path, encoding):
+    path = write(tmp_path, "Prüfzeit [s];Kraft [N]\n0;1\n1;2\n2;3\n", encoding=encoding)
+    found = proposed(path)
+    assert found["encoding"] == encoding.removesuffix("-sig")
+    assert read_log(path, filled(found), name="x").n_rows_read == 3
+
+
+def test_names_behind_a_comment_mark_name_numbered_columns(tmp_path):
+    path = write(tmp_path, "# time_s load_kN\n0.0 1.0\n0.1 2.0\n0.2 3.0\n")
+    found = proposed(path)
+    assert columns(found) == {"time": (1, "s"), "tension.1": (2, "kN")}
+    assert read_log(path, filled(found), name="x").n_rows_read == 3
+
+
+def test_a_comment_line_that_is_no_list_of_names_is_only_a_comment(tmp_path):
+    found = proposed(write(tmp_path, "# a remark\n0.0,1.0\n0.1,2.0\n0.2,3.0\n"))
+    assert columns(found)["time"] == (1, "?")
+
+
+def test_a_clock_is_seen(tmp_path):
+    for times in (["0945", "0955", "1009"], ["9:45", "9:55", "10:09"]):
+        body = "".join(f"{time},{i},1\n" for i, time in enumerate(times))
+        found = proposed(write(tmp_path, "time_est,load_lb,x\n" + body))
+        assert columns(found)["time"] == ("time_est", "clock")
+
+
+def test_time_that_goes_back_is_said(tmp_path):
+    rows = list(range(30))
+    rows[20] = 5
+    path = write(tmp_path, "time_s,load_N\n" + "".join(f"{t},1.5\n" for t in rows))
+    assert "sure: time goes back at least once" in sniff_layout(path).remarks
+
+
+def test_a_name_that_stands_twice_is_given_by_number(tmp_path):
+    path = write(tmp_path, "time_s,load_N,load_N\n0,1,2\n1,2,3\n2,3,4\n")
+    assert columns(proposed(path)) == {
+        "time": ("time_s", "s"), "tension.1": (2, "N"), "tension.2": (3, "N"),
+    }  # fmt: skip
+
+
+def test_commanded_channels_and_extremes_are_no_measured_ones(tmp_path):
+    header = "time_s,load setpoint (N),Kraft Sollwert [N],Force:Maximum (N),target position (mm)"
+    found = proposed(write(tmp_path, header + "\n" + "".join(f"{i},1,2,3,4\n" for i in range(5))))
+    assert set(columns(found)) == {"time", "crosshead_position", "tension.1"}
+    assert columns(found)["tension.1"] == ("?", "?")
+
+
+def test_a_column_in_a_unit_of_another_kind_is_not_proposed(tmp_path):
+    path = write(tmp_path, "time_s,load (mm),strain\ns,,MPa\n0,1,2\n1,2,3\n2,3,4\n")
+    assert columns(proposed(path))["tension.1"] == ("?", "?")
+
+
+def test_an_unknown_unit_is_a_question(tmp_path):
+    path = write(tmp_path, "time,load,temperature,strain\n0,1,2,3\n1,2,3,4\n2,3,4,5\n")
+    assert {unit for _, unit in columns(proposed(path)).values()} == {"?"}
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        (b"", "the file is empty"),
+        (b"\x00\x01\x02" * 99, "of no known format"),
+        (b"just words\n" * 9, "no table of numbers"),
+        (b"{ not json", "the file is not JSON"),
+        (b'{"a": 1}', "no key holds a matrix"),
+        (b"time_s,load_N\n", "no table of numbers"),
+    ],
+)
+def test_what_is_no_log_is_refused(tmp_path, content, problem):
+    (tmp_path / "log").write_bytes(content)
+    with pytest.raises(LogError, match=problem):
+        sniff_layout(tmp_path / "log")
+
+
+TIME = np.arange(5) * 0.5
+
+
+def tdms(path):
+    with TdmsWriter(path) as writer:
+        writer.write_segment([
+            ChannelObject("other", "x", np.arange(2.0)),
+            ChannelObject("log", "time", TIME, {"unit_string": "s"}),
+            ChannelObject("log", "Load", TIME, {"unit_string": "kN"}),
+        ])  # fmt: skip
+
+
+def waveform(path):
+    properties = {"unit_string": "kN", "wf_increment": 0.1, "wf_start_offset": 0.0}
+    with TdmsWriter(path) as writer:
+        writer.write_segment([ChannelObject("log", "Load", TIME, properties)])
+
+
+def hdf5(path):
+    with h5py.File(path, "w") as file:
+        file["notes"] = ["a"]
+        file["run/time"], file["run/Load"] = TIME, TIME
+        file["run/time"].attrs["units"], file["run/Load"].attrs["units"] = "s", "kN"
+
+
+def hdf5_matrix(path):
+    with h5py.File(path, "w") as file:
+        file["run/M"] = np.column_stack([TIME, TIME])
+        file["run/names"], file["run/units"] = ["time", "Load"], ["s", "kN"]
+
+
+def matlab(path):
+    scipy.io.savemat(path, {"run": {"log": {"time_s": TIME, "Load_kN": TIME, "id": "x"}}})
+
+
+def matlab_matrix(path):
+    names = np.array(["time", "Load"], dtype=object)
+    units = np.array(["s", "kN"], dtype=object)
+    scipy.io.savemat(path, {"M": np.column_stack([TIME, TIME]), "n": names, "u": units})
+
+
+def parquet(path):
+    pq.write_table(pa.table({"time_s": TIME, "Load (kN)": TIME, "remark": ["x"] * 5}), path)
+
+
+@pytest.mark.parametrize(
+    ("make", "kind"),
+    [
+        (tdms, "tdms"),
+        (waveform, "tdms"),
+        (hdf5, "hdf5"),
+        (hdf5_matrix, "hdf5"),
+        (matlab, "matlab"),
+        (matlab_matrix, "matlab"),
+        (parquet, "parquet"),
+    ],
+)
+def test_the_proposal_for_a_binary_log_reads_it(tmp_path, make, kind):
+    make(tmp_path / "log")
+    assert format_of(tmp_path / "log") == kind
+    found = proposed(tmp_path / "log")
+    log = read_log(tmp_path / "log", filled(found), name="log")
+    np.testing.assert_array_equal(log.columns["tension.1"], TIME)
+    assert {key: unit for key, (_, unit) in columns(found).items()} == {
+        "time": "s",
+        "tension.1": "kN",
+    }
+
+
+def test_a_binary_file_without_columns_is_refused(tmp_path):
+    with h5py.File(tmp_path / "log", "w") as file:
+        file["notes"] = ["a"]
+    with pytest.raises(LogError, match="no columns of numbers are found"):
+        sniff_layout(tmp_path / "log")
