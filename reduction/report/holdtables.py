@@ -4,57 +4,59 @@ from __future__ import annotations
 
 import numpy as np
 
-from reduction.report.htmltable import Table, make_table, measured, number, words
+from reduction.report.htmltable import Table, count, make_table, measured, words
 from reduction.report.style import shown
 from reduction.report.view import TestView
 
-__all__ = ["hold_table", "prony_table"]
+__all__ = ["hold_table", "prony_table", "refusals"]
 
 
 def hold_table(view: TestView) -> Table | None:
-    """Return the holds, with the reason beside every number that is refused."""
+    """Return the holds; a column that no hold fills is left out."""
     start = view.array("hold_start_time")
     if start is None:
         return None
     force, seconds = shown("tension", view.units), shown("time", view.units)
     percent = shown("strain", view.units)
-    names = (
-        "hold_duration", "hold_strain", "hold_initial_tension", "hold_final_tension",
-        "relaxation_drop", "relaxation_rate_per_decade", "creep_rate_per_decade",
-    )  # fmt: skip
-    values = {name: view.array_like(name, start) for name in names}
-    half = {
-        name: view.array_like(f"{name}_standard_uncertainty", start)
-        for name in names[4:]
-    }  # fmt: skip
-    refusals = view.texts("hold_refusal") or ("",) * start.size
+    quantities = (
+        ("hold_start_time", seconds, "starts at"),
+        ("hold_duration", seconds, "lasts"),
+        ("hold_strain", percent, "strain"),
+        ("hold_initial_tension", force, "tension at its start"),
+        ("hold_final_tension", force, "tension at its end"),
+        ("relaxation_drop", percent, "tension lost"),
+        ("relaxation_rate_per_decade", percent, "tension lost per decade of time"),
+        ("creep_rate_per_decade", percent, "strain gained per decade of time"),
+    )
+    columns = ["hold", "specimen", "kind"]
     rows = [
-        [
-            words(f"{place + 1}"),
-            words(view.texts("hold_specimen")[place]),
-            words(view.texts("hold_kind")[place]),
-            number(start[place], seconds, digits=6),
-            number(values["hold_duration"][place], seconds),
-            number(values["hold_strain"][place], percent),
-            number(values["hold_initial_tension"][place], force),
-            number(values["hold_final_tension"][place], force),
-            *(measured(values[name][place], half[name][place], percent) for name in names[4:]),
-            words(refusals[place]),
-        ]
-        for place in range(start.size)
+        [words(f"{place + 1}"), words(specimen), words(kind)]
+        for place, (specimen, kind) in enumerate(
+            zip(view.texts("hold_specimen"), view.texts("hold_kind"), strict=True)
+        )
     ]
-    columns = (
-        "hold", "specimen", "kind", seconds.label("starts at"), seconds.label("lasts"),
-        percent.label("strain"), force.label("tension at its start"),
-        force.label("tension at its end"), percent.label("drop ± standard uncertainty"),
-        "tension lost per decade of time ± standard uncertainty [%]",
-        "strain gained per decade of time ± standard uncertainty [points of strain %]",
-        "refused, and why",
-    )  # fmt: skip
+    for name, unit, label in quantities:
+        values = view.array_like(name, start)
+        half = view.array_like(f"{name}_standard_uncertainty", start)
+        if np.isfinite(values).any():
+            columns.append(unit.label(label))
+            for row, value, uncertainty in zip(rows, values, half, strict=True):
+                row.append(measured(value, uncertainty, unit))
     return make_table(
-        "Holds: relaxation at constant length, creep at constant tension.", columns, rows,
-        synthetic=view.is_synthetic, is_tall=len(rows) > 12,
+        "Holds: relaxation at constant length, creep at constant tension; plus or minus one"
+        " standard uncertainty.",
+        columns, rows, synthetic=view.is_synthetic, is_tall=len(rows) > 12,
     )  # fmt: skip
+
+
+def refusals(view: TestView) -> list[str]:
+    """Return the numbers that a hold does not support, each with its reason."""
+    owners = view.texts("hold_specimen")
+    return [
+        f"hold {place + 1}, {owners[place]}: {text}"
+        for place, text in enumerate(view.texts("hold_refusal"))
+        if text
+    ]
 
 
 def prony_table(view: TestView) -> Table | None:
@@ -77,7 +79,7 @@ def prony_table(view: TestView) -> Table | None:
             [
                 words(f"{hold + 1}"),
                 words(view.texts("hold_specimen")[hold]),
-                number(float(term + 1)),
+                count(float(term + 1)),
                 measured(tension[own], halves[0][own], force),
                 measured(times[own], halves[1][own], seconds),
                 measured(end[hold], end_half[hold], force),

@@ -16,6 +16,7 @@ __all__ = [
     "NOT_GIVEN",
     "Cell",
     "Table",
+    "count",
     "make_table",
     "measured",
     "number",
@@ -78,6 +79,12 @@ def number(value: float, unit: Shown | None = None, *, digits: int = 4) -> Cell:
     return Cell(number_text(value * scale, digits), _exact(value), is_number=True)
 
 
+def count(value: float) -> Cell:
+    """Return a cell of a number that is counted."""
+    text = f"{value:,.0f}" if isfinite(value) else NOT_GIVEN
+    return Cell(text, f"{value:.0f}" if isfinite(value) else "", is_number=True)
+
+
 def number_text(value: float, digits: int = 4) -> str:
     """Return a number of so many digits, without a power of ten where it can be read so.
 
@@ -113,12 +120,11 @@ def measured(value: float, uncertainty: float, unit: Shown | None = None) -> Cel
     return Cell(f"{value * scale:,.{places}f} ± {half:,.{places}f}", _exact(value), is_number=True)
 
 
-def span(low: float, high: float, unit: Shown, *, digits: int = 4) -> Cell:
-    """Return a cell of a range, both ends to the same decimal place."""
+def span(low: float, high: float, unit: Shown, *, places: int) -> Cell:
+    """Return a cell of a range, both ends to so many decimal places."""
     if not (isfinite(low) and isfinite(high)):
         return Cell(NOT_GIVEN, "", is_number=True)
     ends = (low * unit.factor, high * unit.factor)
-    places = _decimals(max(map(abs, ends)), digits)
     text = " to ".join(f"{end:,.{places}f}" for end in ends)
     return Cell(text, f"{_exact(low)} {_exact(high)}", is_number=True)
 

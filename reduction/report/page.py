@@ -8,7 +8,7 @@ show, in the text by the template and in the figures by `reduction.report.figure
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
 
@@ -36,6 +36,7 @@ from reduction.units import UnitSystem
 __all__ = ["write_report"]
 
 _LAST = 10**9
+Place = tuple[int, bool, str, tuple[tuple[int, int, str], ...]]
 
 
 def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Path:
@@ -81,7 +82,12 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
                 tests.append(view.without_samples())
         except ArchiveError as error:
             unreadable[path.name] = str(error)
-    order = sorted(range(len(tests)), key=lambda place: _place(tests[place]))
+    orders = {
+        view.id: int(view.attribute("test_order"))
+        for view in tests
+        if view.attribute("test_order").isdigit()
+    }
+    order = sorted(range(len(tests)), key=lambda place: _place(tests[place], orders))
     tests = [tests[place] for place in order]
     html = _render(
         tests, [sections[place] for place in order], statuses, unreadable, units, processed.name
@@ -147,6 +153,12 @@ def _read_statuses(path: Path) -> list[Status]:
     return [Status(**{name: row.get(name) or "" for name in names}) for row in rows]
 
 
-def _place(view: TestView) -> tuple[int, tuple[tuple[int, int, str], ...]]:
-    order = view.attribute("test_order")
-    return (int(order) if order.isdigit() else _LAST), natural_order(view.id)
+def _place(view: TestView, orders: Mapping[str, int]) -> Place:
+    """Return where a test stands: by its order, a part of a test right behind the whole."""
+    whole = view.attribute("part_of")
+    return (
+        orders.get(whole or view.id, _LAST),
+        bool(whole),
+        view.attribute("date"),
+        natural_order(view.id),
+    )

@@ -14,7 +14,7 @@ from reduction.report.figures.moduli import draw_cycle_curves, draw_moduli
 from reduction.report.figures.record import draw_record, draw_tension_position
 from reduction.report.figures.steps import draw_steps
 from reduction.report.figures.trends import draw_trends
-from reduction.report.holdtables import hold_table, prony_table
+from reduction.report.holdtables import hold_table, prony_table, refusals
 from reduction.report.htmltable import Table
 from reduction.report.specimentables import (
     coefficient_table,
@@ -48,6 +48,7 @@ class Part:
     figures: tuple[Figure, ...] = ()
     tables: tuple[Table, ...] = ()
     sentences: tuple[str, ...] = ()
+    refusals: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,10 +68,11 @@ def make_part(
     figures: Sequence[Figure] = (),
     tables: Sequence[Table | None] = (),
     sentences: Sequence[str] = (),
+    refusals: Sequence[str] = (),
 ) -> Part:
     """Return a part; tables that a test does not give are left out."""
     given = tuple(table for table in tables if table is not None)
-    return Part(heading, tuple(figures), given, tuple(sentences))
+    return Part(heading, tuple(figures), given, tuple(sentences), tuple(refusals))
 
 
 def make_section(view: TestView) -> Section:
@@ -80,14 +82,18 @@ def make_section(view: TestView) -> Section:
         make_part("Modulus against strain", draw_moduli(view), [segment_table([view])]),
         make_part(
             "Record",
-            [*draw_record(view), *draw_tension_position(view), *draw_loops(view)],
+            [*draw_record(view), *draw_tension_position(view)],
             [flag_table(view)],
         ),
+        make_part("Loops", draw_loops(view)),
         make_part(
             "Cycle by cycle", [*draw_trends(view), *draw_cycle_curves(view)],
             [summary_table(view), slip_table(view), identity_table(view)],
         ),
-        make_part("Holds", draw_holds(view), [hold_table(view), prony_table(view)]),
+        make_part(
+            "Holds", draw_holds(view), [hold_table(view), prony_table(view)],
+            refusals=refusals(view),
+        ),
         make_part(
             "Strain and splices", (), [coefficient_table(view), mark_table(view)],
             slope_sentences(view),

@@ -11,6 +11,7 @@ from reduction.report.htmltable import (
     NOT_GIVEN,
     Cell,
     Table,
+    count,
     make_table,
     measured,
     number,
@@ -64,7 +65,7 @@ def history_table(view: TestView) -> Table | None:
         [
             words(name),
             words(_text(view, "earlier_tests", place) or "none"),
-            number(_value(view, "earlier_cycles", place), digits=9),
+            count(_value(view, "earlier_cycles", place)),
             number(_value(view, "earlier_maximum_strain", place), percent),
             number(_value(view, "earlier_maximum_tension", place), force),
         ]
@@ -84,15 +85,16 @@ def coefficient_table(view: TestView) -> Table | None:
     methods = view.texts("strain_method")
     if not methods:
         return None
-    rows = []
-    for place, (name, method) in enumerate(zip(view.specimens, methods, strict=True)):
-        for what, cell, unit in _coefficients(view, place):
-            rows.append([words(name), words(method), words(what), cell, words(unit)])
+    columns = [dict(_coefficients(view, place)) for place in range(len(methods))]
+    names = dict.fromkeys(name for column in columns for name in column)
+    rows = [
+        [words("method"), *(words(method) for method in methods)],
+        *([words(name), *(column.get(name, words("")) for column in columns)] for name in names),
+    ]
     return make_table(
-        "Position to strain of the splice-free length: method, and what it goes by; ±: standard"
-        " uncertainty.",
-        ("specimen", "method", "coefficient or range", "value ± standard uncertainty", "unit"),
-        rows, synthetic=view.is_synthetic,
+        "Position to strain of the splice-free length: method, and what it goes by; plus or minus"
+        " one standard uncertainty.",
+        ("what, with its unit", *view.specimens), rows, synthetic=view.is_synthetic,
     )  # fmt: skip
 
 
@@ -102,7 +104,7 @@ def slope_sentences(view: TestView) -> list[str]:
     A modulus goes as the inverse of the strain slope.
     """
     ratio = view.array("strain_slope_ratio")
-    if ratio is None:
+    if ratio is None or "tangent_modulus" not in view.data:
         return []
     methods = view.texts("strain_method")
     found = []
@@ -154,23 +156,21 @@ def mark_table(view: TestView) -> Table | None:
     )  # fmt: skip
 
 
-def _coefficients(view: TestView, place: int) -> Iterator[tuple[str, Cell, str]]:
+def _coefficients(view: TestView, place: int) -> Iterator[tuple[str, Cell]]:
     length, force = shown("length", view.units), shown("tension", view.units)
-    marks_from = _text(view, "strain_marks_from", place)
-    if marks_from:
-        yield "marks from", words(marks_from), ""
+    yield "marks from", words(_text(view, "strain_marks_from", place))
     for name in COEFFICIENTS.values():
         value = _value(view, name, place)
         if np.isfinite(value):
             si_unit = QUANTITIES[name].unit
             # c of c F**n goes with a force in newton; no other unit would keep its meaning
-            unit = length if si_unit == "m" else Shown("" if si_unit == "1" else si_unit, 1.0)
+            unit = length if si_unit == "m" else Shown(si_unit, 1.0)
             half = _value(view, f"{name}_standard_uncertainty", place)
-            yield QUANTITIES[name].long_name, measured(value, half, unit), unit.unit or "1"
-    for name, unit in (("position", length), ("tension", force)):
+            yield unit.label(QUANTITIES[name].long_name), measured(value, half, unit)
+    for name, unit, places in (("position", length, 2), ("tension", force, 0)):
         low, high = (_value(view, f"strain_{name}_{end}", place) for end in ("low", "high"))
         if np.isfinite(low) and np.isfinite(high):
-            yield f"{name} at the marks", span(low, high, unit), unit.unit
+            yield unit.label(f"{name} at the marks"), span(low, high, unit, places=places)
 
 
 def _signed(residual: float) -> str:

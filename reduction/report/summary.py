@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.report.htmltable import Cell, Table, make_table, number, span, words
+from reduction.report.htmltable import Cell, Table, count, make_table, span, words
 from reduction.report.style import shown
 from reduction.report.view import Status, TestView
 
@@ -76,12 +76,12 @@ def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> Table:
     shown_ids = {view.id for view in tests}
     for row in statuses:
         if row.test not in shown_ids:
-            empty = [words("")] * 5
+            empty = [words("")] * 6
             rows.append([words(row.test), *empty, words(f"{_words(row.status)}, {_NOT_SHOWN}")])
     synthetic = any(view.is_synthetic for view in tests)
     columns = (
-        "test", "kind", "specimens", "strain reached [%]", "cycles found [1]", "samples [1]",
-        "status",
+        "test", "kind", "specimens", "target strain [%]", "strain reached [%]",
+        "cycles found [1]", "samples [1]", "status",
     )  # fmt: skip
     return make_table("Tests in the order they were made.", columns, rows, synthetic=synthetic)
 
@@ -141,24 +141,30 @@ def _test_row(view: TestView) -> list[Cell]:
     percent = shown("strain", view.units)
     if mean is not None and amplitude is not None and np.isfinite(mean).any():
         reached = span(
-            float(np.nanmean(mean - amplitude)), float(np.nanmean(mean + amplitude)), percent
+            float(np.nanmean(mean - amplitude)),
+            float(np.nanmean(mean + amplitude)),
+            percent,
+            places=1,
         )
     elif strain is not None and np.isfinite(strain).any():
-        reached = span(float(np.nanmin(strain)), float(np.nanmax(strain)), percent)
+        reached = span(float(np.nanmin(strain)), float(np.nanmax(strain)), percent, places=1)
     status = "archived" if view.status is None else _words(view.status.status)
-    asked = view.attribute("n_cycles")
-    cycles = number(float(view.n_cycles), digits=9)
-    if asked and asked != str(view.n_cycles):
-        cycles = Cell(f"{view.n_cycles:,} of {asked}", str(view.n_cycles), is_number=True)
     return [
         words(view.id),
         words(view.kind),
         words(", ".join(view.specimens)),
+        words(_target(view)),
         reached,
-        cycles,
-        number(view.scalar("n_rows_kept"), digits=9),
+        count(float(view.n_cycles)),
+        count(view.scalar("n_rows_kept")),
         words(status),
     ]
+
+
+def _target(view: TestView) -> str:
+    """Return the target strain of the plan in percent; the archive has "0.75 to 1.25"."""
+    ends = view.attribute("target_strain").split(" to ")
+    return " to ".join(f"{100 * float(end):g}" for end in ends) if ends != [""] else ""
 
 
 def _words(status: str) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from reduction.record import Floats
-from reduction.report.htmltable import Cell, Table, make_table, measured, number, span, words
+from reduction.report.htmltable import Cell, Table, count, make_table, measured, number, span, words
 from reduction.report.style import shown
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_NAMES
@@ -25,10 +25,10 @@ def segment_table(tests: Sequence[TestView]) -> Table | None:
         return None
     units = tests[0].units
     columns = (
-        "test", "specimen", "branch", "segment", shown("strain", units).label("strain range"),
-        shown("tension", units).label("tension range"),
+        "test", "specimen", "branch", "segment",
         shown("stress", units).label("segment modulus ± standard uncertainty"),
-        "cycles [1]", "strain method",
+        shown("strain", units).label("strain range"),
+        shown("tension", units).label("tension range"), "cycles [1]", "strain method",
     )  # fmt: skip
     return make_table(
         "Elastic modulus of the rubber, piecewise linear, from trimmed branches.", columns, rows,
@@ -53,11 +53,21 @@ def _segments(view: TestView) -> Iterator[list[Cell]]:
             words(view.id),
             words(view.specimens[specimen]),
             words(branches[branch]),
-            number(float(segment + 1)),
-            span(ends["strain_low"][own], ends["strain_high"][own], shown("strain", view.units)),
-            span(ends["tension_low"][own], ends["tension_high"][own], shown("tension", view.units)),
+            count(float(segment + 1)),
             measured(modulus[own], half[own], shown("stress", view.units)),
-            number(float(view.n_cycles), digits=9),
+            span(
+                ends["strain_low"][own],
+                ends["strain_high"][own],
+                shown("strain", view.units),
+                places=1,
+            ),
+            span(
+                ends["tension_low"][own],
+                ends["tension_high"][own],
+                shown("tension", view.units),
+                places=0,
+            ),
+            count(float(view.n_cycles)),
             words(methods[specimen]),
         ]
 
@@ -88,16 +98,15 @@ def summary_table(view: TestView) -> Table | None:
     if not given:
         return None
     rows = []
-    for place, specimen in enumerate(view.specimens):
-        row = [words(specimen)]
-        for name, unit, _ in given:
-            values = view.array_like(name, np.empty(len(view.specimens)))
-            half = view.array_like(f"{name}_standard_uncertainty", values)
-            row.append(measured(values[place], half[place], unit))
-        rows.append(row)
+    for name, unit, label in given:
+        values = view.array_like(name, np.empty(len(view.specimens)))
+        half = view.array_like(f"{name}_standard_uncertainty", values)
+        cells = (measured(value, u, unit) for value, u in zip(values, half, strict=True))
+        rows.append([words(label), *cells])
     return make_table(
-        "Means over the cycles of the test, and what changed over them; ±: standard uncertainty.",
-        ("specimen", *(words_ for _, _, words_ in given)), rows, synthetic=view.is_synthetic,
+        "Means over the cycles of the test, and what changed over them; plus or minus one standard"
+        " uncertainty.",
+        ("what, with its unit", *view.specimens), rows, synthetic=view.is_synthetic,
     )  # fmt: skip
 
 
@@ -137,7 +146,7 @@ def slip_table(view: TestView) -> Table | None:
     rows = [
         [
             words(specimen),
-            number(cycles[place], digits=9),
+            count(cycles[place]),
             Cell(f"{low[place]:.0f} to {high[place]:.0f}", is_number=True),
             measured(step[place], halves[0][place], force),
             measured(length[place], halves[1][place], small),
@@ -167,7 +176,7 @@ def identity_table(view: TestView) -> Table | None:
         rows.append(
             [
                 words(specimen),
-                number(float(own.size), digits=9),
+                count(float(own.size)),
                 number(float(np.median(ends)), percent, digits=2),
                 number(float(np.max(ends)), percent, digits=2),
             ]
@@ -196,7 +205,7 @@ def elastomer_table(view: TestView) -> Table | None:
             words(view.texts("elastomer_specimen")[place]),
             words(law),
             words("; ".join(_parameters(view, place + 1))),
-            span(column["strain_low"][place], column["strain_high"][place], percent),
+            span(column["strain_low"][place], column["strain_high"][place], percent, places=1),
             number(column["rms_stress"][place], stress, digits=3),
             number(column["aicc"][place]),
             words("yes" if column["is_stable"][place] == 1 else "no"),
@@ -236,7 +245,7 @@ def flag_table(view: TestView) -> Table | None:
     masks = [place for place in range(counts.shape[1]) if counts[:, place].any()]
     names = [view.texts("quality_mask")[place].replace("_", " ") for place in masks]
     rows = [
-        [words(channel), *(number(counts[row, place], digits=9) for place in masks)]
+        [words(channel), *(count(counts[row, place]) for place in masks)]
         for row, channel in enumerate(view.texts("channel"))
     ]
     return make_table(

@@ -226,8 +226,9 @@ def _curves(view: TestView, specimen: str, tint: str, index: int) -> Iterator[Tr
         if np.isfinite(modulus[row, place]).any():
             yield line(
                 100.0 * strain, modulus[row, place] * unit.factor,
-                name=f"{view.id}, {branch}", colour=tint, dash=DASHES[branch],
-                legendgroup=plot_text(view.id), mode="lines+markers",
+                name=view.id if place == 0 else f"{view.id}, {branch}", colour=tint,
+                dash=DASHES[branch], legendgroup=plot_text(view.id), showlegend=place == 0,
+                mode="lines+markers",
                 marker={"symbol": symbol(index), "size": 6, "color": tint, "maxdisplayed": 6},
             )  # fmt: skip
 

@@ -49,8 +49,8 @@ def draw_mooney(view: TestView) -> list[Figure]:
         ]  # fmt: skip
         figure = make_figure(
             f"{view.key}-mooney-{index}", f"{view.id}: Mooney plot, {specimen}",
-            "Stress of the first loading over twice (stretch ratio minus its inverse square), against the"
-            " inverse of the stretch ratio; lines: the fitted laws in their range. An upturn at"
+            "Reduced stress: stress of the first loading over twice the difference of stretch ratio"
+            " and its inverse square. Lines: the fitted laws in their range. An upturn at"
             " the left is the rubber coming to the end of its chains.",
             data, synthetic=view.is_synthetic,
             xaxis=axis("inverse of the stretch ratio [1]"),

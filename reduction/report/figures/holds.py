@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from reduction.holds.series import prony_tension
 from reduction.record import Floats
 from reduction.report.decimate import POINTS, keep_extremes
 from reduction.report.figure import Figure, Trace, axis, line, make_figure
@@ -37,7 +38,8 @@ def draw_holds(view: TestView) -> list[Figure]:
                 make_figure(
                     f"{view.key}-hold-{kind}-{index}", f"{view.id}: {kind}, {specimen}",
                     f"{what.capitalize()} in the holds at {held} against time since the hold"
-                    " began; dashed: the fitted Prony series, where the record supports one.",
+                    " began; dashed: the fitted Prony series,"
+                    " which is for a step in length, where the record supports one.",
                     traces, synthetic=view.is_synthetic,
                     xaxis=axis(
                         shown("time", view.units).label("time since the hold began"),
@@ -67,14 +69,16 @@ def _one_hold(
     kept = keep_extremes(np.log10(since), y, limit=POINTS // 2)
     level = "" if held is None or np.isnan(held[hold]) else f", strain {100 * held[hold]:.0f} %"
     name = f"hold {hold + 1}{level}"
-    traces = [line(since[kept], y[kept], name=name, colour=colour(order), width=1.2)]
+    traces = [
+        line(since[kept], y[kept], name=name, colour=colour(order), width=1.2, legendgroup=name)
+    ]
     fit = None if is_creep else _prony(view, hold, since)
     if fit is not None:
         moments, tension = fit
         traces.append(
             line(
                 moments, tension * unit.factor, name=f"{name}: Prony series",
-                colour=colour(order), dash="dash", width=2.2,
+                colour=colour(order), dash="dash", width=2.2, legendgroup=name, showlegend=False,
             )
         )  # fmt: skip
     return traces
@@ -87,5 +91,10 @@ def _prony(view: TestView, hold: int, since: Floats) -> tuple[Floats, Floats] | 
         return None
     given = np.isfinite(tension[hold]) & np.isfinite(times[hold])
     moments = np.geomspace(since[0], since[-1], FIT_POINTS)
-    decay = np.exp(-moments[:, np.newaxis] / times[hold, given])
-    return moments, long_time[hold] + decay @ tension[hold, given]
+    series = prony_tension(
+        moments,
+        tension=tension[hold, given],
+        relaxation_time=times[hold, given],
+        long_time_tension=float(long_time[hold]),
+    )
+    return moments, series

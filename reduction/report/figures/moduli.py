@@ -64,7 +64,7 @@ def draw_moduli(view: TestView) -> list[Figure]:
                 synthetic=view.is_synthetic,
                 height=400,
                 xaxis=axis(in_strain.label("strain")),
-                yaxis=_modulus_axis(modulus[index], parts, index, in_stress),
+                yaxis=_modulus_axis(modulus, parts["maximum"], in_stress),
             )
         )
     return found
@@ -121,11 +121,12 @@ def _first_loading(
     ]  # fmt: skip
 
 
-def _modulus_axis(
-    mean: Floats, parts: dict[str, Floats], index: int, in_stress: Shown
-) -> dict[str, object]:
-    """Return the axis, scaled to what is trusted: an untrimmed end may run off the top."""
-    trusted = np.concatenate([mean.ravel(), parts["maximum"][index].ravel()])
+def _modulus_axis(mean: Floats, most: Floats, in_stress: Shown) -> dict[str, object]:
+    """Return one axis for all specimens, scaled to what is trusted.
+
+    An untrimmed end may run off the top.
+    """
+    trusted = np.concatenate([mean.ravel(), most.ravel()])
     top = float(np.nanmax(trusted)) if np.isfinite(trusted).any() else 0.0
     title = in_stress.label("tangent modulus")
     return axis(title, range=[0.0, 1.25 * top]) if top > 0 else axis(title)

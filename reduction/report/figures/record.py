@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from reduction.record import Bools, Floats
 from reduction.report.decimate import POINTS, keep_extremes
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
-from reduction.report.style import PHASE_FILLS, colour, plot_text, shown
+from reduction.report.style import PHASE_FILLS, Shown, colour, plot_text, shown
 from reduction.report.view import TestView
 from reduction.vocabulary import PHASE_VALUES
 
@@ -20,7 +20,11 @@ TIME_DIGITS = 9
 MOST_PHASES = 150
 FLAG_POINTS = 400
 WHOLE_CYCLES = 8
+LONG_RECORD = 7200.0
+"""A longer record is shown in hours. [s]"""
+SECONDS_IN_AN_HOUR = 3600.0
 # said of whole stretches of a sound record, so not shown until a reader asks for them
+MOVING = (PHASE_VALUES["approach"], PHASE_VALUES["cycling"])
 COMMON_FLAGS = ("not_constant_rate", "resampled", "extrapolated")
 
 
@@ -41,7 +45,10 @@ def draw_record(view: TestView) -> list[Figure]:
     time, tension = view.array("time"), view.array("tension")
     if time is None or tension is None or view.is_stepwise:
         return []
-    in_time, in_tension = shown("time", view.units), shown("tension", view.units)
+    in_tension = shown("tension", view.units)
+    in_time = shown("time", view.units)
+    if time[-1] - time[0] > LONG_RECORD:
+        time, in_time = time / SECONDS_IN_AN_HOUR, Shown("h", 1.0)
     data: list[Trace] = []
     position = position_of(view)
     if position is not None:
@@ -111,6 +118,9 @@ def draw_tension_position(view: TestView) -> list[Figure]:
     time, tension, position = view.array("time"), view.array("tension"), position_of(view)
     if time is None or tension is None or position is None:
         return []
+    phase = view.array("phase")
+    if phase is not None and not np.isin(phase, MOVING).any():
+        return []
     words, values = position
     length, force = shown("length", view.units), shown("tension", view.units)
     number = view.array("cycle_number")
@@ -141,7 +151,7 @@ def draw_tension_position(view: TestView) -> list[Figure]:
     return [
         make_figure(
             f"{view.key}-tension-position", f"{view.id}: tension against position", caption, data,
-            synthetic=view.is_synthetic,
+            synthetic=view.is_synthetic, height=400, is_wide=True,
             xaxis=axis(length.label(words)), yaxis=axis(force.label("tension")),
         )
     ]  # fmt: skip
@@ -191,7 +201,7 @@ def _phases(view: TestView, time: Floats) -> tuple[list[Trace], list[Trace], int
                 "fillcolor": PHASE_FILLS[name],
             }
         )  # fmt: skip
-        if duration[place] > 0.06 * whole:
+        if duration[place] > 0.09 * whole:
             labels.append(
                 {
                     "text": name, "x": (left + right) / 2, "y": 0.56, "xref": "x",

@@ -65,7 +65,7 @@ def draw_trends(view: TestView) -> list[Figure]:
             _CAPTIONS[key] + " Band: ± 1 standard uncertainty." + _slip_words(view),
             [trace for trace in data if trace["y"]],
             synthetic=view.is_synthetic,
-            height=320,
+            height=340,
             xaxis=axis("cycle number [1]", **({"type": "log", "dtick": 1} if is_long else {})),
             yaxis=axis(unit.label(words)),
             shapes=shapes,

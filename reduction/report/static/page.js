@@ -3,26 +3,32 @@
   const plots = [...document.querySelectorAll(".plot")];
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const drawn = new Set();
+  let printing = false;
+  // the two blues, lighter by one step each: the darker one fades on a dark page
+  const ON_DARK = [["#56B4E9", "#B3E0FF"], ["#0072B2", "#4AA3DF"]];
+  const AXIS = 52; // ticks and title under a plot, in CSS pixels
   const PRINT_WIDTH = 660; // what an A4 or Letter page with 15 mm margins holds, in CSS pixels
 
   const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-  const themed = (layout) => {
-    const colours = { font: ink("--ink"), faint: ink("--faint"), grid: ink("--grid"), paper: ink("--paper") };
+  const themed = (layout, legend) => {
+    const colours = printing
+      ? { font: "#000", faint: "#333", grid: "#ccc", paper: "#fff" }
+      : { font: ink("--ink"), faint: ink("--faint"), grid: ink("--grid"), paper: ink("--paper") };
     const result = {
       ...layout,
       autosize: true,
       paper_bgcolor: colours.paper,
       plot_bgcolor: colours.paper,
       font: { family: getComputedStyle(document.body).fontFamily, size: 12, color: colours.font },
-      margin: { l: 64, r: 16, t: layout.title.subtitle ? 62 : 44, b: 48 },
-      legend: { orientation: "h", x: 0, y: -0.16, yanchor: "top", font: { size: 11 }, ...layout.legend },
+      margin: { l: 64, r: 16, t: layout.title.subtitle ? 62 : 44, b: AXIS + legend },
+      legend: { orientation: "h", x: 0, y: 0, yref: "container", yanchor: "bottom", tracegroupgap: 0, font: { size: 11 } },
       hoverlabel: { namelength: 40 },
       hovermode: "closest",
       title: { ...layout.title, x: 0.01, xanchor: "left", y: 0.98, yanchor: "top", yref: "container", font: { size: 14 } },
     };
     if (layout.title.subtitle) {
-      result.title.subtitle = { ...layout.title.subtitle, font: { size: 11, color: ink("--bad") } };
+      result.title.subtitle = { ...layout.title.subtitle, font: { size: 11, color: printing ? "#7a2b00" : ink("--bad") } };
     }
     for (const name of Object.keys(layout)) {
       if (/^[xy]axis/.test(name)) {
@@ -36,21 +42,25 @@
   };
 
   // a legend under the axes takes its height from the plot unless the figure grows with it
-  const height = (plot, data, width) => {
+  const legendHeight = (data, width) => {
     const entries = data.filter((trace) => trace.showlegend !== false);
     const longest = Math.max(0, ...entries.map((trace) => trace.name.length));
     const columns = Math.max(1, Math.floor((width - 80) / (52 + 6.2 * longest)));
-    const rows = entries.length > 1 ? Math.ceil(entries.length / columns) : 0;
-    return Number(plot.dataset.height) + 19 * rows;
+    return entries.length > 1 ? 12 + 19 * Math.ceil(entries.length / columns) : 0;
   };
 
   const draw = (plot) => {
-    const { data, layout } = JSON.parse(document.getElementById(plot.dataset.figure).textContent);
-    const tall = height(plot, data, plot.clientWidth);
+    let text = document.getElementById(plot.dataset.figure).textContent;
+    if (dark.matches && !printing) {
+      for (const [onWhite, onDark] of ON_DARK) text = text.replaceAll(onWhite, onDark);
+    }
+    const { data, layout } = JSON.parse(text);
+    const width = printing ? PRINT_WIDTH : plot.clientWidth;
+    const legend = legendHeight(data, width);
+    const tall = Number(plot.dataset.height) + legend;
     plot.style.minHeight = `${tall}px`;
-    const entries = data.filter((trace) => trace.showlegend !== false).length;
-    const shown = { ...themed(layout), height: tall, showlegend: entries > 1 };
-    shown.legend.y = -62 / (Number(plot.dataset.height) - 110);
+    const shown = { ...themed(layout, legend), height: tall, showlegend: legend > 0 };
+    if (printing) Object.assign(shown, { width: PRINT_WIDTH, autosize: false });
     drawn.add(plot);
     return Plotly.react(plot, data, shown, {
       responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"],
@@ -73,13 +83,14 @@
   dark.addEventListener("change", () => drawn.forEach(draw));
   document.getElementById("draw-all").addEventListener("click", drawAll);
 
-  const forPaper = () => {
-    document.querySelectorAll("details").forEach((part) => { part.open = true; });
-    drawAll();
-    drawn.forEach((plot) => Plotly.relayout(plot, {
-      width: PRINT_WIDTH, autosize: false, paper_bgcolor: "#fff", plot_bgcolor: "#fff", "font.color": "#000",
-    }));
-  };
-  addEventListener("beforeprint", forPaper);
-  addEventListener("afterprint", () => drawn.forEach(draw));
+  // paper is white and narrower than the screen, whatever the screen is
+  addEventListener("beforeprint", () => {
+    printing = true;
+    document.querySelectorAll("details:not(.provenance)").forEach((part) => { part.open = true; });
+    plots.forEach(draw);
+  });
+  addEventListener("afterprint", () => {
+    printing = false;
+    drawn.forEach(draw);
+  });
 })();

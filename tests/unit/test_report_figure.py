@@ -1,0 +1,71 @@
+"""Figures as plain dictionaries, safe inside a page."""
+
+import json
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from reduction.report.figure import axis, band, line, make_figure, plain_numbers, script_json
+from reduction.report.style import plot_text, shorten, shown
+
+
+@given(st.text())
+def test_text_in_a_script_element_is_the_same_text_again(text):
+    document = script_json({"name": text})
+    assert json.loads(document) == {"name": text}
+    assert not set("<>&\u2028\u2029") & set(document)
+
+
+@given(st.text())
+def test_text_in_a_figure_has_no_markup_and_is_short(text):
+    drawn = plot_text(text)
+    assert "<" not in drawn
+    assert ">" not in drawn
+    assert "\n" not in drawn
+    # an escaped character is at most five long
+    assert len(drawn) <= 5 * 36
+
+
+def test_a_long_name_ends_with_an_ellipsis():
+    assert shorten("x" * 500, 36) == "x" * 35 + "…"
+
+
+def test_what_is_not_finite_becomes_none():
+    assert plain_numbers(np.array([1.0, np.nan, np.inf])) == [1.0, None, None]
+
+
+def test_a_band_is_broken_at_a_gap():
+    x = np.arange(5.0)
+    trace = band(
+        x, np.array([0, 0, np.nan, 0, 0]), np.ones(5), name="u", colour="#0072B2", alpha=0.2
+    )
+    assert trace["x"] == [0.0, 1.0, 1.0, 0.0, None, 3.0, 4.0, 4.0, 3.0, None]
+    assert trace["y"] == [1.0, 1.0, 0.0, 0.0, None, 1.0, 1.0, 0.0, 0.0, None]
+
+
+def test_a_band_without_a_finite_edge_is_empty():
+    nothing = np.full(3, np.nan)
+    trace = band(np.arange(3.0), nothing, nothing, name="u", colour="#0072B2", alpha=0.2)
+    assert trace["x"] == []
+    assert not make_figure("k", "t", "c", [trace], synthetic=False).has_data
+
+
+def test_synthetic_data_are_called_so_inside_the_figure():
+    trace = line(np.arange(2.0), np.arange(2.0), name="a", colour="#0072B2")
+    figure = make_figure("k", "t", "c", [trace], synthetic=True, xaxis=axis("strain [%]"))
+    assert figure.layout["title"]["subtitle"]["text"] == "SYNTHETIC DATA"
+    assert figure.label == "Synthetic data. t. Axes: strain [%]. Lines: a."
+
+
+def test_every_kind_of_quantity_is_shown_with_a_unit_in_both_systems():
+    kinds = ("time", "length", "small length", "tension", "strain", "stress", "energy", "area")
+    assert [shown(kind, "us").unit for kind in kinds] == [
+        "s", "ft", "in", "lbf", "%", "psi", "lbf", "in²",
+    ]  # fmt: skip
+    # 1 in is 25.4 mm, 1 psi is 6894.757 Pa
+    assert shown("small length", "us").factor == 1 / 0.0254
+    assert round(1 / shown("stress", "us").factor, 3) == 6894.757
+    assert [shown(kind, "si").unit for kind in kinds] == [
+        "s", "m", "mm", "N", "%", "MPa", "J/m", "mm²",
+    ]  # fmt: skip

@@ -1,0 +1,58 @@
+"""Numbers as a reader sees them, and as the archive has them."""
+
+import numpy as np
+import pytest
+
+from reduction.report.htmltable import NOT_GIVEN, count, make_table, measured, number, span, words
+from reduction.report.style import Shown
+
+MPA = Shown("MPa", 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("value", "uncertainty", "text"),
+    [
+        (1.23456e6, 1.2e4, "1.235 ± 0.012"),
+        (1.23456e6, 9.96e4, "1.235 ± 0.100"),
+        (1234.5e6, 12e6, "1,234 ± 12"),
+        (1.0e6, 0.0, "1.000"),
+        (1.0e6, float("nan"), "1.000"),
+        (float("nan"), 1.0, NOT_GIVEN),
+        (-3.0e5, 2.0e3, "-0.3000 ± 0.0020"),
+        (1.0e6, 1e-3, "1 ± 1e-09"),
+    ],
+)
+def test_a_value_ends_where_its_uncertainty_does(value, uncertainty, text):
+    assert measured(value, uncertainty, MPA).text == text
+
+
+def test_the_value_of_the_archive_stands_beside_what_is_shown():
+    assert float(measured(1234567.891, 1e4, MPA).value) == 1234567.891
+    assert float(number(1234567.891, MPA).value) == 1234567.891
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0, "0"), (12.0, "12.00"), (123456.0, "123,456"), (1e-7, "1.000e-07"), (2e12, "2.000e+12")],
+)
+def test_numbers_are_written_out_where_they_can_be_read(value, text):
+    assert number(value).text == text
+
+
+def test_counts_have_no_decimals():
+    assert (count(2998.0).text, count(2998.0).value) == ("2,998", "2998")
+    assert count(float("nan")).text == NOT_GIVEN
+
+
+def test_a_range_has_both_ends_to_the_same_place():
+    assert span(0.806, 0.9437, Shown("%", 100.0), places=1).text == "80.6 to 94.4"
+    assert span(np.nan, 1.0, MPA, places=1).text == NOT_GIVEN
+
+
+def test_the_caption_says_where_data_are_synthetic():
+    rows = [[words("a"), number(1.0)]]
+    assert make_table("Caption.", ("a", "b"), rows, synthetic=True).caption == (
+        "Caption. SYNTHETIC DATA."
+    )
+    assert make_table("Caption.", ("a", "b"), rows, synthetic=False).number_columns == (False, True)
+    assert words("").text == NOT_GIVEN

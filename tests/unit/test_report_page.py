@@ -1,0 +1,305 @@
+"""One page a campaign: whole, safe, offline, and with the numbers of the archives."""
+
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from itertools import pairwise
+
+import numpy as np
+import plotly.graph_objects as go
+import pytest
+
+from reduction.archive.open import open_archive
+from reduction.errors import ArchiveError
+from reduction.report.page import write_report
+from reduction.report.view import TestView
+
+NASTY = "</script><script>alert(1)</script> \"quote\" 'x' & \u2028\nnew line"
+STATUS = "test,status,exit_status,message,raw_sha256,seconds\r\n"
+
+
+class Page(HTMLParser):
+    """What a browser would make of the page: elements, text, scripts, tables."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.elements, self.scripts, self.tables, self.text = [], {}, {}, []
+        self._script, self._table, self._cell = None, None, None
+        self.feed(html)
+
+    def handle_starttag(self, tag, attrs):
+        attributes = dict(attrs)
+        self.elements.append((tag, attributes))
+        if tag == "script":
+            self._script = attributes.get("id", f"script-{len(self.scripts)}")
+            self.scripts[self._script] = ""
+        elif tag == "caption":
+            self._table = ""
+        elif tag == "tr" and isinstance(self._table, list):
+            self._table.append([])
+        elif tag in ("td", "th") and isinstance(self._table, list):
+            self._table[-1].append([attributes, ""])
+            self._cell = self._table[-1][-1]
+
+    def handle_endtag(self, tag):
+        if tag == "script":
+            self._script = None
+        elif tag == "caption":
+            rows = self.tables.setdefault(self._table, [])
+            self._table = []
+            rows.append(self._table)
+        elif tag == "table":
+            self._table = None
+        elif tag in ("td", "th"):
+            self._cell = None
+
+    def handle_data(self, data):
+        if self._script is not None:
+            self.scripts[self._script] += data
+            return
+        self.text.append(data)
+        if self._cell is not None:
+            self._cell[1] += data
+        elif isinstance(self._table, str):
+            self._table += data
+
+    def figures(self):
+        return {name: json.loads(text) for name, text in self.scripts.items() if "-data" in name}
+
+    def rows(self, caption):
+        (name,) = {name for name in self.tables if name.startswith(caption)}
+        return self.tables[name][0]
+
+
+@pytest.fixture
+def report(tmp_path, write):
+    """Write reduced tests as archives, make the page, and read it."""
+
+    def make(*tests, status="", units="si"):
+        for test in tests:
+            write(test)
+        if status:
+            (tmp_path / "status.csv").write_text(status, encoding="utf-8", newline="")
+        path = write_report(tmp_path, tmp_path / "reports", units=units)
+        return Page(path.read_text(encoding="utf-8"))
+
+    return make
+
+
+def renamed(test, test_id, **attributes):
+    about = test.description
+    description = replace(about, test_id=test_id, attributes=about.attributes | attributes)
+    return replace(test, description=description)
+
+
+def test_nothing_is_fetched(report, rich_test):
+    page = report(rich_test)
+    for tag, attributes in page.elements:
+        for name in ("src", "href", "data", "srcset", "poster", "action"):
+            assert not re.match(r"(https?:)?//", attributes.get(name) or ""), (tag, attributes)
+    assert not [tag for tag, _ in page.elements if tag in ("link", "iframe", "img", "object")]
+    policy = next(a for _, a in page.elements if a.get("http-equiv") == "Content-Security-Policy")
+    assert policy["content"].startswith("default-src 'none'")
+
+
+def test_every_figure_is_one_that_plotly_takes_and_has_data(report, rich_test, stepwise_test):
+    figures = report(rich_test, stepwise_test).figures()
+    assert len(figures) > 15
+    for name, figure in figures.items():
+        go.Figure(figure)  # refuses a property that plotly does not know
+        assert figure["data"], name
+        assert any(any(y is not None for y in trace["y"]) for trace in figure["data"]), name
+        for axis, settings in figure["layout"].items():
+            if axis.startswith(("xaxis", "yaxis")):
+                assert re.search(r"\[.+\]$", settings["title"]["text"]), (name, axis)
+
+
+def test_a_figure_is_there_for_every_part_of_a_rich_test(report, rich_test, stepwise_test):
+    names = " ".join(report(rich_test, stepwise_test).figures())
+    for part in (
+        "record", "tension-position", "loops", "modulus", "first-last", "peaks",
+        "spring-constant", "energy", "loss-factor", "mooney", "steps", "step-moduli",
+        "campaign-moduli", "campaign-ratio", "campaign-test_dynamic_modulus", "campaign-static",
+    ):  # fmt: skip
+        assert part in names, part
+
+
+def test_the_answer_has_the_numbers_of_the_archive(report, rich_test, tmp_path):
+    rows = report(rich_test).rows("Elastic modulus of the rubber")
+    header = [cell[1] for cell in rows[0]]
+    place = next(k for k, text in enumerate(header) if text.startswith("segment modulus"))
+    assert header[place].endswith("[MPa]")
+    found = sorted(float(row[place][0]["data-value"]) for row in rows[1:])
+    with open_archive(tmp_path / "T-1.nc") as data:
+        modulus = data["segment_modulus"].values
+        assert found == sorted(modulus[np.isfinite(modulus)].tolist())
+        by_name = {
+            (row[1][1], row[2][1], int(row[3][0]["data-value"])): row[place] for row in rows[1:]
+        }
+        for row, name in enumerate(data["specimen"].values):
+            for column, branch in enumerate(data["branch_name"].values):
+                for segment, value in enumerate(modulus[row, column], start=1):
+                    cell = by_name.get((name, branch, segment))
+                    if np.isfinite(value):
+                        assert float(cell[0]["data-value"]) == value
+                    else:
+                        assert cell is None
+
+
+def test_us_units_change_what_is_shown_and_not_the_value_beside_it(report, rich_test):
+    rows = report(rich_test, units="us").rows("Specimens before")
+    header = [cell[1] for cell in rows[0]]
+    place = header.index("diameter [in]")
+    # 26.4 and 26.5 mm are 1.0394 and 1.0433 in
+    assert rows[1][place][1] == "1.041"
+    assert float(rows[1][place][0]["data-value"]) == 0.02645
+
+
+def test_names_with_markup_quotes_lines_and_500_characters_are_text(report, rich_test):
+    long = "x" * 500
+    specimens = (
+        replace(rich_test.specimens[0], condition=NASTY, material=long, notes=(NASTY,)),
+        rich_test.specimens[1],
+    )
+    nasty = renamed(
+        replace(rich_test, specimens=specimens, notes=(NASTY, long)), "T-1",
+        title=NASTY, operator=NASTY, summary=long,
+    )  # fmt: skip
+    page = report(nasty)
+    scripts = [attributes for tag, attributes in page.elements if tag == "script"]
+    assert len([one for one in scripts if one.get("type") != "application/json"]) == 2
+    assert not any("alert(1)" in text for text in page.scripts.values())
+    everything = "".join(page.text)
+    assert everything.count("<script>alert(1)</script>") >= 4
+    assert long in everything
+
+
+def test_a_specimen_name_with_markup_is_text_in_the_figures(report, rich_test, monkeypatch):
+    names = {"new": "<b>new</b>" + "y" * 500, "used": "<i>used</i>"}
+    texts = TestView.texts
+    monkeypatch.setattr(
+        TestView,
+        "texts",
+        lambda self, name: tuple(names.get(text, text) for text in texts(self, name)),
+    )
+    page = report(rich_test)
+    for figure in page.figures().values():
+        drawn = [trace["name"] for trace in figure["data"]] + [figure["layout"]["title"]["text"]]
+        drawn += [note["text"] for note in figure["layout"].get("annotations", ())]
+        assert not any("<" in text for text in drawn)
+        assert all(len(text) < 120 for text in drawn)
+    assert not any(tag == "i" for tag, _ in page.elements)
+
+
+def test_synthetic_data_are_called_so_everywhere(report, rich_test):
+    page = report(rich_test)
+    assert any("SYNTHETIC DATA" in text for text in page.text)
+    for figure in page.figures().values():
+        assert figure["layout"]["title"]["subtitle"]["text"] == "SYNTHETIC DATA"
+    assert all(caption.endswith("SYNTHETIC DATA.") for caption in page.tables)
+
+
+def test_measured_data_are_not_called_synthetic(report, stepwise_test):
+    page = report(stepwise_test)
+    assert "SYNTHETIC DATA" not in "".join([*page.text, *page.tables])
+
+
+def test_ten_tests_stay_below_fifteen_megabytes(report, rich_test, tmp_path):
+    page = report(*(renamed(rich_test, f"T-{number}") for number in range(1, 11)))
+    assert (tmp_path / "reports" / "index.html").stat().st_size < 15e6
+    assert sum(tag == "h2" for tag, _ in page.elements) == 4 + 10
+
+
+def test_tests_stand_in_their_order_and_parts_behind_the_whole(report, rich_test):
+    order = [
+        renamed(rich_test, "T-10"),
+        replace(renamed(rich_test, "A-end", part_of="T-2")),
+        renamed(rich_test, "T-2"),
+    ]
+    numbers = (10, None, 2)
+    tests = [
+        replace(one, description=replace(one.description, order=number))
+        for one, number in zip(order, numbers, strict=True)
+    ]
+    page = report(*tests)
+    rows = page.rows("Tests in the order")
+    assert [row[0][1] for row in rows[1:]] == ["T-2", "A-end", "T-10"]
+
+
+def test_failures_come_first_and_a_kept_archive_is_called_old(report, rich_test):
+    status = STATUS + (
+        "T-1,failed,3,T-1.csv:7 [load]: load is not a number,,0.1\r\n"
+        "T-9,failed,4,one cycle,,0.1\r\nT-8,no_work,0,,,0.1\r\n"
+    )
+    page = report(rich_test, status=status)
+    text = "".join(page.text)
+    wrong = text[text.index("Failures (") :]
+    assert "load is not a number" in wrong
+    assert "an earlier run, kept" in wrong
+    assert wrong.index("one cycle") < wrong.index("Warnings (")
+    assert "status is no work" in wrong
+    rows = page.rows("Tests in the order")
+    assert ["T-9", "failed, no archive"] in [[row[0][1], row[-1][1]] for row in rows]
+
+
+def test_an_archive_from_other_raw_files_is_a_warning(report, rich_test):
+    page = report(rich_test, status=STATUS + "T-1,reduced,0,,abc,0.1\r\n")
+    assert "other raw files than status.csv" in "".join(page.text)
+
+
+def test_a_file_that_is_no_archive_is_named_and_the_others_are_shown(report, rich_test, tmp_path):
+    (tmp_path / "broken.nc").write_bytes(b"not netCDF")
+    page = report(rich_test)
+    text = "".join(page.text)
+    assert "broken.nc" in text
+    assert "is not a netCDF file" in text
+    assert page.rows("Elastic modulus of the rubber")
+
+
+def test_a_campaign_of_which_every_test_failed_still_has_a_page(report):
+    page = report(status=STATUS + "T-1,failed,3,no such file,,0.1\r\n")
+    assert "no such file" in "".join(page.text)
+
+
+def test_an_empty_folder_is_refused(tmp_path):
+    with pytest.raises(ArchiveError, match="there is nothing to report on"):
+        write_report(tmp_path, tmp_path / "reports")
+
+
+def test_a_status_file_that_is_no_text_is_refused(tmp_path):
+    (tmp_path / "status.csv").write_bytes(b"\xff\xfe\x00test")
+    with pytest.raises(ArchiveError, match=r"status\.csv cannot be read"):
+        write_report(tmp_path, tmp_path / "reports")
+
+
+@pytest.mark.parametrize("name", ["holds_only_test", "bare_test", "stepwise_test"])
+def test_a_test_with_little_in_it_has_a_section(report, request, name):
+    test = request.getfixturevalue(name)
+    page = report(test)
+    assert test.description.test_id in "".join(page.text)
+
+
+def test_headings_go_down_one_level_at_a_time_and_tables_say_what_heads_what(report, rich_test):
+    page = report(rich_test)
+    levels = [int(tag[1]) for tag, _ in page.elements if re.fullmatch(r"h[1-6]", tag)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(low - high <= 1 for high, low in pairwise(levels))
+    assert all(a.get("scope") in ("col", "row") for tag, a in page.elements if tag == "th")
+    ids = [a["id"] for _, a in page.elements if "id" in a]
+    assert len(ids) == len(set(ids))
+    targets = [a["href"] for tag, a in page.elements if tag == "a"]
+    assert all(target[1:] in ids for target in targets)
+
+
+def test_a_plot_says_what_it_shows_and_has_a_caption(report, rich_test):
+    page = report(rich_test)
+    plots = [a for _, a in page.elements if a.get("class") == "plot"]
+    assert all(a["role"] == "img" and a["aria-label"] for a in plots)
+    assert len(plots) == sum(tag == "figcaption" for tag, _ in page.elements) > 0
+
+
+def test_the_page_says_what_a_constant_fraction_would_read(report, rich_test):
+    # 1 / 0.86 is 1.163
+    assert "reads these moduli 16.3 % high" in "".join(report(rich_test).text)
