@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from reduction.checks import as_same_shape
 from reduction.cycles.counter import counted_cycles
 from reduction.cycles.halves import HalfCycles, find_half_cycles
+from reduction.cycles.jumps import drop_jumps
 from reduction.cycles.product import Cycles
 from reduction.cycles.reversals import find_reversals, first_pass
 from reduction.cycles.trim import constant_rate_span, stroke_span
@@ -49,20 +50,15 @@ def _reversals(values: Floats, settings: CycleSettings) -> tuple[Indices, float]
     """Reversals and the band that they were found with."""
     load = settings.control == "load"
     channel, unit = ("tension", "N") if load else ("crosshead position", "m")
-    if np.isfinite(values).sum() < 8:
-        raise DataError(
-            f"{channel} is missing", found=f"{values.size} rows", needed="8 values or more"
-        )
     if settings.band is not None:
         reversals, band = find_reversals(values, band=settings.band), settings.band
-    elif np.nanmax(values) > np.nanmin(values):
-        reversals, band = first_pass(values)
     else:
-        reversals, band = np.empty(0, dtype=np.intp), 0.0
+        reversals, band = first_pass(values)
     if reversals.size < 3:
+        finite = values[np.isfinite(values)]
         raise DataError(
             f"no cycle: {channel} does not reverse",
-            found=f"a range of {np.nanmax(values) - np.nanmin(values):.4g} {unit}, "
+            found=f"a range of {np.ptp(finite) if finite.size else 0.0:.4g} {unit}, "
             f"{max(reversals.size - 1, 0)} movements of {band:.4g} {unit} or more",
             needed="two half cycles or more",
             hint=_HINT,
@@ -197,6 +193,12 @@ def find_cycles(
     values = _control_channel(position, tension, settings)
     notes: list[str] = []
     reversals, band = _reversals(values, settings)
+    reversals, jumps = drop_jumps(values, reversals)
+    if jumps.size:
+        notes.append(
+            f"{jumps.size} jumps of the control channel and back are no reversals, first at "
+            f"{time[jumps[0]]:g} s"
+        )
     halves = find_half_cycles(time, values, reversals, standstills, band=band)
     branch_first, branch_last = _whole_cycles(halves)
     first, last = branch_first[:, 0], branch_last[:, 1]

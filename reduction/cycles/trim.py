@@ -9,12 +9,15 @@ References
 
 from __future__ import annotations
 
-from math import ceil, sqrt
+from collections.abc import Callable
+from functools import partial
+from math import ceil, hypot, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reduction.errors import SettingsError
+from reduction.phases.noise import estimate_noise
 from reduction.record import Bools, Floats
 
 __all__ = ["constant_rate_span", "stroke_span"]
@@ -22,41 +25,43 @@ __all__ = ["constant_rate_span", "stroke_span"]
 _RATE_NOISE = 0.01
 _WIDEST = 4  # a window is at most this part of a branch
 _RATES_READ = 33
-_CELLS = 1 << 18
+_CELLS = 1 << 18  # samples looked at in one step, so that they stay in the cache
+_FIRST_STEPS = 8
+_STEPS_READ = 100_001
+_FEWEST = 8
 _STROKE_END = 0.05
 
 Indices = NDArray[np.intp]
 
 
-def _rate(time: Floats, values: Floats, first: Indices, width: Indices) -> Floats:
+def _rate(time: Floats, values: Floats, begin: Indices, end: Indices) -> Floats:
+    """Rate between two samples; NaN where time does not advance."""
+    elapsed = time[end] - time[begin]
     with np.errstate(divide="ignore", invalid="ignore"):
-        rate = (values[first + width] - values[first]) / (time[first + width] - time[first])
-    return np.asarray(rate)
+        return np.asarray((values[end] - values[begin]) / np.where(elapsed == 0, np.nan, elapsed))
 
 
-def _first_passing(
-    time: Floats, values: Floats, start: Indices, width: Indices, reach: Indices, least: Floats
+def _steps_until(
+    start: Indices, direction: int, reach: Indices, passes: Callable[[Indices, Indices], Bools]
 ) -> Indices:
-    """Steps from the start to the first window of rate at least ``least``; -1 where none is.
+    """Samples from each start to the first that passes, -1 where none within reach does.
 
-    ``width`` is negative where windows reach back and the search goes back.
+    ``passes`` takes samples, shape (n_rows, n_steps), and the rows of ``start`` they are of.
+    Ends of branches are short, so all branches are searched at once, a few steps at a time.
     """
     found = np.full(start.size, -1, dtype=np.intp)
-    active = np.arange(start.size)
-    begin = 0
-    direction = np.sign(width)
-    while active.size:
-        offsets = begin + np.arange(max(8, _CELLS // active.size))
-        allowed = offsets[None, :] <= reach[active, None]
-        where = start[active, None] + direction[active, None] * np.minimum(
-            offsets[None, :], reach[active, None]
-        )
-        rate = _rate(time, values, where, width[active, None])
-        passes: Bools = np.asarray(allowed & (rate >= least[active, None]))
-        hit = passes.any(axis=1)
-        found[active[hit]] = begin + passes[hit].argmax(axis=1)
-        begin += offsets.size
-        active = active[~hit & (reach[active] >= begin)]
+    for row in range(0, start.size, _CELLS // _FIRST_STEPS):
+        rows = np.arange(row, min(row + _CELLS // _FIRST_STEPS, start.size))
+        rows = rows[reach[rows] >= 0]
+        begin, count = 0, _FIRST_STEPS
+        while rows.size:
+            steps = np.minimum(np.arange(begin, begin + count), reach[rows, None])
+            hits = passes(start[rows, None] + direction * steps, rows)
+            is_hit = hits.any(axis=1)
+            found[rows[is_hit]] = begin + hits[is_hit].argmax(axis=1)
+            begin += count
+            rows = rows[~is_hit & (reach[rows] >= begin)]
+            count = max(_FIRST_STEPS, min(2 * count, _CELLS // max(rows.size, 1)))
     return found
 
 
@@ -92,7 +97,7 @@ def constant_rate_span(
         Ends of the trimmed part, both inside; ``last`` is before ``first`` where no part
         of a branch has the rate. [1]
     plateau_rate : ndarray, shape (n_branches,)
-        Median rate of the branch, positive. [m s-1] or [N s-1]
+        Median of 33 rates spread over the branch, positive. [m s-1] or [N s-1]
 
     Raises
     ------
@@ -103,7 +108,8 @@ def constant_rate_span(
     -----
     The rate is that between two samples a window apart, both inside the branch.  The
     window is as many samples as make the noise of the rate 1 % of it,
-    :math:`\sqrt 2 s / (0.01 v \Delta t)`, at most a quarter of the branch.  The trimmed
+    :math:`\sqrt 2 / 0.01` times the noise of a sample and of its time stamp over the
+    travel and the time of a step, at most a quarter of the branch.  The trimmed
     part is all that lies from the begin of the first window to the end of the last
     window whose rate is at least ``trim_threshold`` times the plateau: a window that
     begins in the turn of the machine is slow as a whole.  A missing sample gives no rate.
@@ -125,44 +131,58 @@ def constant_rate_span(
         )
     n_steps = branch_last - branch_first
     travel = values[branch_last] - values[branch_first]
-    duration = time[branch_last] - time[branch_first]
-    step_travel = np.abs(travel) / np.maximum(n_steps, 1)
-    typical = float(np.nanmedian(step_travel)) if step_travel.size else 0.0
-    wanted = ceil(sqrt(2) * noise / (_RATE_NOISE * typical)) if typical > 0 else 1
-    width = np.clip(np.minimum(wanted, n_steps // _WIDEST), 1, None).astype(np.intp)
-    reach = n_steps - width  # last begin of a window, from the first sample
     sign = np.sign(travel)
+    width = _window(time, travel, n_steps, noise)
+    reach = n_steps - width  # last begin of a window, from the first sample
 
-    at = branch_first[:, None] + np.rint(
-        np.maximum(reach, 0)[:, None] * np.linspace(0, 1, _RATES_READ)
-    ).astype(np.intp)
-    at = np.minimum(at, values.size - 1 - width[:, None])
-    rates = sign[:, None] * _rate(time, values, at, width[:, None])
-    if np.isnan(rates).any():
-        known = np.where(np.isnan(rates).all(axis=1)[:, None], 0.0, rates)
-        plateau = np.nanmedian(known, axis=1)
-    else:
-        plateau = np.median(rates, axis=1)
+    plateau = np.full(n_steps.size, np.nan)
+    n_read = min(_RATES_READ, int(reach.max(initial=0)) + 1)
+    places = np.linspace(0, 1, n_read)
+    rows_read = max(_CELLS // n_read, 1)
+    for begin in range(0, n_steps.size, rows_read):
+        part = slice(begin, begin + rows_read)
+        steps = np.maximum(reach[part], 0)[:, None] * places
+        at = branch_first[part, None] + steps.astype(np.intp)
+        end = np.minimum(at + width[part, None], branch_last[part, None])
+        plateau[part] = _median(sign[part, None] * _rate(time, values, at, end))
 
-    # Signed so that a window passes where it is fast enough in the branch's direction.
     least = trim_threshold * plateau
-    moves = (reach >= 0) & (plateau > 0) & (duration > 0)
-    first, last = branch_first.copy(), branch_first - 1
-    rows = np.flatnonzero(moves)
-    signed = np.where(sign > 0, 1.0, -1.0)[rows]
-    for falling in (False, True):
-        chosen = rows[(signed < 0) == falling]
-        ahead = -values if falling else values
-        from_first = _first_passing(
-            time, ahead, branch_first[chosen], width[chosen], reach[chosen], least[chosen]
-        )
-        from_last = _first_passing(
-            time, ahead, branch_last[chosen], -width[chosen], reach[chosen], least[chosen]
-        )
-        passed = from_first >= 0
-        first[chosen[passed]] = branch_first[chosen[passed]] + from_first[passed]
-        last[chosen[passed]] = branch_last[chosen[passed]] - from_last[passed]
+
+    def passes(samples: Indices, rows: Indices, direction: int) -> Bools:
+        other = samples + direction * width[rows, None]
+        rate = sign[rows, None] * _rate(time, values, samples, other)
+        return np.asarray(rate >= least[rows, None])
+
+    searched = np.where(plateau > 0, reach, -1)
+    head = _steps_until(branch_first, 1, searched, partial(passes, direction=1))
+    tail = _steps_until(branch_last, -1, searched, partial(passes, direction=-1))
+    first = branch_first + np.maximum(head, 0)
+    last = np.where(head >= 0, branch_last - tail, branch_first - 1)
     return first, last, plateau
+
+
+def _window(time: Floats, travel: Floats, n_steps: Indices, noise: float) -> Indices:
+    """Steps between the two samples of a rate."""
+    known = np.isfinite(travel) & (n_steps > 0)
+    step_travel = float(np.median(np.abs(travel[known]) / n_steps[known])) if known.any() else 0.0
+    step_time = float(np.median(np.diff(time[:_STEPS_READ])))
+    time_noise = estimate_noise(time)[0] if time.size >= _FEWEST else 0.0
+    share = 0.0
+    if step_travel > 0 and step_time > 0:
+        share = hypot(noise / step_travel, time_noise / step_time)
+    wanted = ceil(sqrt(2) * share / _RATE_NOISE - 1e-6)
+    return np.clip(np.minimum(wanted, n_steps // _WIDEST), 1, None)
+
+
+def _median(rates: Floats) -> Floats:
+    """Median of each row, what is missing left out; NaN where all is."""
+    missing = np.isnan(rates)
+    if not missing.any():
+        return np.asarray(np.median(rates, axis=1))
+    median = np.full(rates.shape[0], np.nan)
+    known = ~missing.all(axis=1)
+    median[known] = np.nanmedian(rates[known], axis=1)
+    return median
 
 
 def stroke_span(
@@ -201,14 +221,18 @@ def stroke_span(
     >>> stroke_span(values, np.array([0]), np.array([20]))
     (array([3]), array([17]))
     """
-    low = values[branch_first] + _STROKE_END * (values[branch_last] - values[branch_first])
-    high = values[branch_last] - _STROKE_END * (values[branch_last] - values[branch_first])
-    sign = np.sign(high - low)
-    first, last = branch_first.copy(), branch_first - 1
-    for i, (begin, end) in enumerate(zip(branch_first, branch_last, strict=True)):
-        inside = sign[i] * (values[begin : end + 1] - low[i]) >= 0
-        inside &= sign[i] * (high[i] - values[begin : end + 1]) >= 0
-        rows = np.flatnonzero(inside)
-        if rows.size:
-            first[i], last[i] = begin + rows[0], begin + rows[-1]
-    return first, last
+    stroke = values[branch_last] - values[branch_first]
+    low = values[branch_first] + _STROKE_END * stroke
+    high = values[branch_last] - _STROKE_END * stroke
+    sign = np.sign(stroke)
+
+    def passes(samples: Indices, rows: Indices) -> Bools:
+        level, up = values[samples], sign[rows, None]
+        is_in = (up * (level - low[rows, None]) >= 0) & (up * (high[rows, None] - level) >= 0)
+        return np.asarray(is_in)
+
+    reach = np.where(sign == 0, -1, branch_last - branch_first)
+    head = _steps_until(branch_first, 1, reach, passes)
+    tail = _steps_until(branch_last, -1, reach, passes)
+    first = branch_first + np.maximum(head, 0)
+    return first, np.where(head >= 0, branch_last - tail, branch_first - 1)

@@ -25,6 +25,7 @@ __all__ = ["Standstills", "find_standstills"]
 
 _FEWEST_SAMPLES = 4  # two equal samples may be the two sides of a peak
 _SLACK_SHARE = 0.02
+_AWAY = 4.0  # tolerances
 _STEPS_READ = 100_001
 
 
@@ -116,22 +117,19 @@ def _still_blocks(
         firsts, lasts = _still_runs(least[begin:end], greatest[begin:end], width, tolerance)
         if firsts.size == 0:
             continue
-        bounds = np.column_stack([firsts, np.minimum(lasts + 1, end - begin - 1)]).ravel()
-        low = np.minimum.reduceat(least[begin:end], bounds)[::2]
-        high = np.maximum.reduceat(greatest[begin:end], bounds)[::2]
-        low = np.minimum(low, least[begin + lasts])
-        high = np.maximum(high, greatest[begin + lasts])
+        firsts, lasts = begin + firsts, begin + lasts
+        low, high = _extremes_between(least, greatest, firsts, lasts)
         within = high - low <= tolerance
-        found.append(begin + np.column_stack([firsts, lasts])[within])
+        found.append(np.column_stack([firsts, lasts])[within])
         work += [
-            (begin + int(first), begin + int(last) + 1, 2 * width)
+            (int(first), int(last) + 1, 2 * width)
             for first, last in zip(firsts[~within], lasts[~within], strict=True)
         ]
     if not found:
         return np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp)
     both = np.concatenate(found)
     both = both[np.argsort(both[:, 0])]
-    return both[:, 0], both[:, 1]
+    return both[:, 0].copy(), both[:, 1].copy()
 
 
 def _reach(position: Floats, edge: Integers, centre: Floats, half: float, step: int) -> Integers:
@@ -142,6 +140,39 @@ def _reach(position: Floats, edge: Integers, centre: Floats, half: float, step: 
     value = position[np.clip(index, 0, position.size - 1)]
     near = inside & ~(np.abs(value - centre[:, None]) > half)  # a missing sample is no movement
     return np.where(near.all(axis=1), abs(step), np.argmin(near, axis=1))
+
+
+def _extremes_between(
+    least: Floats, greatest: Floats, first: Integers, last: Integers
+) -> tuple[Floats, Floats]:
+    """Least and greatest position of each run of blocks, both ends inside."""
+    bounds = np.column_stack([first, last + 1]).ravel()
+    # one more block, of no samples, so that a run may end with the record
+    low = np.minimum.reduceat(np.append(least, np.inf), bounds)[::2]
+    high = np.maximum.reduceat(np.append(greatest, -np.inf), bounds)[::2]
+    return low, high
+
+
+def _outlasts_its_approach(
+    least: Floats, greatest: Floats, first: Integers, last: Integers, tolerance: float
+) -> Bools:
+    """Whether the crosshead comes or goes faster than it stays.
+
+    The turn of a slow cycle stays within the tolerance for a while, too, but it takes as
+    long again to get away from there.
+    """
+    if first.size == 0 or greatest.max() - least.min() <= 2 * _AWAY * tolerance:
+        return np.ones(first.size, dtype=bool)  # there is nowhere to go
+    length = last - first + 1
+    low, high = _extremes_between(least, greatest, first, last)
+    middle = (low + high) / 2
+    low, high = _extremes_between(
+        least,
+        greatest,
+        np.maximum(first - length, 0),
+        np.minimum(last + length, least.size - 1),
+    )
+    return np.asarray(np.maximum(high - middle, middle - low) > _AWAY * tolerance)
 
 
 def _interval_means(values: Floats, first: Integers, last: Integers) -> Floats:
@@ -216,7 +247,9 @@ def find_standstills(
 
     *Duration.* At least ``minimum_duration`` and at least four samples, so that the two
     samples beside a peak of a slow log are no hold.  A movement too slow to leave the
-    tolerance within that time is told from a hold by wider windows.
+    tolerance within that time is told from a hold by wider windows, and the turn of a
+    slow cycle by its neighbourhood: from a standstill the crosshead gets four tolerances
+    away within as long as it stood, before it or after it.
 
     *Rests.* A standstill whose mean tension is at or below the slack tension for every
     specimen.  None: the greater of 2 % of the greatest tension of the record and half
@@ -257,6 +290,8 @@ def find_standstills(
     window = max((fewest - length + 1) // length, 1)
     least, greatest = _block_extremes(position, length)
     first_block, last_block = _still_blocks(least, greatest, window, tolerance)
+    stays = _outlasts_its_approach(least, greatest, first_block, last_block, tolerance)
+    first_block, last_block = first_block[stays], last_block[stays]
 
     first = first_block * length
     last = np.minimum((last_block + 1) * length, position.size) - 1
