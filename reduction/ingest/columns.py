@@ -7,6 +7,7 @@ and text use them one by one.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,12 +27,15 @@ __all__ = [
     "check_lengths",
     "check_unit",
     "find_column",
+    "stated_scale",
     "wanted_columns",
     "without_marks",
 ]
 
 _BRACKETS = {"(": ")", "[": "]", "{": "}", "<": ">"}
 _SHOWN = 40
+_LONGEST_UNIT = 30
+_POWER = re.compile(r"\*\*|\^")  # one at most: 9**9**9 would take for ever
 
 
 @dataclass(frozen=True)
@@ -121,6 +125,24 @@ def find_column(
     )
 
 
+def stated_scale(text: str, dimension: Dimension) -> tuple[float, float]:
+    """Factor and offset to SI of a unit that a file states, which may be any text at all.
+
+    Raises
+    ------
+    SettingsError
+        If it is no unit of that dimension.
+    """
+    try:
+        if len(text) <= _LONGEST_UNIT and len(_POWER.findall(text)) < 2:
+            return scale_to_si(text, dimension)
+    except (AssertionError, TokenError, ArithmeticError):  # pint's answers to "kN/" and "m/0"
+        pass
+    raise SettingsError(
+        f"unit '{text[:_LONGEST_UNIT]}' is not known", needed=f"a unit of {dimension}"
+    )
+
+
 def check_unit(path: Path, wanted: Wanted, found: str, *, row: int | None = None) -> None:
     """Compare the unit that a file states with the declared one; blank states nothing.
 
@@ -137,11 +159,9 @@ def check_unit(path: Path, wanted: Wanted, found: str, *, row: int | None = None
     if text in ("", "-", wanted.unit.strip()) or not wanted.is_compared:
         return
     try:
-        stated = scale_to_si(text, wanted.dimension)
+        stated = stated_scale(text, wanted.dimension)
     except SettingsError as error:
         problem = error.problem
-    except (AssertionError, TokenError):  # pint has no answer to "kN/" and the like
-        problem = f"unit '{text}' is not known"
     else:
         declared = scale_to_si(wanted.unit, wanted.dimension)
         if all(math.isclose(a, b, rel_tol=1e-9) for a, b in zip(stated, declared, strict=True)):

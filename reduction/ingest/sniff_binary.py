@@ -48,7 +48,7 @@ def table_sheets(path: Path) -> list[tuple[str, TableShape]]:
     found = []
     for place, name in enumerate(workbook.sheet_names):
         table = look_at_table(read_rows(path, workbook, place, _ROWS), ".")
-        if table is not None and len(table.rows) > 1:
+        if table is not None:
             found.append((name, table))
     return found
 

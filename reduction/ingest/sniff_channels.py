@@ -9,14 +9,15 @@ import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from tokenize import TokenError
+from functools import lru_cache
 
 import numpy as np
 
 from reduction.errors import SettingsError
+from reduction.ingest.columns import stated_scale
 from reduction.ingest.layout import CLOCK
 from reduction.record import Floats
-from reduction.units import DIMENSIONS, Dimension, scale_to_si
+from reduction.units import DIMENSIONS, Dimension
 
 __all__ = ["UNKNOWN", "Proposal", "SeenColumn", "is_unit", "propose_channels"]
 
@@ -88,14 +89,15 @@ class Proposal:
     remarks: tuple[str, ...]
 
 
+@lru_cache(maxsize=4096)
 def is_unit(text: str, dimension: Dimension | None = None) -> bool:
     """Whether a text is a unit, of one dimension or of any."""
-    if not text or len(text) > 20:
+    if not text:
         return False
     for wanted in (dimension,) if dimension is not None else DIMENSIONS:
         try:
-            scale_to_si(text, wanted)
-        except (SettingsError, AssertionError, TokenError):
+            stated_scale(text, wanted)
+        except SettingsError:
             continue
         return True
     return False

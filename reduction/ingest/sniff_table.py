@@ -57,9 +57,9 @@ def look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> TableShape | N
     usual = np.median([count for count, is_data in zip(counts, data, strict=True) if is_data])
     # a line of the preamble with a number in it has fewer numbers than a row of the table
     good = [is_data and 2 * count > usual for count, is_data in zip(counts, data, strict=True)]
-    run = min(_RUN, sum(good))
-    start = next((i for i in range(len(rows)) if all(good[i : i + run]) and good[i]), None)
-    if start is None or not all(good[start : start + run]):
+    run = max(2, min(_RUN, sum(good)))
+    start = next((i for i in range(len(rows)) if sum(good[i : i + run]) == run), None)
+    if start is None:
         return None
     above = [i for i in range(start) if any(rows[i])]
     name_row, unit_row = None, None

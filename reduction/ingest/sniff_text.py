@@ -65,9 +65,10 @@ def _decode(path: Path, head: bytes) -> tuple[str, str, str]:
 def _split(lines: Sequence[str], delimiter: str) -> list[list[str]]:
     if delimiter == " ":
         return [re.split(r"[ \t]+", line.strip()) for line in lines]
+    short = ("" if len(line) > csv.field_size_limit() else line for line in lines)
     return [
         [text.strip() for text in next(csv.reader([line], delimiter=delimiter), [])]
-        for line in lines
+        for line in short
     ]
 
 

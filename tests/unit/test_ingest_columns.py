@@ -94,6 +94,9 @@ def test_pounds_of_a_force_are_pound_force():
         ("daPs", "is not known"),
         ("kN/", "unit 'kN/' is not known"),
         ("kN (raw", "is not known"),
+        ("kN/0", "is not known"),
+        ("9**9**9**9", "is not known"),
+        ("x" * 99, "is not known"),
     ],
 )
 def test_another_unit_is_refused(stated, problem):

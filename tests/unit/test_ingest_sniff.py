@@ -341,6 +341,7 @@ def test_an_unknown_unit_is_a_question(tmp_path):
         (b"{ not json", "the file is not JSON"),
         (b'{"a": 1}', "no key holds a matrix"),
         (b"time_s,load_N\n", "no table of numbers"),
+        (b"1," * 99999 + b"\n1,2\n", "no table of numbers"),
     ],
 )
 def test_what_is_no_log_is_refused(tmp_path, content, problem):
