@@ -61,6 +61,8 @@ def to_record(
     DataError
         If the logs have two time bases, or a channel holds no number.
     """
+    if not logs:
+        raise SettingsError(f"test '{test_id}' has no file", needed="one or more logs")
     n_strain = [_check_channels(layout, test_id, len(specimens)) for _, layout in logs]
     position_is_length = _check_datum([layout for _, layout in logs], test_id, length_needed)
     pieces = [to_piece(log, layout, gap_factor=quality.gap_factor) for log, layout in logs]

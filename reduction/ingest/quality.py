@@ -164,25 +164,29 @@ def time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> Ti
         late = piece[1:] <= reached[1:-1]
         backward[part][1:] = late
         latest = reached[-1]
-        long = np.flatnonzero(step_here > gap_factor * step) + part.start
-        gap[1 + long[_stands_out(time, long, gap_factor)]] = True
-        usual = step_here[(step_here > 0) & ~gap[part][1:]]
+        ahead = piece[1:] - reached[1:-1]  # of all before it: a slip back makes no gap after it
+        long = np.flatnonzero(ahead > gap_factor * step)
+        stands_out = ahead[long] > gap_factor * _usual_time_step(time, long + part.start)
+        gap[1 + part.start + long[stands_out]] = True
+        usual = ahead[(ahead > 0) & ~gap[part][1:]]
         if usual.size:
             n_uneven += int(np.count_nonzero((usual < low) | (usual > high)))
             shortest, longest = min(shortest, usual.min()), max(longest, usual.max())
     return Timing(step, gap, backward, n_uneven, float(shortest), float(longest))
 
 
-def _stands_out(time: Floats, place: Integers, factor: float) -> Bools:
-    """Steps that are long beside the median of the steps around them."""
+def _usual_time_step(time: Floats, place: Integers) -> Floats:
+    """Median of the steps forward around each step; 0 where there are none."""
     around = np.concatenate([np.arange(-_NEIGHBOURS, 0), np.arange(1, _NEIGHBOURS + 1)])
-    # a step at the edge is compared with those on its one side
-    near = np.clip(place[:, np.newaxis] + around, 0, time.size - 2)
-    steps = np.where(near == place[:, np.newaxis], np.nan, time[near + 1] - time[near])
+    near = place[:, np.newaxis] + around
+    is_inside = (near >= 0) & (near < time.size - 1)
+    near = np.where(is_inside, near, 0)
+    steps = time[near + 1] - time[near]
+    steps = np.where(is_inside & (steps > 0), steps, np.nan)
+    usual = np.zeros(place.size)
     is_known = np.isfinite(steps).any(axis=1)
-    usual = np.full(place.size, -np.inf)
     usual[is_known] = np.nanmedian(steps[is_known], axis=1)
-    return time[place + 1] - time[place] > factor * usual
+    return usual
 
 
 def noise_of(values: Floats) -> tuple[float, float]:

@@ -1,0 +1,80 @@
+import pytest
+from pydantic import ValidationError
+
+from reduction.errors import SettingsError
+from reduction.ingest.layout import Layout
+
+
+def layout(*, channels=None, **settings):
+    return Layout(**{"format": "delimited", "channels": channels or {}} | settings)
+
+
+def tension(**channel):
+    return {"tension.1": {"column": "F", "unit": "N"} | channel}
+
+
+def test_nested_channels_of_a_toml_table_get_their_number():
+    one = layout(
+        channels={"tension": {"1": {"column": "a", "unit": "N"}, "2": {"column": "b", "unit": "N"}}}
+    )
+    assert list(one.channels) == ["tension.1", "tension.2"]
+
+
+def test_an_unknown_unit_is_refused():
+    with pytest.raises(ValidationError, match="unit 'furlong-stone' is not known"):
+        layout(channels=tension(unit="furlong-stone"))
+
+
+def test_a_unit_of_the_wrong_dimension_is_refused():
+    with pytest.raises(ValidationError, match="unit 'mm' is not a unit of force; .*such as N"):
+        layout(channels=tension(unit="mm"))
+    with pytest.raises(ValidationError, match="unit 'N' is not a unit of time"):
+        layout(channels=tension(time_column="t", time_unit="N"))
+    with pytest.raises(ValidationError, match="is not a unit of force"):
+        layout(channels=tension(zero="3 mm"))
+
+
+def test_a_clock_is_a_unit_of_time_alone():
+    assert (
+        layout(channels={"time": {"column": "t", "unit": "clock"}}).channels["time"].unit == "clock"
+    )
+    with pytest.raises(ValidationError, match="unit 'clock' is not known"):
+        layout(channels=tension(unit="clock"))
+
+
+def test_a_factor_is_above_zero():
+    with pytest.raises(ValidationError, match="greater than 0"):
+        layout(channels=tension(factor=0.0))
+
+
+def test_a_sample_interval_is_a_time_and_takes_the_place_of_a_time_channel():
+    assert layout(sample_interval="20 ms").sample_interval == "20 ms"
+    with pytest.raises(ValidationError, match="is not a unit of time"):
+        layout(sample_interval="20 mm")
+    with pytest.raises(ValidationError, match="both a time channel and a sample_interval"):
+        layout(channels={"time": {"column": "t", "unit": "s"}}, sample_interval="1 s")
+
+
+@pytest.mark.parametrize(
+    "marks",
+    [
+        {"delimiter": ",", "decimal": ","},
+        {"delimiter": ";", "decimal": ".", "thousands": "."},
+        {"delimiter": ";;"},
+        {"delimiter": ""},
+        {"delimiter": " ", "thousands": " "},
+    ],
+)
+def test_separators_that_cannot_be_told_apart_are_refused(marks):
+    with pytest.raises(ValidationError, match="the separators of a layout cannot be told apart"):
+        layout(**marks)
+
+
+def test_a_position_without_datum_is_refused():
+    with pytest.raises(ValidationError, match="the position channel has no datum"):
+        layout(channels={"crosshead_position": {"column": "x", "unit": "mm"}})
+
+
+def test_an_unknown_channel_lists_those_that_are_known():
+    with pytest.raises(SettingsError, match="channel 'load' is not known; .*tension"):
+        Layout.dimension("load")

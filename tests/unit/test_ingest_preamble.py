@@ -1,0 +1,100 @@
+import pytest
+
+from reduction.errors import LogError
+from reduction.ingest.columns import wanted_columns
+from reduction.ingest.layout import Layout
+from reduction.ingest.preamble import check_units, keep_line
+
+COMMENTED = Layout(format="delimited", comment="#", channels={})
+SEMICOLONS = Layout(format="delimited", delimiter=";", channels={})
+
+
+@pytest.mark.parametrize(
+    ("line", "one", "kept"),
+    [
+        ("Speed (mm/min);450;;;", SEMICOLONS, {"Speed (mm/min)": "450"}),
+        ("Standard;ASTM;D412", SEMICOLONS, {"Standard": "ASTM D412"}),
+        ("Projekt Name: PMD", SEMICOLONS, {"Projekt Name": "PMD"}),
+        ("Prüfer :;Kh", SEMICOLONS, {"Prüfer": "Kh"}),
+        ("free text", SEMICOLONS, {"row 7": "free text"}),
+        ("nothing:", SEMICOLONS, {"row 7": "nothing:"}),
+        (";;;;", SEMICOLONS, {}),
+        ("   ", SEMICOLONS, {}),
+        ("# loads [lbf]; 10 Hz", COMMENTED, {"row 7": "loads [lbf]; 10 Hz"}),
+        ("#", COMMENTED, {}),
+    ],
+)
+def test_a_line_is_kept_by_name_where_it_has_one_and_else_by_row(line, one, kept):
+    metadata = {}
+    keep_line(metadata, line, 7, one)
+    assert metadata == kept
+
+
+def test_a_name_that_comes_twice_keeps_both():
+    metadata = {}
+    keep_line(metadata, "a;1", 1, SEMICOLONS)
+    keep_line(metadata, "a;2", 2, SEMICOLONS)
+    assert metadata == {"a": "1", "a (row 2)": "2"}
+
+
+def check(tmp_path, column, unit, *, unit_row=None, stated="", **channel):
+    one = Layout(
+        format="delimited", channels={"tension.1": {"column": column, "unit": unit} | channel}
+    )
+    name = column if isinstance(column, str) else "Force (kN)"
+    check_units(
+        tmp_path / "log.csv",
+        [(wanted_columns(one)[0], 0)],
+        names=[name],
+        units=[stated] if unit_row else [],
+        unit_row=unit_row,
+    )
+
+
+@pytest.mark.parametrize(
+    ("column", "unit"),
+    [
+        ("Force (kN)", "kN"),
+        ("Load [lb]", "lbf"),
+        ("Total Force (Linear Waveform)", "N"),
+        ("Force (1)", "N"),
+        ("Force (mm)", "N"),
+        ("Force", "N"),
+        (1, "N"),
+    ],
+)
+def test_words_in_brackets_are_a_unit_only_where_they_are_one_of_the_channel(
+    tmp_path, column, unit
+):
+    check(tmp_path, column, unit)
+
+
+@pytest.mark.parametrize(("column", "unit"), [("Force (kN)", "N"), ("Load [lb]", "kgf")])
+def test_a_unit_in_a_name_has_to_agree(tmp_path, column, unit):
+    with pytest.raises(
+        LogError, match=r"the unit in the column's name is not the declared one.*by its number"
+    ):
+        check(tmp_path, column, unit)
+
+
+def test_volts_with_a_factor_are_not_compared(tmp_path):
+    check(tmp_path, "Force (V)", "N", unit_row=2, stated="V", factor=250.0)
+    with pytest.raises(LogError, match=r"log\.csv:2"):
+        check(tmp_path, "Force (V)", "N", unit_row=2, stated="V")
+
+
+def test_a_counter_may_have_any_word_for_its_unit(tmp_path):
+    one = Layout(format="delimited", channels={"cycle_counter": {"column": "n"}})
+    check_units(
+        tmp_path / "log.csv",
+        [(wanted_columns(one)[0], 0)],
+        names=["n"],
+        units=["cycles"],
+        unit_row=2,
+    )
+
+
+def test_a_unit_row_that_ends_early_says_nothing(tmp_path):
+    one = Layout(format="delimited", channels={"tension.1": {"column": "F", "unit": "N"}})
+    wanted = [(wanted_columns(one)[0], 3)]
+    check_units(tmp_path / "x", wanted, names=["", "", "", "F"], units=["s"], unit_row=2)
