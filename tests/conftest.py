@@ -38,6 +38,6 @@ def make_triangle(
     return strain, cycles
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def triangle():
     return make_triangle

@@ -21,14 +21,15 @@ from reduction.settings import ModulusSettings
 
 __all__ = ["find_segments"]
 
+_BAND = 2  # standard deviations of single cycles
 _LEAST_SCATTER = 1e-3  # of the branch's tension: finer than a load cell tells
 _FEWEST_BINS = 6  # two shortest segments
 
 
 def _choose(lines: tuple[PiecewiseLine, ...], n_points: int) -> PiecewiseLine:
-    """Fewest segments whose rms residual is within the scatter; else the most."""
+    """Fewest segments whose rms residual is within the band of single cycles; else the most."""
     for line in lines:
-        if line.chi_square <= n_points:
+        if line.chi_square <= _BAND**2 * n_points:
             return line
     return lines[-1]
 
@@ -63,10 +64,10 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     E is the chord of each; how [1]_ chose their limits it does not say.
 
     The line is the best continuous one (`fit_piecewise_lines`). *Number of segments:*
-    the fewest whose root-mean-square distance from the mean branch is within the
-    scatter of single cycles about it (at least 0.1 % of the branch's range of tension),
-    so that one cycle could not refute them. A smooth curve has no true breakpoints:
-    they say where straight lines stand in for it best.
+    the fewest whose root-mean-square distance from the mean branch is within twice the
+    scatter of single cycles about it (scatter at least 0.1 % of the branch's range of
+    tension): a line in the band that holds 95 % of the cycles. A smooth curve has no
+    true breakpoints: they say where straight lines stand in for it best.
 
     The uncertainty is type A: that of the tangent modulus, root mean square over the
     segment, over the root of the windows that fit in it. It is that of the mean modulus
@@ -113,7 +114,7 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
         segment_tension_low=table[4],
         segment_tension_high=table[5],
         criterion="fewest contiguous segments, best breakpoints, whose rms distance from the "
-        "mean branch is within the scatter of single cycles (at least "
+        f"mean branch is within {_BAND} times the scatter of single cycles (scatter at least "
         f"{_LEAST_SCATTER:g} of the tension range), at most {settings.maximum_segments}",
     )
 

@@ -1,0 +1,56 @@
+"""Amplitude summary: means over the cycles after break-in, with type A uncertainty."""
+
+import numpy as np
+import pytest
+
+from reduction.cycles.product import Loops
+from reduction.errors import DataError
+from reduction.moduli.amplitude import summarise_amplitude
+
+AREA = np.array([5e-4, 4e-4])
+
+
+def loops_of(values, uncertainty=None):
+    fields = {name: values.copy() for name in Loops.__dataclass_fields__ if name != "uncertainty"}
+    return Loops(**fields, uncertainty=uncertainty or {})
+
+
+def test_mean_and_uncertainty_are_those_of_the_cycles_after_break_in():
+    rng = np.random.default_rng(15)
+    values = 100 + rng.standard_normal((2, 9))
+    values[1, 4] = np.nan
+    summary = summarise_amplitude(loops_of(values), area=AREA, break_in_cycles=2)
+    for row in range(2):
+        kept = values[row, 2:][np.isfinite(values[row, 2:])]
+        assert summary.loss_factor[row] == pytest.approx(kept.mean())
+        assert summary.uncertainty["loss_factor"][row] == pytest.approx(
+            kept.std(ddof=1) / np.sqrt(kept.size)
+        )
+        assert summary.dynamic_modulus[row] == pytest.approx(kept.mean() / AREA[row])
+        assert summary.uncertainty["dynamic_modulus"][row] == pytest.approx(
+            summary.uncertainty["loss_factor"][row] / AREA[row]
+        )
+
+
+def test_one_cycle_keeps_its_own_uncertainty():
+    one = np.full((2, 1), 7.0)
+    summary = summarise_amplitude(loops_of(one, {"frequency": one / 10}), area=AREA)
+    assert summary.uncertainty["frequency"] == pytest.approx([0.7, 0.7])
+    assert np.isnan(summary.uncertainty["loss_factor"]).all()
+
+
+def test_specimen_without_cycles_is_nan():
+    values = np.array([[1.0, 2.0], [np.nan, np.nan]])
+    summary = summarise_amplitude(loops_of(values), area=AREA)
+    assert summary.frequency[0] == 1.5
+    assert np.isnan(summary.frequency[1])
+
+
+def test_areas_that_do_not_pair_up_are_refused():
+    with pytest.raises(DataError, match="areas do not pair up with the loops"):
+        summarise_amplitude(loops_of(np.ones((2, 3))), area=[5e-4])
+
+
+def test_break_in_of_every_cycle_is_refused():
+    with pytest.raises(DataError, match="no cycle is left after break-in; found 3 cycles"):
+        summarise_amplitude(loops_of(np.ones((2, 3))), area=AREA, break_in_cycles=3)
