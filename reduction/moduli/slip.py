@@ -21,7 +21,8 @@ from reduction.checks import as_same_shape
 from reduction.cycles.product import Loops
 from reduction.errors import DataError
 from reduction.moduli.product import Slips
-from reduction.moduli.steps import Step, find_steps, ramp_of, step_sizes
+from reduction.moduli.steps import Step, find_steps, step_sizes
+from reduction.moduli.stepscan import ramp_of
 from reduction.record import Floats, Integers
 from reduction.settings import SlipSettings
 
@@ -39,10 +40,15 @@ def _reference_branch(position: Floats, tension: Floats) -> tuple[Floats, Floats
     low, high = np.quantile(position, [0.02, 0.98])
     index = np.clip(((position - low) / (high - low) * N_BINS).astype(np.intp), 0, N_BINS - 1)
     count = np.bincount(index, minlength=N_BINS)
-    filled = count > 0
-    count = count[filled]
-    mean_position = np.bincount(index, position, N_BINS)[filled] / count
-    mean_tension = np.bincount(index, tension, N_BINS)[filled] / count
+    filled = np.flatnonzero(count)
+    sums = np.stack(
+        [count, np.bincount(index, position, N_BINS), np.bincount(index, tension, N_BINS)]
+    )[:, filled]
+    # Cycles in step with the clock repeat a few positions; one that lies on an edge would
+    # fall into both bins beside it, and the slope between those is noise.
+    apart = np.diff(sums[1] / sums[0], prepend=-np.inf) > (high - low) / N_BINS / 4
+    count, position, tension = np.add.reduceat(sums, np.flatnonzero(apart), axis=1)
+    mean_position, mean_tension = position / count, tension / count
     return mean_position, mean_tension, np.gradient(mean_tension, mean_position)
 
 

@@ -16,27 +16,31 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.signal import oaconvolve
 from scipy.stats import chi2, norm
 
 from reduction.checks import as_finite
 from reduction.errors import DataError
 from reduction.moduli.noise import sample_noise
-from reduction.record import Bools, Floats
-
-__all__ = ["Step", "find_steps", "ramp_of", "step_sizes"]
-
-SHORTEST_WINDOW = 8
-LONGEST_WINDOW = 128
-FIRST_SAMPLE = (
-    10  # the softening of the first ten cycles has no common form: no step is dated there
+from reduction.moduli.stepscan import (
+    SHORTEST_WINDOW,
+    Candidate,
+    neighbour_noise,
+    noise_memory,
+    ramp_of,
+    strongest_response,
+    without_background,
+    without_outliers,
+    without_parabola,
 )
+from reduction.record import Floats
+
+__all__ = ["Step", "find_steps", "step_sizes"]
+
 MOST_STEPS = 30
-MAD_TO_SIGMA = 1.4826
 
 
 @dataclass(frozen=True)
@@ -76,144 +80,13 @@ class Step:
         return self.onset + self.extent - 1
 
 
-@dataclass(frozen=True)
-class _Candidate:
-    score: float
-    onset: int
-    window: int
-    extent: int
-
-
-def ramp_of(n_samples: int, *, onset: ArrayLike, extent: ArrayLike) -> Floats:
-    """Unit step that develops linearly: 0 before the onset, 1 from the end of the extent.
-
-    Parameters
-    ----------
-    n_samples : int
-        Length of the series. [1]
-    onset : array_like of int, shape (...)
-        First sample that has changed. [1]
-    extent : array_like of int, shape (...)
-        Samples over which it develops. [1]
-
-    Returns
-    -------
-    ramp : ndarray, shape (..., n_samples)
-        Share of the step that has happened. [1]
-
-    Raises
-    ------
-    DataError
-        If an extent is not positive.
-
-    Notes
-    -----
-    A step of extent 1 is complete at its onset.
-
-    Examples
-    --------
-    >>> ramp_of(6, onset=2, extent=2)
-    array([0. , 0. , 0.5, 1. , 1. , 1. ])
-    """
-    width = np.asarray(extent, dtype=np.float64)[..., None]
-    if np.any(width <= 0):
-        raise DataError("a step has no extent", found=f"{width.min():g}", needed="1 or more")
-    start = np.asarray(onset, dtype=np.float64)[..., None]
-    return np.clip((np.arange(n_samples) - start + 1) / width, 0.0, 1.0)
-
-
-def _parabola(n_samples: int) -> Floats:
-    """Orthonormal columns that span every parabola over the samples."""
-    x = np.linspace(-1.0, 1.0, n_samples)
-    return np.linalg.qr(np.stack([np.ones_like(x), x, x * x], axis=1))[0]
-
-
-def _without_parabola(rows: Floats) -> Floats:
-    base = _parabola(rows.shape[-1])
-    return rows - (rows @ base) @ base.T
-
-
-def _without_background(values: Floats) -> Floats:
-    """Subtract what creep and softening look like over the whole series.
-
-    Only a smooth function of log-like form is taken out, so a step remains a step.
-    """
-    n_samples = values.size
-    count = np.arange(1.0, n_samples + 1)
-    times = 2.0 ** np.arange(0, max(1, int(np.log2(n_samples / 8)) + 1))
-    columns = [np.ones(n_samples), count / n_samples, np.log(count)]
-    columns += [np.exp(-(count - 1) / time) for time in times]
-    basis = np.stack(columns, axis=1)
-    residual: Floats = values - basis @ np.linalg.lstsq(basis, values)[0]
-    return residual
-
-
-def _noise(values: Floats) -> float:
-    """Standard deviation of the noise, from neighbours; steps and wild samples left out."""
-    squares = np.sort(np.diff(values) ** 2)
-    kept = squares[: max(1, int(np.ceil(0.98 * squares.size)))]
-    # Dropping the largest 2 % of Gaussian differences takes 13 % of their mean square.
-    return float(np.sqrt(kept.mean() / 2 / 0.87))
-
-
-def _without_outliers(values: Floats) -> Floats:
-    """Replace single wild samples by the running median of five, which keeps every edge."""
-    padded = np.pad(values, 2, mode="edge")
-    median = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=-1)
-    distance = np.abs(values - median)
-    # The median alone would take a rounded series for free of noise.
-    spread = max(MAD_TO_SIGMA * float(np.median(distance)), _noise(values))
-    return np.where(distance > 6 * spread, median, values)
-
-
-def _windows(n_samples: int) -> list[tuple[int, int]]:
-    """Pairs of window and extent that are scanned, powers of two."""
-    longest = min(LONGEST_WINDOW, max(SHORTEST_WINDOW, n_samples // 8))
-    sizes = SHORTEST_WINDOW * 2 ** np.arange(int(np.log2(longest / SHORTEST_WINDOW)) + 1)
-    return [
-        (int(size), 2**power)
-        for size in sizes
-        for power in range(int(np.log2(size)) + 1)
-        if 2 * size + 2**power <= n_samples
-    ]
-
-
-def _kernel(window: int, extent: int) -> Floats:
-    """Weights that give the size of a step in the middle of a window, blind to a parabola."""
-    ramp = _without_parabola(ramp_of(2 * window + extent, onset=window, extent=extent))
-    kernel: Floats = ramp / np.sum(ramp * ramp)
-    return kernel
-
-
-def _scan(values: Floats, sigma: float, allowed: Bools) -> tuple[_Candidate | None, int]:
-    """Strongest response over every window, extent and onset, and how many were tried."""
-    best: _Candidate | None = None
-    tried = 0
-    for window, extent in _windows(values.size):
-        kernel = _kernel(window, extent)
-        size = oaconvolve(values, kernel[::-1], mode="valid")
-        onset = np.arange(size.size) + window
-        keep = (onset >= max(2 * window, window + FIRST_SAMPLE)) & allowed[onset]
-        if not keep.any():
-            continue
-        size, onset = size[keep], onset[keep]
-        # Coloured noise shows in the response itself; white noise is known better than that.
-        spread = MAD_TO_SIGMA * float(np.median(np.abs(size)))
-        score = size / max(spread, sigma * float(np.linalg.norm(kernel)))
-        tried += size.size
-        top = int(np.argmax(np.abs(score)))
-        if best is None or abs(score[top]) > abs(best.score):
-            best = _Candidate(float(score[top]), int(onset[top]), window, extent)
-    return best, tried
-
-
-def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[Step, bool]:
+def _refine(values: Floats, candidate: Candidate, sigma: float) -> tuple[Step, bool]:
     """Onset and extent by least squares around a candidate; False where a kink does as well."""
     reach = 2 * max(candidate.window, candidate.extent)
     first = max(0, candidate.onset - reach, candidate.onset // 2)
     last = min(values.size, candidate.onset + candidate.extent + reach)
     n_local = last - first
-    local = _without_parabola(values[first:last])
+    local = without_parabola(values[first:last])
     widest = max(4, min(2 * candidate.window, n_local // 3))
     onsets = np.arange(
         max(2, candidate.onset - first - candidate.window),
@@ -223,15 +96,15 @@ def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[Step, 
     onset, extent = (grid.ravel() for grid in np.meshgrid(onsets, extents, indexing="ij"))
     inside = onset + extent <= n_local - 2
     onset, extent = onset[inside], extent[inside]
-    ramps = _without_parabola(ramp_of(n_local, onset=onset, extent=extent))
+    ramps = without_parabola(ramp_of(n_local, onset=onset, extent=extent))
     power = np.sum(ramps * ramps, axis=1)
     product = ramps @ local
-    gain = product**2 / power
+    gain, sizes = product**2 / power, product / power
     best = int(np.argmax(gain))
     variance = max(sigma**2, (float(local @ local) - float(gain[best])) / max(1, n_local - 6))
     near = gain >= gain[best] - variance * float(chi2.isf(0.05, 2))
 
-    kinks = _without_parabola(np.maximum(0.0, np.arange(n_local) - onsets[:, None]))
+    kinks = without_parabola(np.maximum(0.0, np.arange(n_local) - onsets[:, None]))
     kink_gain = float(np.max((kinks @ local) ** 2 / np.sum(kinks * kinks, axis=1)))
     is_step = float(gain[best]) - kink_gain > variance * 10 and extent[best] < widest
     step = Step(
@@ -240,8 +113,11 @@ def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[Step, 
         onset_low=int(onset[near].min()) + first,
         onset_high=int(onset[near].max()) + first,
         end_high=int((onset + extent - 1)[near].max()) + first,
-        size=float(product[best] / power[best]),
-        size_standard_uncertainty=float(np.sqrt(variance / power[best])),
+        size=float(sizes[best]),
+        # Other shapes fit nearly as well; their sizes differ.
+        size_standard_uncertainty=float(
+            np.hypot(np.sqrt(variance / power[best]), np.std(sizes[near]))
+        ),
         score=candidate.score,
     )
     return step, bool(is_step)
@@ -277,9 +153,7 @@ def _joined(steps: list[Step]) -> tuple[Step, ...]:
             onset_high=larger.onset_high,
             end_high=max(last.end_high, step.end_high),
             size=last.size + step.size,
-            size_standard_uncertainty=float(
-                np.hypot(last.size_standard_uncertainty, step.size_standard_uncertainty)
-            ),
+            size_standard_uncertainty=last.size_standard_uncertainty,
             score=larger.score,
         )
     return tuple(joined)
@@ -290,7 +164,7 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
 
     The likelihood ratio of a step of extent w against none, in a window of h samples
     on each side and with a free parabola in both, is scanned over every onset, for h
-    of 8 to 128 samples (at most an eighth of the series) and w of 1 to h, powers of
+    of 8 to 128 samples (at most a quarter of the series) and w of 1 to h, powers of
     two.  The strongest response is dated, taken out, and the scan repeated.
 
     Parameters
@@ -316,17 +190,18 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
     Notes
     -----
     Generalized likelihood ratio ([1]_), strongest first in local windows ([2]_).
-    Noise that is not white is seen in the spread of the responses themselves, which
-    raises the threshold; strongly coloured noise (a random walk) can still pass for
-    steps.  No step is looked for in the first ten samples, nor where the window would
-    begin before half the sample number: there softening is as fast as a step.  A change
-    that takes longer than twice the window, or that a change of slope explains as
-    well, is drift.  An opposite change of less than half the size just after a step is
-    its recovery, not a step.  Where the digitizer's step is coarser than the noise, a
-    drift moves in jumps of it, and nothing below one and a half of them is a step.
+    Noise that is not white is seen in the spread of the responses and in the correlation
+    of neighbours, and raises the threshold.  No step is looked for in the first ten
+    samples, nor where the window would begin before half the sample number: there
+    softening is as fast as a step.  A change that takes longer than twice the window, or
+    that a change of slope explains as well, is drift.  An opposite change of less than
+    half the size just after a step is its recovery, not a step.  Where the digitizer's
+    step is coarser than the noise, a drift moves in jumps of it, and nothing below one
+    and a half of them is a step.
 
     Examples
     --------
+    >>> from reduction.moduli.stepscan import ramp_of
     >>> rng = np.random.default_rng(1)
     >>> series = np.log(np.arange(1, 401)) + 0.05 * rng.standard_normal(400)
     >>> series -= 0.3 * ramp_of(400, onset=250, extent=10)
@@ -344,8 +219,8 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
             found=f"{series.size} samples",
             needed=f"{3 * SHORTEST_WINDOW}",
         )
-    remaining = _without_outliers(series)
-    sigma = max(_noise(remaining), 1e-9 * float(np.ptp(remaining)))
+    remaining = without_outliers(series)
+    sigma = max(neighbour_noise(remaining), 1e-9 * float(np.ptp(remaining)))
     if sigma == 0:
         return ()
     _, quantum = sample_noise(series)
@@ -354,24 +229,35 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
     steps: list[Step] = []
     explained = 0
     while len(steps) + explained < MOST_STEPS:
-        candidate, tried = _scan(_without_background(remaining), sigma, allowed)
-        if candidate is None or abs(candidate.score) < norm.isf(false_alarm / (2 * tried)):
+        candidate, tried = strongest_response(
+            without_background(remaining), noise=sigma, allowed=allowed
+        )
+        threshold = float(norm.isf(false_alarm / (2 * max(1, tried))))
+        if candidate is None or abs(candidate.score) < threshold:
             break
-        step, is_step = _refine(remaining, candidate, sigma)
+        guess = ramp_of(series.size, onset=[candidate.onset], extent=[candidate.extent])
+        step, is_step = _refine(without_background(remaining, guess), candidate, sigma)
+        without = remaining - step.size * ramp_of(series.size, onset=step.onset, extent=step.extent)
+        memory = noise_memory(without_background(without))
+        if abs(candidate.score) * min(1.0, candidate.inflation / memory) < threshold:
+            is_step = False
         if not is_step:
             blocked = (candidate.onset - candidate.window, candidate.onset + candidate.window)
         else:
             # What is left close to a step is its shape, not another one.
             blocked = (step.onset - step.extent - 2, step.onset + 2 * step.extent + 2)
-            remaining = remaining - step.size * ramp_of(
-                series.size, onset=step.onset, extent=step.extent
-            )
+            remaining = without
             if abs(step.size) < smallest or _is_recovery(step, steps, 2 * candidate.window):
                 explained += 1
             else:
                 steps.append(step)
         allowed[max(0, blocked[0]) : blocked[1] + 1] = False
-    return _joined(steps)
+    joined = _joined(steps)
+    sizes = zip(joined, *step_sizes(without_outliers(series), joined), strict=True)
+    return tuple(
+        replace(step, size=float(size), size_standard_uncertainty=float(uncertainty))
+        for step, size, uncertainty in sizes
+    )
 
 
 def step_sizes(values: ArrayLike, steps: tuple[Step, ...]) -> tuple[Floats, Floats]:
@@ -389,9 +275,11 @@ def step_sizes(values: ArrayLike, steps: tuple[Step, ...]) -> tuple[Floats, Floa
     -------
     size : ndarray, shape (n_steps,)
         Least squares with a parabola and every step nearby, over 64 samples (or twice
-        the extent) on each side. [unit of the series]
+        the extent) on each side, the background of the whole series taken out first.
+        [unit of the series]
     size_standard_uncertainty : ndarray, shape (n_steps,)
-        From the residuals. [unit of the series]
+        From the residuals, and from the share by which the shape of the step is uncertain.
+        [unit of the series]
 
     Raises
     ------
@@ -400,13 +288,22 @@ def step_sizes(values: ArrayLike, steps: tuple[Step, ...]) -> tuple[Floats, Floa
 
     Examples
     --------
-    >>> step = Step(50, 1, 50, 50, 50, 0.0, 0.0, 0.0)
+    >>> step = Step(50, 1, 50, 50, 50, 1.0, 0.0, 0.0)
     >>> size, _ = step_sizes(3.0 * (np.arange(100) >= 50), (step,))
     >>> print(size.round(6))
     [3.]
     """
     series = as_finite("values", values)
     sizes = np.full((2, len(steps)), np.nan)
+    if steps:
+        series = without_background(
+            series,
+            ramp_of(
+                series.size,
+                onset=[step.onset for step in steps],
+                extent=[step.extent for step in steps],
+            ),
+        )
     for index, step in enumerate(steps):
         reach = max(64, 2 * step.extent)
         first, last = max(0, step.onset - reach), min(series.size, step.onset + step.extent + reach)
@@ -415,11 +312,12 @@ def step_sizes(values: ArrayLike, steps: tuple[Step, ...]) -> tuple[Floats, Floa
             for other in (step, *(other for other in steps if other is not step))
         ]
         columns = np.stack([row for row in ramps if np.ptp(row) > 0])
-        basis = _without_parabola(columns)
-        local = _without_parabola(series[first:last])
+        basis = without_parabola(columns)
+        local = without_parabola(series[first:last])
         gram = np.linalg.pinv(basis @ basis.T)
         found = gram @ (basis @ local)
         residual = local - found @ basis
         variance = float(residual @ residual) / max(1, local.size - 3 - found.size)
-        sizes[:, index] = found[0], np.sqrt(variance * gram[0, 0])
+        share = step.size_standard_uncertainty / abs(step.size)
+        sizes[:, index] = found[0], np.hypot(np.sqrt(variance * gram[0, 0]), share * found[0])
     return sizes[0], sizes[1]

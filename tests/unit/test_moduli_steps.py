@@ -1,0 +1,155 @@
+"""Steps are found, dated, and not invented."""
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from reduction.errors import DataError
+from reduction.moduli.steps import Step, find_steps, step_sizes
+from reduction.moduli.stepscan import ramp_of
+
+NOISE = 0.3
+
+
+def background(rng, n_samples):
+    """Creep, drift and softening of random size."""
+    count = np.arange(1.0, n_samples + 1)
+    return (
+        rng.uniform(-3, 3) * np.log(count)
+        - rng.uniform(0, 10) * np.exp(-(count - 1) / rng.uniform(2, 40))
+        + rng.uniform(-0.002, 0.002) * count
+    )
+
+
+def white(rng, n_samples):
+    return rng.standard_normal(n_samples)
+
+
+def heavy_tailed(rng, n_samples):
+    return rng.standard_t(4, n_samples)
+
+
+def correlated(rng, n_samples):
+    return lfilter([1], [1, -0.5], rng.standard_normal(n_samples))
+
+
+@pytest.mark.parametrize("noise", [white, heavy_tailed, correlated])
+def test_a_series_without_steps_shows_none_more_often_than_stated(noise):
+    rng = np.random.default_rng(11)
+    alarms = sum(
+        bool(find_steps(background(rng, 120) + NOISE * noise(rng, 120), false_alarm=0.01))
+        for _ in range(300)
+    )
+    # 300 series at 1 % give 3 on average; 9 or more have a chance below 0.4 %.
+    assert alarms < 9
+
+
+@pytest.mark.parametrize("quantum", [0.5, 1.0, 3.0])
+def test_a_rounded_drift_is_not_a_row_of_steps(quantum):
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        series = background(rng, 400) + NOISE * white(rng, 400)
+        assert find_steps(np.round(series / quantum) * quantum, false_alarm=1e-3) == ()
+
+
+@pytest.mark.parametrize("decay", [2.0, 6.0, 20.0, 60.0])
+def test_softening_of_the_first_cycles_is_not_a_step(decay):
+    rng = np.random.default_rng(4)
+    count = np.arange(800.0)
+    series = 40 * np.exp(-count / decay) - 25 * np.exp(-count / 1.5) - 2 * np.log1p(count)
+    assert find_steps(series + 0.1 * white(rng, 800), false_alarm=1e-3) == ()
+
+
+@pytest.mark.parametrize("power", [-0.3, 0.3, 0.5])
+def test_creep_by_a_power_law_is_not_a_step(power):
+    rng = np.random.default_rng(5)
+    series = 20 * np.arange(1.0, 1201.0) ** power
+    assert find_steps(series + 0.1 * white(rng, 1200), false_alarm=1e-3) == ()
+
+
+def test_a_change_of_slope_is_not_a_step():
+    rng = np.random.default_rng(6)
+    count = np.arange(1000.0)
+    series = -0.02 * np.maximum(0, count - 500)
+    assert find_steps(series + 0.05 * white(rng, 1000), false_alarm=1e-3) == ()
+
+
+@pytest.mark.parametrize("extent", [1, 5, 20])
+@pytest.mark.parametrize("size", [-1.5, 1.5])
+def test_a_step_is_dated_and_sized(extent, size):
+    rng = np.random.default_rng(7)
+    for onset in (100, 333, 500):
+        series = background(rng, 600) + size * ramp_of(600, onset=onset, extent=extent)
+        steps = find_steps(series + NOISE * white(rng, 600), false_alarm=1e-3)
+        assert len(steps) == 1
+        assert abs(steps[0].onset - onset) <= max(3, extent // 2)
+        assert abs(steps[0].size - size) < 5 * steps[0].size_standard_uncertainty
+        assert steps[0].onset_low <= steps[0].onset <= steps[0].onset_high
+        assert steps[0].end <= steps[0].end_high
+
+
+def test_several_steps_come_in_order():
+    rng = np.random.default_rng(8)
+    onsets = [120, 260, 700]
+    series = background(rng, 1000) + NOISE * white(rng, 1000)
+    for onset in onsets:
+        series = series - 2 * ramp_of(1000, onset=onset, extent=4)
+    found = [step.onset for step in find_steps(series, false_alarm=1e-3)]
+    np.testing.assert_allclose(found, onsets, atol=4)
+
+
+def test_the_recovery_after_a_step_is_not_a_step():
+    rng = np.random.default_rng(9)
+    count = np.arange(600.0)
+    lag = np.clip(count - 300, 0, None)
+    series = -3 * (count >= 300) + 1.2 * (1 - np.exp(-lag / 12)) * (count >= 300)
+    steps = find_steps(series + 0.1 * white(rng, 600), false_alarm=1e-3)
+    assert [step.size < 0 for step in steps] == [True]
+
+
+def test_a_single_wild_sample_is_not_a_step():
+    rng = np.random.default_rng(10)
+    series = NOISE * white(rng, 300)
+    series[150] += 40
+    assert find_steps(series, false_alarm=1e-3) == ()
+
+
+def test_an_uneven_step_is_one_step():
+    rng = np.random.default_rng(12)
+    series = -2 * ramp_of(500, onset=200, extent=6) - 1.5 * ramp_of(500, onset=206, extent=20)
+    steps = find_steps(series + 0.05 * white(rng, 500), false_alarm=1e-3)
+    assert len(steps) == 1
+    assert steps[0].onset == pytest.approx(200, abs=6)
+    assert steps[0].size == pytest.approx(-3.5, abs=0.2)
+
+
+def test_a_constant_series_has_no_step():
+    assert find_steps(np.ones(100), false_alarm=1e-3) == ()
+
+
+def test_the_size_of_a_step_in_another_series_is_free_of_its_neighbours():
+    steps = tuple(Step(onset, 1, onset, onset, onset, 1.0, 0.0, 0.0) for onset in (100, 130))
+    series = -2.0 * ramp_of(300, onset=100, extent=1) - 5.0 * ramp_of(300, onset=130, extent=1)
+    size, uncertainty = step_sizes(series + 0.01 * np.arange(300), steps)
+    np.testing.assert_allclose(size, [-2, -5], atol=1e-9)
+    np.testing.assert_allclose(uncertainty, 0, atol=1e-9)
+
+
+def test_a_series_too_short_is_refused():
+    with pytest.raises(DataError, match="too short for steps; found 10 samples; needed 24"):
+        find_steps(np.zeros(10), false_alarm=1e-3)
+
+
+def test_a_rate_that_is_no_chance_is_refused():
+    with pytest.raises(DataError, match="false-alarm rate is not a chance; found 2"):
+        find_steps(np.zeros(100), false_alarm=2.0)
+
+
+def test_a_missing_value_is_refused():
+    with pytest.raises(DataError, match="1 of 100 values of values are not finite"):
+        find_steps(np.where(np.arange(100) == 5, np.nan, 0.0), false_alarm=1e-3)
+
+
+def test_a_step_without_extent_is_refused():
+    with pytest.raises(DataError, match="a step has no extent; found 0"):
+        ramp_of(10, onset=3, extent=0)
