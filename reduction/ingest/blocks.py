@@ -87,7 +87,8 @@ def read_blocks(path: Path, layout: Layout, *, name: str) -> RawLog:
         )
     kept = np.frombuffer(data, np.uint8)[np.repeat(used, lines.stops - starts)].tobytes()
     line_row = np.flatnonzero(used) + 1
-    rows = TextRows(path, memoryview(kept.rstrip(b"\r\n")), int(line_row[0]), line_row)
+    body = memoryview(kept.rstrip(b"\r\n"))
+    rows = TextRows(path, body, int(line_row[0]), line_row, layout.quote)
     columns, text, _ = read_fields(rows, layout, wanted, len(names))
 
     metadata: dict[str, str] = {}

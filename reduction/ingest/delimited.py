@@ -19,6 +19,9 @@ from reduction.ingest.source import decode, read_bytes, source_of
 
 __all__ = ["read_delimited"]
 
+_PIECE = 1 << 17  # stays in the cache
+_LINE_ENDS = (b"\n", b"\r", b"\x1a")  # the last one is what DOS ends a file with
+
 
 @dataclass
 class _Head:
@@ -88,12 +91,19 @@ def read_delimited(path: Path, layout: Layout, *, name: str) -> RawLog:
 
 def _tidy(data: bytes, layout: Layout) -> bytes:
     """One kind of line end, and one blank between fields where blanks part them."""
-    if b"\n" not in data:
-        data = data.replace(b"\r", b"\n")
+    if b"\r" in data and _has_lone_return(data):
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     if layout.delimiter == " ":
         data = re.sub(rb"[ \t]+", b" ", data)
         data = re.sub(rb"(?m)^ | (?=\r?$)", b"", data)
     return data
+
+
+def _has_lone_return(data: bytes) -> bool:
+    """Whether a carriage return stands without a line feed after it."""
+    codes = np.frombuffer(data + b"\0", np.uint8)
+    pieces = (codes[start : start + _PIECE + 1] for start in range(0, len(data), _PIECE))
+    return any(np.any((piece[:-1] == ord("\r")) & (piece[1:] != ord("\n"))) for piece in pieces)
 
 
 def _read_head(path: Path, data: bytes, layout: Layout) -> _Head:
@@ -143,12 +153,12 @@ def _count_fields(path: Path, head: _Head, layout: Layout) -> int:
 
 def _data_rows(path: Path, data: bytes, head: _Head, layout: Layout) -> TextRows:
     end = len(data)
-    while data[end - 1 : end] in (b"\n", b"\r"):
+    while data[end - 1 : end] in _LINE_ENDS:
         end -= 1
     text = memoryview(data)[head.start : end]
     comment = layout.comment.encode()
     if not comment or data.find(comment, head.start) < 0:
-        return TextRows(path, text, head.first_row)
+        return TextRows(path, text, head.first_row, quote=layout.quote)
     starts = line_starts(text)
     lengths = np.diff(starts, append=len(text))
     is_comment = np.zeros(starts.size, dtype=bool)
@@ -160,4 +170,5 @@ def _data_rows(path: Path, data: bytes, head: _Head, layout: Layout) -> TextRows
         )
     kept = np.frombuffer(text, np.uint8)[np.repeat(~is_comment, lengths)]
     line_row = np.flatnonzero(~is_comment) + head.first_row
-    return TextRows(path, memoryview(kept.tobytes().rstrip(b"\r\n")), head.first_row, line_row)
+    body = memoryview(kept.tobytes().rstrip(b"\r\n"))
+    return TextRows(path, body, head.first_row, line_row, layout.quote)

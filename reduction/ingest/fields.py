@@ -10,7 +10,7 @@ import csv
 import re
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -45,12 +45,15 @@ class TextRows:
         Editor's row of the first line.
     line_row : ndarray of int, shape (n_lines,), optional
         Editor's row of each line where they are not consecutive.
+    quote : str
+        Quote character, or empty text.
     """
 
     path: Path
     text: memoryview
     first_row: int
     line_row: Integers | None = None
+    quote: str = '"'
 
     def row_of_line(self, line: int) -> int:
         """Editor's row of a line counted from 0."""
@@ -62,7 +65,7 @@ class TextRows:
         Raises
         ------
         LogError
-            If lines and rows do not match: a quoted field goes over a line end.
+            If a quoted field goes over the end of its line.
         """
         n_lines = count_lines(self.text)
         if n_lines == n_rows:
@@ -71,11 +74,16 @@ class TextRows:
         body = np.frombuffer(self.text, np.uint8)[starts]
         filled = np.flatnonzero((body != _NEWLINE) & (body != ord("\r")))
         if filled.size != n_rows:
+            lines = bytes(self.text).split(b"\n")
+            mark = self.quote.encode()
+            odd = (line for line, text in enumerate(lines) if mark and text.count(mark) % 2)
             raise LogError(
                 self.path,
-                "lines and rows do not match: a quoted field holds a line end",
-                found=f"{filled.size} lines, {n_rows} rows",
+                "a quoted field goes over the end of its line",
+                row=self.row_of_line(next(odd, 0)),
+                found=f"{filled.size} lines that make {n_rows} rows",
                 needed="one line a row",
+                hint="Close the quote, or declare another quote character in the layout.",
             )
         return filled + self.first_row if self.line_row is None else self.line_row[filled]
 
@@ -100,7 +108,11 @@ def split_line(line: str, layout: Layout) -> list[str]:
         quotechar=layout.quote or None,
         quoting=csv.QUOTE_MINIMAL if layout.quote else csv.QUOTE_NONE,
     )
-    return [field.strip() for field in next(reader, [])]
+    try:
+        fields = next(reader, [])
+    except csv.Error:  # a field longer than the csv module takes
+        fields = line.split(layout.delimiter)
+    return [field.strip() for field in fields]
 
 
 def read_fields(
@@ -224,7 +236,7 @@ def _blank_to_empty(rows: TextRows, layout: Layout) -> TextRows:
     """Lines of blanks alone made empty, so that they are no rows; line numbers stay."""
     blank = rb"(?m)^[ \t]+(?=\r?$)" if layout.delimiter != "\t" else rb"(?m)^ +(?=\r?$)"
     text = re.sub(blank, b"", rows.text).rstrip(b"\r\n")
-    return TextRows(rows.path, memoryview(text), rows.first_row, rows.line_row)
+    return replace(rows, text=memoryview(text))
 
 
 def _ragged(rows: TextRows, layout: Layout, n_fields: int, message: str) -> LogError:
@@ -237,7 +249,7 @@ def _ragged(rows: TextRows, layout: Layout, n_fields: int, message: str) -> LogE
                 rows.path,
                 f"a row has {found} fields where the first has {n_fields}",
                 row=rows.row_of_line(line),
-                found=f"'{text.strip()[:60]}'",
+                found=repr(text.strip()[:60]),
                 needed=f"{n_fields} fields",
                 hint="The log was cut off; remove its last line." if is_last else None,
             )
@@ -269,7 +281,7 @@ def _second_look(rows: TextRows, layout: Layout, want: Wanted, column: pa.Chunke
         "a value is not a number",
         row=rows.first_row + bad if row is None else int(row[bad]),
         channel=str(want.column),
-        found=f"'{found}'" if found else "an empty field",
+        found=repr(found) if found else "an empty field",
         needed=f"a decimal number such as {sample} in {want.unit}, or a declared missing mark",
         hint="Add it to the missing marks of the layout where it means missing.",
     )

@@ -185,8 +185,37 @@ def test_a_log_cut_off_in_its_last_line_says_so(read):
 
 
 def test_a_quoted_line_end_is_refused(read):
-    with pytest.raises(LogError, match="a quoted field holds a line end"):
-        read('t,x,F,note\n0,1,2,"a\nb"\n1,2,3,c\n')
+    with pytest.raises(
+        LogError,
+        match=r"log\.csv:3: a quoted field goes over the end of its line; found 4 lines that make 3 "
+        r"rows; needed one line a row\. Close the quote",
+    ):
+        read('t,x,F,note\n0,1,2,c\n0,1,2,"a\nb"\n1,2,3,c\n')
+
+
+def test_a_quote_that_is_never_closed_names_its_row(read):
+    with pytest.raises(LogError, match=r"log\.csv:3: a quoted field goes over the end of its line"):
+        read('t,x,F\n0,1,2\n1,2,"3\n2,3,4\n')
+
+
+def test_without_a_quote_character_a_quote_is_text(read):
+    with pytest.raises(LogError, match=r"log\.csv:3 \[F\]: a value is not a number; found '\"3'"):
+        read('t,x,F\n0,1,2\n1,2,"3\n2,3,4\n', quote="")
+
+
+def test_mixed_line_ends_are_all_line_ends(read):
+    log = read(b"t,x,F\n0,1,2\r1,2,3\r\n2,3,4\r")
+    assert log.columns["tension.1"].tolist() == [2.0, 3.0, 4.0]
+    assert log.row is None
+
+
+def test_the_mark_that_dos_ends_a_file_with_is_no_field(read):
+    assert read(b"t,x,F\r\n0,1,2\r\n\x1a").columns["tension.1"].tolist() == [2.0]
+
+
+def test_a_line_too_long_to_be_parsed_is_refused(read):
+    with pytest.raises(LogError, match="the rows cannot be told apart; found straddling object"):
+        read("t,x,F,note\n0,1,2," + "x" * 3_000_000 + "\n1,2,3,y\n")
 
 
 def test_header_only_is_refused(read):
