@@ -19,18 +19,19 @@ from reduction import __version__
 from reduction.archive.open import open_archive
 from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
+from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.campaign import (
     draw_all_moduli,
-    draw_amplitude_pairs,
     draw_parts,
     draw_ratios,
     draw_static_dynamic,
 )
 from reduction.report.section import Section, make_part, make_section
-from reduction.report.specimentables import specimen_table
+from reduction.report.specimentables import specimen_notes, specimen_table
+from reduction.report.steptables import interval_table
 from reduction.report.summary import find_faults, test_table, tiles
 from reduction.report.testtables import segment_table
-from reduction.report.view import Status, TestView, natural_order
+from reduction.report.view import Status, TestView, any_synthetic, natural_order
 from reduction.units import UnitSystem
 
 __all__ = ["write_report"]
@@ -118,18 +119,20 @@ def _render(
         make_part("Start against end", draw_parts(tests)),
         make_part("Static against dynamic", draw_static_dynamic(tests)),
     ]
+    answers = [segment_table(tests), *(interval_table(view) for view in tests)]
     first = tests[0] if tests else None
     return template.render(
         title=(first.attribute("title") if first else "") or f"Campaign {folder}",
         campaign=first.attribute("campaign") if first else folder,
         summary=first.attribute("summary") if first else "",
-        institution=first.attribute("institution") if first else "",
+        institution=first.attribute("institution").rstrip(".") if first else "",
         references=first.attribute("references") if first else "",
-        synthetic=any(view.is_synthetic for view in tests),
+        synthetic=any_synthetic(tests),
         tiles=tiles(tests, statuses, faults),
         specimens=specimen_table(tests, units),
+        specimen_notes=specimen_notes(tests),
         tests=test_table(tests, statuses),
-        answer=segment_table(tests),
+        answers=[table for table in answers if table is not None],
         faults=faults,
         comparisons=[part for part in comparisons if part.figures],
         sections=sections,

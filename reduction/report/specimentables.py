@@ -19,11 +19,18 @@ from reduction.report.htmltable import (
     words,
 )
 from reduction.report.style import Shown, shown
-from reduction.report.view import TestView
+from reduction.report.view import TestView, any_synthetic
 from reduction.units import UnitSystem
 from reduction.vocabulary import QUANTITIES
 
-__all__ = ["coefficient_table", "history_table", "mark_table", "slope_sentences", "specimen_table"]
+__all__ = [
+    "coefficient_table",
+    "history_table",
+    "mark_table",
+    "slope_sentences",
+    "specimen_notes",
+    "specimen_table",
+]
 
 
 def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> Table:
@@ -31,11 +38,9 @@ def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> Table:
     small, area, force = shown("small length", units), shown("area", units), shown("tension", units)
     rows: dict[str, list[Cell]] = {}
     for view in tests:
-        notes = list(zip(view.texts("note_stage"), view.texts("note"), strict=True))
         for place, name in enumerate(view.specimens):
             if name in rows:
                 continue
-            own = [text for stage, text in notes if stage == f"specimen {name}"]
             rows[name] = [
                 words(name),
                 words(_text(view, "specimen_kind", place)),
@@ -44,16 +49,26 @@ def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> Table:
                 number(_value(view, "diameter", place), small),
                 number(_value(view, "area", place), area),
                 number(_value(view, "rated_break_strength", place), force),
-                words(" ".join(own)),
             ]
     columns = (
         "specimen", "kind", "material", "condition", small.label("diameter"),
-        area.label("area at zero tension"), force.label("rated break strength"), "notes",
+        area.label("area at zero tension"), force.label("rated break strength"),
     )  # fmt: skip
     return make_table(
         "Specimens before their first test; the diameter is the mean of the readings.", columns,
-        list(rows.values()), synthetic=any(view.is_synthetic for view in tests),
+        list(rows.values()), synthetic=any_synthetic(tests),
     )  # fmt: skip
+
+
+def specimen_notes(tests: Sequence[TestView]) -> list[str]:
+    """Return what is to be known about each specimen, each sentence once."""
+    notes = [
+        f"{stage.removeprefix('specimen ')}: {text}"
+        for view in tests
+        for stage, text in zip(view.texts("note_stage"), view.texts("note"), strict=True)
+        if stage.startswith("specimen ")
+    ]
+    return list(dict.fromkeys(notes))
 
 
 def history_table(view: TestView) -> Table | None:

@@ -11,20 +11,21 @@ import numpy as np
 
 from reduction.report.htmltable import Cell, Table, count, make_table, span, words
 from reduction.report.style import shown
-from reduction.report.view import Status, TestView
+from reduction.report.view import Status, TestView, any_synthetic
 
-__all__ = ["Finding", "Severity", "Tile", "find_faults", "test_table", "tiles"]
+__all__ = ["Finding", "Severity", "Tile", "all_notes", "find_faults", "test_table", "tiles"]
 
 Severity = Literal["failure", "warning", "note", "refusal"]
 _ORDER: tuple[Severity, ...] = ("failure", "warning", "note", "refusal")
 _NOT_SHOWN = "no archive"
 # words of a note after which a reader may have to put a number aside; the rest is background
 _WARNING = re.compile(
-    r"contradict|disagree|inconsisten|differ|extrapolat|outside|saturat|stuck|spike|backward"
-    r"|repeated time|gap|missing|broken|slip|stepped|unstable|implies?|unequal|not constant"
-    r"|fewer|expected|wrong|creep",
+    r"contradict|disagree|inconsisten|extrapolat|outside|saturat|stuck|spike|backward|repeated"
+    r"|\bgaps?\b|missing|broken|slipped|steps? of|not stable|do not use|not a first loading|unequal"
+    r"|fewer|second look|implies|points off|grows",
     re.IGNORECASE,
 )
+_NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
 
 
 @dataclass(frozen=True)
@@ -60,14 +61,26 @@ def find_faults(
     unreadable : mapping of str to str
         File name to message, of the files that could not be read.
     """
-    gathered: dict[tuple[Severity, str], list[str]] = {}
-    for severity, test, text in _all_faults(tests, statuses, unreadable):
-        gathered.setdefault((severity, text), []).append(test)
-    found = [
-        Finding(severity, tuple(dict.fromkeys(names)), text)
-        for (severity, text), names in gathered.items()
-    ]
+    gathered: dict[tuple[Severity, str], list[tuple[str, str]]] = {}
+    for severity, test, pattern, text in _all_faults(tests, statuses, unreadable):
+        gathered.setdefault((severity, pattern), []).append((test, text))
+    found = []
+    for (severity, _), own in gathered.items():
+        texts = list(dict.fromkeys(text for _, text in own))
+        more = f" (and {len(texts) - 1} more like it)" if len(texts) > 1 else ""
+        names = tuple(dict.fromkeys(test for test, _ in own))
+        found.append(Finding(severity, names, texts[0] + more))
     return sorted(found, key=lambda one: _ORDER.index(one.severity))
+
+
+def all_notes(view: TestView) -> list[str]:
+    """Return every note of a test, with the stage that gave it where the note does not say."""
+    notes = []
+    for stage, text in zip(view.texts("note_stage"), view.texts("note"), strict=True):
+        room = stage.split(" ")[-1]
+        is_said = text.startswith((f"{stage}:", f"{room}:", f"{room},"))
+        notes.append(text if is_said else f"{stage}: {text}")
+    return notes
 
 
 def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> Table:
@@ -78,7 +91,7 @@ def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> Table:
         if row.test not in shown_ids:
             empty = [words("")] * 6
             rows.append([words(row.test), *empty, words(f"{_words(row.status)}, {_NOT_SHOWN}")])
-    synthetic = any(view.is_synthetic for view in tests)
+    synthetic = any_synthetic(tests)
     columns = (
         "test", "kind", "specimens", "target strain [%]", "strain reached [%]",
         "cycles found [1]", "samples [1]", "status",
@@ -106,24 +119,41 @@ def tiles(
 
 def _all_faults(
     tests: Sequence[TestView], statuses: Sequence[Status], unreadable: Mapping[str, str]
-) -> Iterator[tuple[Severity, str, str]]:
+) -> Iterator[tuple[Severity, str, str, str]]:
+    """Give severity, test, what makes two of them alike, and the text."""
     for name, message in unreadable.items():
-        yield "failure", name, f"This file is not shown: {message}"
+        text = f"This file is not shown: {message}"
+        yield "failure", name, text, text
     archived = {view.id for view in tests}
     for row in statuses:
         if row.status == "failed":
-            yield "failure", row.test, row.message or "failed without a message"
+            text = row.message or "failed without a message"
+            yield "failure", row.test, text, text
             if row.test in archived:
-                yield "failure", row.test, "What is shown below is an earlier run, kept."
+                text = "What is shown below is an earlier run, kept."
+                yield "failure", row.test, text, text
         elif row.test not in archived:
-            yield "warning", row.test, f"No archive; status is {_words(row.status)}. {row.message}"
+            text = f"No archive; status is {_words(row.status)}. {row.message}"
+            yield "warning", row.test, text, text
     for view in tests:
         status = view.status
         archived_hash = " ".join(view.attribute("raw_file_sha256").split())
         if status and status.status != "failed" and status.raw_sha256 not in ("", archived_hash):
-            yield "warning", view.id, "The archive was made from other raw files than status.csv."
-        for stage, text in zip(view.texts("note_stage"), view.texts("note"), strict=True):
-            yield _severity(stage, text), view.id, f"{stage}: {text}"
+            text = "The archive was made from other raw files than status.csv."
+            yield "warning", view.id, text, text
+        raw = zip(view.texts("note_stage"), view.texts("note"), strict=True)
+        for (stage, note), text in zip(raw, all_notes(view), strict=True):
+            yield _severity(stage, note), view.id, _pattern(view, note), text
+
+
+def _pattern(view: TestView, note: str) -> str:
+    """Return a note without its numbers and specimens: of those alike one is enough on top.
+
+    Each test has every note of its own in its section.
+    """
+    for specimen in view.specimens:
+        note = re.sub(rf"\b{re.escape(specimen)}\b", "#", note)
+    return _NUMBER.sub("#", note)
 
 
 def _severity(stage: str, text: str) -> Severity:

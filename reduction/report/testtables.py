@@ -9,7 +9,7 @@ import numpy as np
 from reduction.record import Floats
 from reduction.report.htmltable import Cell, Table, count, make_table, measured, number, span, words
 from reduction.report.style import shown
-from reduction.report.view import TestView
+from reduction.report.view import TestView, any_synthetic
 from reduction.vocabulary import BRANCH_NAMES
 
 __all__ = [
@@ -32,7 +32,7 @@ def segment_table(tests: Sequence[TestView]) -> Table | None:
     )  # fmt: skip
     return make_table(
         "Elastic modulus of the rubber, piecewise linear, from trimmed branches.", columns, rows,
-        synthetic=any(view.is_synthetic for view in tests), is_tall=len(rows) > 16,
+        synthetic=any_synthetic(tests), is_tall=len(rows) > 16,
     )  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +12,7 @@ import xarray as xr
 from reduction.record import Floats
 from reduction.units import UnitSystem
 
-__all__ = ["Status", "TestView", "natural_order"]
+__all__ = ["Status", "TestView", "all_specimens", "any_synthetic", "natural_order"]
 
 
 @dataclass(frozen=True)
@@ -119,6 +120,16 @@ class TestView:
     def without_samples(self) -> TestView:
         """Return the same test without its record, all in memory: what campaign figures use."""
         return replace(self, data=self.data.drop_dims("sample", errors="ignore").load())
+
+
+def all_specimens(tests: Sequence[TestView]) -> list[str]:
+    """Return the specimens of several tests, each once, in the order they first appear."""
+    return list(dict.fromkeys(name for view in tests for name in view.specimens))
+
+
+def any_synthetic(tests: Sequence[TestView]) -> bool:
+    """Return whether a figure or table of these tests has to say that data are synthetic."""
+    return any(view.is_synthetic for view in tests)
 
 
 def natural_order(name: str) -> tuple[tuple[int, int, str], ...]:

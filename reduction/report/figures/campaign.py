@@ -11,6 +11,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -24,13 +25,15 @@ from reduction.report.figure import (
     make_figure,
     plain_numbers,
 )
-from reduction.report.style import DASHES, Kind, colour, plot_text, shown, symbol
-from reduction.report.view import TestView
+from reduction.report.style import DASHES, colour, plot_text, shown, symbol
+from reduction.report.view import TestView, all_specimens, any_synthetic
 from reduction.units import UnitSystem
 from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
 
+GRID_POINTS = 400
+
 __all__ = [
-    "draw_all_moduli", "draw_amplitude_pairs", "draw_parts", "draw_ratios",
+    "draw_all_moduli", "draw_parts", "draw_ratios",
     "draw_static_dynamic",
 ]  # fmt: skip
 
@@ -38,7 +41,7 @@ __all__ = [
 def draw_all_moduli(tests: Sequence[TestView]) -> list[Figure]:
     """Draw the modulus of every test in one figure a specimen, with the envelope of all."""
     found = []
-    for order, specimen in enumerate(_specimens(tests)):
+    for order, specimen in enumerate(all_specimens(tests)):
         data: list[Trace] = []
         for branch in BRANCH_NAMES:
             envelope = _envelope(tests, specimen, branch)
@@ -54,7 +57,7 @@ def draw_all_moduli(tests: Sequence[TestView]) -> list[Figure]:
                 f"campaign-moduli-{order}", f"All tests: modulus, {specimen}",
                 "Mean tangent modulus of every test against strain; ascending solid, descending"
                 " dashed. Shaded: least to greatest of all cycles of all tests, a branch each.",
-                data, synthetic=_synthetic(tests), height=480, is_wide=True,
+                data, synthetic=any_synthetic(tests), height=480, is_wide=True,
                 xaxis=axis(shown("strain", units).label("strain")),
                 yaxis=axis(shown("stress", units).label("tangent modulus"), rangemode="tozero"),
             )
@@ -87,42 +90,12 @@ def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
                 f"Tangent modulus of {pair[0]} over that of {pair[1]} at the same strain,"
                 f" {branch} branch, each test; band: 95 % interval. Where the band leaves out 1"
                 " the two differ.",
-                [trace for trace in data if trace["y"]], synthetic=_synthetic(tests),
-                xaxis=axis("strain [%]"), yaxis=axis("ratio of moduli [1]"),
+                [trace for trace in data if trace["y"]], synthetic=any_synthetic(tests),
+                xaxis=axis("strain [%]"), yaxis=_ratio_axis(data),
                 shapes=[_level(1.0)],
             )  # fmt: skip
             if figure.has_data:
                 found.append(figure)
-    return found
-
-
-def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
-    """Draw dynamic modulus, loss factor and energy against mean strain, bars of amplitude."""
-    panels: tuple[tuple[str, str, Kind], ...] = (
-        ("test_dynamic_modulus", "dynamic modulus", "stress"),
-        ("test_loss_factor", "loss factor", "number"),
-        ("test_hysteresis_energy", "hysteresis energy", "energy"),
-    )
-    found = []
-    for name, words, kind in panels:
-        data: list[Trace] = []
-        units = tests[0].units if tests else "si"
-        unit = shown(kind, units)
-        for order, specimen in enumerate(_specimens(tests)):
-            rows = [row for view in tests if (row := _summary(view, specimen, name)) is not None]
-            if rows:
-                table = np.array([row[1:] for row in rows])
-                data.append(_points(specimen, order, [row[0] for row in rows], table, unit.factor))
-        figure = make_figure(
-            f"campaign-{name}", f"{words.capitalize()} of each test",
-            f"{words.capitalize()}, mean over the cycles of a test, against mean strain. The"
-            " level bar is the strain range of the cycles: tests at one mean strain and two"
-            " amplitudes stand above each other. Upright bar: ± 1 standard uncertainty.",
-            data, synthetic=_synthetic(tests), height=400,
-            xaxis=axis("mean strain [%]"), yaxis=axis(unit.label(words)),
-        )  # fmt: skip
-        if figure.has_data:
-            found.append(figure)
     return found
 
 
@@ -134,7 +107,7 @@ def draw_parts(tests: Sequence[TestView]) -> list[Figure]:
             groups.setdefault(view.attribute("part_of"), []).append(view)
     found: list[Figure] = []
     for whole, parts in groups.items():
-        for specimen in _specimens(parts):
+        for specimen in all_specimens(parts):
             data = [
                 trace
                 for index, view in enumerate(parts)
@@ -146,7 +119,7 @@ def draw_parts(tests: Sequence[TestView]) -> list[Figure]:
                         f"campaign-parts-{len(found)}", f"{whole}: its parts, {specimen}",
                         f"Mean tangent modulus in the parts of {whole} that were logged apart:"
                         " what the long test changed.",
-                        data, synthetic=_synthetic(parts), height=400,
+                        data, synthetic=any_synthetic(parts), height=400,
                         xaxis=axis("strain [%]"),
                         yaxis=axis(
                             shown("stress", whole_units(parts)).label("tangent modulus"),
@@ -187,7 +160,7 @@ def draw_static_dynamic(tests: Sequence[TestView]) -> list[Figure]:
                 f"campaign-static-{branch}", f"Static against dynamic, {branch}",
                 "Interval moduli of the stepwise tests (markers) over the tangent moduli of the"
                 f" cyclic tests (lines), {branch}.",
-                data, synthetic=_synthetic(tests), height=420,
+                data, synthetic=any_synthetic(tests), height=420,
                 xaxis=axis(in_strain.label("strain")),
                 yaxis=axis(in_stress.label("modulus"), rangemode="tozero"),
             )
@@ -247,7 +220,9 @@ def _envelope(tests: Sequence[TestView], specimen: str, branch: str) -> Trace | 
             lows.append((strain[used], low[row, place, used], high[row, place, used]))
     if not lows:
         return None
-    grid = np.unique(np.concatenate([strain for strain, _, _ in lows]).round(9))
+    # finer than any bin, so that a gap between two tests stays a gap
+    ends = [(strain[0], strain[-1]) for strain, _, _ in lows]
+    grid = np.linspace(min(low for low, _ in ends), max(high for _, high in ends), GRID_POINTS)
     outside = {"left": np.nan, "right": np.nan}
     least = np.fmin.reduce([np.interp(grid, strain, low, **outside) for strain, low, _ in lows])
     most = np.fmax.reduce([np.interp(grid, strain, high, **outside) for strain, _, high in lows])
@@ -258,34 +233,14 @@ def _envelope(tests: Sequence[TestView], specimen: str, branch: str) -> Trace | 
     )  # fmt: skip
 
 
-def _summary(
-    view: TestView, specimen: str, name: str
-) -> tuple[str, float, float, float, float] | None:
-    mean, amplitude = view.array("test_mean_strain"), view.array("test_strain_amplitude")
-    values = view.array(name)
-    if mean is None or amplitude is None or values is None or specimen not in view.specimens:
-        return None
-    row = view.specimens.index(specimen)
-    half = view.array_like(f"{name}_standard_uncertainty", values)
-    return view.id, mean[row], amplitude[row], values[row], half[row]
-
-
-def _points(specimen: str, order: int, labels: list[str], table: Floats, factor: float) -> Trace:
-    tint = colour(order)
-    bars = {"type": "data", "color": tint, "thickness": 1, "width": 3}
-    return {
-        "type": "scatter",
-        "mode": "markers+text",
-        "name": plot_text(specimen),
-        "x": plain_numbers(100.0 * table[:, 0]),
-        "y": plain_numbers(table[:, 2] * factor),
-        "text": [plot_text(label, 18) for label in labels],
-        "textposition": "top center" if order % 2 == 0 else "bottom center",
-        "textfont": {"size": 10},
-        "error_x": {**bars, "array": plain_numbers(100.0 * table[:, 1])},
-        "error_y": {**bars, "array": plain_numbers(table[:, 3] * factor)},
-        "marker": {"color": tint, "symbol": symbol(order), "size": 8},
-    }
+def _ratio_axis(data: Sequence[Trace]) -> dict[str, Any]:
+    """Return the axis, scaled to the ratios: where few cycles reach an interval may be huge."""
+    ratios = [y for trace in data if "fill" not in trace for y in trace["y"] if y is not None]
+    title = "ratio of moduli [1]"
+    if not ratios:
+        return axis(title)
+    low, high = min(*ratios, 1.0), max(*ratios, 1.0)
+    return axis(title, range=[low - 0.15 * (high - low) - 0.01, high + 0.15 * (high - low) + 0.01])
 
 
 def _level(height: float) -> Trace:
@@ -293,11 +248,3 @@ def _level(height: float) -> Trace:
         "type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": height, "y1": height,
         "line": {"width": 1, "dash": "dot", "color": "#8C8C8C"},
     }  # fmt: skip
-
-
-def _specimens(tests: Sequence[TestView]) -> list[str]:
-    return list(dict.fromkeys(name for view in tests for name in view.specimens))
-
-
-def _synthetic(tests: Sequence[TestView]) -> bool:
-    return any(view.is_synthetic for view in tests)

@@ -45,16 +45,13 @@ def draw_steps(view: TestView) -> list[Figure]:
     words = flagged_steps(view)
     flagged = np.array([bool(word) for word in words])
     if flagged.any():
-        clock = view.texts("clock") or ("",) * flagged.size
+        clock = np.array(view.texts("clock") or ("",) * flagged.size)
         data.append(
             {
                 "type": "scatter", "mode": "markers+text", "name": "flagged",
                 "x": plain_numbers(x[flagged]), "y": plain_numbers(y[flagged]),
-                "text": [
-                    plot_text(f"{time}: {word}".strip(": "), 60)
-                    for time, word in zip(clock, words, strict=True) if word
-                ],
-                "textposition": "bottom right", "textfont": {"size": 10},
+                "text": [plot_text(time, 12) for time in clock[flagged]],
+                "textposition": "bottom center", "textfont": {"size": 10},
                 "marker": {
                     "symbol": "circle-open", "size": 14, "color": COLOURS[3],
                     "line": {"width": 2},
@@ -64,12 +61,19 @@ def draw_steps(view: TestView) -> list[Figure]:
     readings = make_figure(
         f"{view.key}-steps", f"{view.id}: tension against strain",
         "Each reading of the stepwise test; ascending solid, descending dashed; ringed readings"
-        " are flagged and take no part in the moduli beside them.",
+        " are flagged and take no part in the moduli beside them"
+        f"{_reasons(view, words)}.",
         data, synthetic=view.is_synthetic, height=400,
         xaxis=axis(in_strain.label("strain")), yaxis=axis(in_tension.label("tension")),
     )  # fmt: skip
     moduli = _moduli(view)
     return [figure for figure in (readings, moduli) if figure.has_data]
+
+
+def _reasons(view: TestView, words: list[str]) -> str:
+    clock = view.texts("clock") or tuple(f"reading {k}" for k in range(1, len(words) + 1))
+    said = [f"{time}: {word}" for time, word in zip(clock, words, strict=True) if word]
+    return f" ({'; '.join(said)})" if said else ""
 
 
 def _moduli(view: TestView) -> Figure:

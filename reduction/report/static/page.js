@@ -86,7 +86,7 @@
   // paper is white and narrower than the screen, whatever the screen is
   addEventListener("beforeprint", () => {
     printing = true;
-    document.querySelectorAll("details:not(.provenance)").forEach((part) => { part.open = true; });
+    document.querySelectorAll("details:not(.provenance, .notes)").forEach((part) => { part.open = true; });
     plots.forEach(draw);
   });
   addEventListener("afterprint", () => {

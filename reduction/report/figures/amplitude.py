@@ -1,0 +1,75 @@
+"""Dynamic modulus, loss factor and energy of each test against mean strain and amplitude."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from reduction.record import Floats
+from reduction.report.figure import Figure, Trace, axis, make_figure, plain_numbers
+from reduction.report.style import Kind, colour, plot_text, shown, symbol
+from reduction.report.view import TestView, all_specimens, any_synthetic
+
+__all__ = ["draw_amplitude_pairs"]
+
+
+def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
+    """Draw dynamic modulus, loss factor and energy against mean strain, bars of amplitude."""
+    panels: tuple[tuple[str, str, Kind], ...] = (
+        ("test_dynamic_modulus", "dynamic modulus", "stress"),
+        ("test_loss_factor", "loss factor", "number"),
+        ("test_hysteresis_energy", "hysteresis energy", "energy"),
+    )
+    found = []
+    for name, words, kind in panels:
+        data: list[Trace] = []
+        units = tests[0].units if tests else "si"
+        unit = shown(kind, units)
+        for order, specimen in enumerate(all_specimens(tests)):
+            for index, view in enumerate(tests):
+                row = _summary(view, specimen, name)
+                if row is not None:
+                    data.append(_point(view.id, specimen, (index, order), row, unit.factor))
+        figure = make_figure(
+            f"campaign-{name}", f"{words.capitalize()} of each test",
+            f"{words.capitalize()}, mean over the cycles of a test, against mean strain. The"
+            " level bar is the strain range of the cycles: tests at one mean strain and two"
+            " amplitudes stand above each other. Upright bar: ± 1 standard uncertainty. Markers: "
+            + ", ".join(f"{symbol(k)} {name}" for k, name in enumerate(all_specimens(tests))) + ".",
+            data, synthetic=any_synthetic(tests), height=400,
+            xaxis=axis("mean strain [%]"), yaxis=axis(unit.label(words)),
+        )  # fmt: skip
+        if figure.has_data:
+            found.append(figure)
+    return found
+
+
+def _summary(view: TestView, specimen: str, name: str) -> Floats | None:
+    """Return mean strain, strain amplitude, value and its uncertainty."""
+    mean, amplitude = view.array("test_mean_strain"), view.array("test_strain_amplitude")
+    values = view.array(name)
+    if mean is None or amplitude is None or values is None or specimen not in view.specimens:
+        return None
+    row = view.specimens.index(specimen)
+    half = view.array_like(f"{name}_standard_uncertainty", values)
+    return np.array([mean[row], amplitude[row], values[row], half[row]])
+
+
+def _point(test: str, specimen: str, places: tuple[int, int], row: Floats, factor: float) -> Trace:
+    """Return one test and specimen: the colour is the test's, the marker the specimen's."""
+    tint = colour(places[0])
+    bars = {"type": "data", "color": tint, "thickness": 1, "width": 3}
+    mean, amplitude = 100.0 * row[:1], 100.0 * row[1:2]
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "name": plot_text(test if places[1] == 0 else f"{test}, {specimen}"),
+        "legendgroup": plot_text(test),
+        "showlegend": places[1] == 0,
+        "x": plain_numbers(mean),
+        "y": plain_numbers(factor * row[2:3]),
+        "error_x": {**bars, "array": plain_numbers(amplitude)},
+        "error_y": {**bars, "array": plain_numbers(factor * row[3:4])},
+        "marker": {"color": tint, "symbol": symbol(places[1]), "size": 9},
+    }
