@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from reduction.cycles.product import Cycles, Loops
@@ -97,3 +98,38 @@ class ReducedTest:
     permanent_set: Floats | None = None
     permanent_set_standard_uncertainty: Floats | None = None
     stepwise: StepwiseResult | None = None
+
+    def all_notes(self) -> tuple[tuple[str, str], ...]:
+        """Every note as (stage, text), in the order of the stages, none twice.
+
+        A note of the test that a stage gave too stands under the stage alone.
+        """
+        pairs = list(dict.fromkeys(self._stage_notes()))
+        said = {text for _, text in pairs}
+        pairs += [("test", text) for text in dict.fromkeys(self.notes) if text not in said]
+        return tuple(pairs)
+
+    def _stage_notes(self) -> Iterator[tuple[str, str]]:
+        if self.record is not None:
+            yield from (("ingest", text) for text in self.record.notes)
+        for specimen in self.specimens:
+            yield from ((f"specimen {specimen.name}", text) for text in specimen.notes)
+        for model in self.strain_models:
+            yield from ((f"strain {model.specimen}", text) for text in model.notes)
+        stages = (
+            ("cycles", self.cycles),
+            ("moduli", self.curves),
+            ("first loading", self.first_loading),
+            ("slips", self.slips),
+            ("comparison", self.ratio),
+            ("stepwise", self.stepwise),
+        )
+        for stage, product in stages:
+            if product is not None:
+                yield from ((stage, text) for text in product.notes)
+        for fit in self.elastomers:
+            yield from ((f"{fit.law} {fit.specimen}", text) for text in fit.notes)
+        for number, hold in enumerate(self.holds, start=1):
+            stage = f"hold {number} {hold.specimen}"
+            yield from ((stage, text) for text in hold.notes)
+            yield from ((stage, f"refused: {text}") for text in hold.refusals)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
+from tokenize import TokenError
 from typing import Literal
 
 import pint
@@ -42,6 +43,13 @@ _US = {"m": "ft", "N": "lbf", "Pa": "psi", "m2": "in2", "J m-1": "lbf", "m s-1":
 _US_PINT = {"in2": "in**2", "ft s-1": "ft/s"}
 # as test machines write them, where pint has no such name
 _SPELLINGS = {"Sec": "s", "SEC": "s", "Secs": "s", "lb": "pound", "IN": "in", "KN": "kN"}
+# what pint lets out when a text is no unit expression
+_NO_UNIT = (
+    pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, AssertionError,
+    ArithmeticError, TokenError,
+)  # fmt: skip
+# no unit of a test house is longer, and a tower of powers would never end
+_LONGEST, _MOST_POWERS = 40, 4
 _QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
 
 
@@ -102,6 +110,14 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
     """
     registry = _registry()
     target = DIMENSIONS[dimension]
+    powers = unit.count("^") + unit.count("**")
+    too_long = len(unit) > _LONGEST or powers > _MOST_POWERS or re.search(r"\d{3}", unit)
+    if too_long or re.search(r"\*\*\s*\d+\s*\*\*", unit):
+        raise SettingsError(
+            "a unit is not one that a test house writes",
+            found=repr(unit[:_LONGEST]),
+            needed=f"a unit of {dimension}, such as {target}",
+        )
     try:
         # pound is a mass in pint; a test house that writes lb for a load means lbf
         text = "lbf" if dimension == "force" and unit.strip() in ("lb", "lbs") else _pint_text(unit)
@@ -114,7 +130,7 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
             found=f"'{unit}', a unit of {error.dim1 or 'another dimension'}",
             needed=f"a unit of {dimension}, such as {target}",
         ) from error
-    except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError) as error:
+    except _NO_UNIT as error:
         raise SettingsError(
             f"unit '{unit}' is not known",
             found=f"'{unit}'",

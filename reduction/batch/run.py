@@ -321,11 +321,13 @@ def run_campaign(
             statuses.append(_status(survey, "failed", error=failure, seconds=clock() - start))
             continue
         survey.located = None  # its record is in the archive now
+        notes = list(dict.fromkeys(text for _, text in product.all_notes()))
+        more = f" (and {len(notes) - 1} more notes)" if len(notes) > 1 else ""
         statuses.append(
             _status(
                 survey,
-                "reduced_with_notes" if product.notes else "reduced",
-                message=product.notes[0] if product.notes else "",
+                "reduced_with_notes" if notes else "reduced",
+                message=notes[0] + more if notes else "",
                 seconds=clock() - start,
             )
         )

@@ -76,25 +76,22 @@ def cycle_basis(time: Floats, first: Integers, last: Integers) -> CycleBasis:
         )
     weight = np.zeros_like(time)
     np.subtract(time[2:], time[:-2], out=weight[1:-1])
-    phase = np.zeros_like(time)
-    length = last - first
-    stop = int(last[-1]) if last.size else 0
-    # one value a sample from one value a cycle; samples between cycles keep phase 0
-    start_of, rate_of = np.zeros_like(time), np.zeros_like(time)
-    inside = np.repeat(first - np.concatenate([[0], np.cumsum(length)[:-1]]), length)
-    inside += np.arange(inside.size)
-    start_of[inside] = np.repeat(time[first], length)
-    rate_of[inside] = np.repeat(2 * np.pi / period, length)
-    np.subtract(time[:stop], start_of[:stop], out=phase[:stop])
-    phase *= rate_of
     # the last sample of a cycle has the phase of its first one, so the two ends make one weight
     weight[first] = (time[first + 1] - time[first]) + (time[last] - time[last - 1])
-    weight *= rate_of / (2 * np.pi)
-    cosine = np.cos(phase)
-    cosine *= weight
-    np.sin(phase, out=phase)
-    phase *= weight
-    return CycleBasis(cosine=cosine, sine=phase, first=first, last=last)
+    # one value a sample from one value a cycle, with nothing between cycles
+    gaps = np.diff(first, append=time.size) - (last - first)
+    lengths = np.column_stack([last - first, gaps]).ravel()
+    nothing = np.zeros(first.size)
+    begin = int(first[0]) if first.size else time.size
+    rate = np.repeat(np.column_stack([2 * np.pi / period, nothing]).ravel(), lengths)
+    phase = time[begin:] - np.repeat(np.column_stack([time[first], nothing]).ravel(), lengths)
+    phase *= rate
+    rate *= weight[begin:]
+    rate /= 2 * np.pi
+    cosine, sine = np.zeros_like(time), np.zeros_like(time)
+    np.multiply(np.cos(phase), rate, out=cosine[begin:])
+    np.multiply(np.sin(phase, out=phase), rate, out=sine[begin:])
+    return CycleBasis(cosine=cosine, sine=sine, first=first, last=last)
 
 
 def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats]:

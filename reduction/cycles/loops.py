@@ -19,9 +19,15 @@ from reduction.record import Bools, Floats, Integers
 
 __all__ = ["close_loops", "reading_noise"]
 
+Waveform = Literal["triangular", "sinusoidal", "other"]
+
 # a cycle that lacks a larger share of its readings gives no numbers
 _MISSING_SHARE = 0.1
 _NOISE_SAMPLES = 65_536
+# samples reduced at a time: what the arrays of one block need stays in the cache
+_BLOCK = 32_768
+# samples beside a block that its differences of strain reach
+_REACH = 4
 _FIELDS = (
     "frequency", "cycle_start_time", "mean_tension", "tension_amplitude", "mean_strain",
     "strain_amplitude", "peak_tension", "valley_tension", "apparent_spring_constant",
@@ -94,7 +100,13 @@ def _extremes(values: Floats, first: Integers, last: Integers) -> tuple[Floats, 
 
 
 def _of_specimen(
-    tension: Floats, strain: Floats, basis: CycleBasis, waveform: str
+    tension: Floats,
+    strain: Floats,
+    basis: CycleBasis,
+    *,
+    noise: float,
+    strain_noise: float,
+    waveform: Waveform,
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     first, last = basis.first, basis.last
     force, lost_force = _filled(tension, first, last)
@@ -103,7 +115,7 @@ def _of_specimen(
     peak, valley = _extremes(force, first, last)
     high, low = _extremes(stretch, first, last)
     amplitude, strain_amplitude = (peak - valley) / 2, (high - low) / 2
-    energy, step_norm = loop_energy(force, stretch, first, last, waveform=waveform)  # type: ignore[arg-type]
+    energy, step_norm = loop_energy(force, stretch, first, last, waveform=waveform)
     force_cos, force_sin = fundamental(force, basis)
     strain_cos, strain_sin = fundamental(stretch, basis)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -114,7 +126,6 @@ def _of_specimen(
         apparent = amplitude / strain_amplitude
         share = np.pi * square * loss / energy
         factor = loss / storage
-        noise, strain_noise = reading_noise(tension), reading_noise(strain)
         both = np.hypot(noise, apparent * strain_noise)
         u_part = np.sqrt(2 / n_samples) * both / np.sqrt(square)
         u_energy = step_norm * both
@@ -165,7 +176,7 @@ def close_loops(
     strain: Floats,
     cycles: Cycles,
     *,
-    waveform: Literal["triangular", "sinusoidal", "other"] = "triangular",
+    waveform: Waveform = "triangular",
 ) -> Loops:
     r"""Dynamic quantities of each cycle and specimen.
 
@@ -224,20 +235,44 @@ def close_loops(
     >>> print(loops.hysteresis_energy.round(3), round(np.pi * 100 * 0.2**2, 3))
     [[12.566 12.566]] 12.566
     """
-    basis = cycle_basis(time, cycles.first, cycles.last)
     period = time[cycles.last] - time[cycles.first]
     shape = (tension.shape[0], cycles.n_cycles)
     tables = {name: np.empty(shape) for name in _FIELDS}
     uncertainty = {name: np.empty(shape) for name in _FIELDS if name != "cycle_start_time"}
-    tables["frequency"][:] = 1 / period
     tables["cycle_start_time"][:] = time[cycles.first]
+    noise = [
+        (reading_noise(force), reading_noise(stretch))
+        for force, stretch in zip(tension, strain, strict=True)
+    ]
+    for block in _blocks_of_cycles(cycles):
+        low = max(int(cycles.first[block.start]) - _REACH, 0)
+        high = int(cycles.last[block.stop - 1]) + _REACH + 1
+        basis = cycle_basis(time[low:high], cycles.first[block] - low, cycles.last[block] - low)
+        for index, (of_tension, of_strain) in enumerate(noise):
+            values, errors = _of_specimen(
+                tension[index, low:high],
+                strain[index, low:high],
+                basis,
+                noise=of_tension,
+                strain_noise=of_strain,
+                waveform=waveform,
+            )
+            for name, column in values.items():
+                tables[name][index, block] = column
+            for name, column in errors.items():
+                uncertainty[name][index, block] = column
+    tables["frequency"][:] = 1 / period
     # a turn is known to one sample at each end of the cycle, evenly spread
     step = period / (cycles.last - cycles.first)
     uncertainty["frequency"][:] = step / period**2 * np.sqrt(2 / 12)
-    for index in range(shape[0]):
-        values, errors = _of_specimen(tension[index], strain[index], basis, waveform)
-        for name, column in values.items():
-            tables[name][index] = column
-        for name, column in errors.items():
-            uncertainty[name][index] = column
     return Loops(**tables, uncertainty=uncertainty)
+
+
+def _blocks_of_cycles(cycles: Cycles) -> list[slice]:
+    """Runs of whole cycles of about `_BLOCK` samples together, one at least."""
+    number = (cycles.first - cycles.first[:1]) // _BLOCK
+    starts = np.flatnonzero(np.diff(number, prepend=-1))
+    return [
+        slice(int(start), int(stop))
+        for start, stop in zip(starts, [*starts[1:], cycles.n_cycles], strict=True)
+    ]

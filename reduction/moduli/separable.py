@@ -28,6 +28,7 @@ from reduction.record import Floats, freeze_arrays
 __all__ = ["SeparableFit", "fit_separable", "lag_one_inflation"]
 
 TIGHT = 1e-15
+NEAR = 1e-8
 COMPLEX_STEP = 1e-30
 
 
@@ -175,8 +176,8 @@ def fit_separable(
 
     Notes
     -----
-    Variable projection [1]_, then all parameters together, both by a trust region to a
-    tolerance of 1e-15; the Jacobian of the latter is exact (complex step).  MGH17, BoxBOD
+    Variable projection [1]_ to a tolerance of 1e-8, then all parameters together to 1e-15,
+    both by a trust region; the Jacobian of the latter is exact (complex step).  MGH17, BoxBOD
     and Misra1a of [2]_: certified parameters and standard deviations to 7 digits or more.
 
     Examples
@@ -223,9 +224,7 @@ def fit_separable(
     best: Floats | None = None
     lowest = np.inf
     for start in first_shapes:
-        inner = least_squares(
-            projected, start, jac="3-point", x_scale="jac", xtol=TIGHT, ftol=TIGHT, gtol=TIGHT
-        )
+        inner = least_squares(projected, start, x_scale="jac", xtol=NEAR, ftol=NEAR, gtol=NEAR)
         if np.isfinite(inner.cost) and inner.cost < lowest:
             best, lowest = np.asarray(inner.x, dtype=np.float64), float(inner.cost)
     if best is None:

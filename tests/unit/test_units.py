@@ -82,3 +82,12 @@ def test_us_display_is_the_inverse_of_the_factor(unit, shown, factor):
 def test_unknown_unit_system_is_refused():
     with pytest.raises(SettingsError, match="needed si or us"):
         display_unit("m", "imperial")
+
+
+@pytest.mark.parametrize(
+    "unit",
+    ["kN/", "kN (raw", "m/0", "9**9**9", "m" * 60, "m**999", "import os", "__class__", "m;s"],
+)
+def test_a_text_that_is_no_unit_expression_is_refused(unit):
+    with pytest.raises(SettingsError, match="unit"):
+        scale_to_si(unit, "force")

@@ -1,0 +1,83 @@
+"""Time of the whole reduction without archive over `pandas.read_csv` of the same file.
+
+    python benchmarks/reduction_over_parse.py [ROWS] [REPEATS]
+
+The two run in turn, A B A B ..., each in a process of its own, so that the ratio holds when
+the machine's speed drifts; hashing of the raw file is part of the reduction.  The file
+is generated (synthetic) in the folder BENCHMARK_DATA, or a temporary one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from statistics import median
+
+HERE = Path(__file__).parent
+PARSE = """
+import time, json, resource, sys
+import pandas
+start = time.perf_counter()
+table = pandas.read_csv(sys.argv[1])
+print(json.dumps({"seconds": time.perf_counter() - start, "rows": len(table),
+    "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}))
+"""
+REDUCE = """
+import time, json, resource, sys
+from pathlib import Path
+from reduction.batch.models import fit_strain_models
+from reduction.batch.run import _reduce
+from reduction.batch.survey import survey_campaign
+from reduction.campaign.load import load_campaign
+campaign = load_campaign(Path(sys.argv[1]))
+start = time.perf_counter()
+surveys = survey_campaign(campaign)
+located = time.perf_counter()
+models, errors = fit_strain_models(campaign, surveys)
+survey = surveys[0]
+if survey.error is not None:
+    raise survey.error
+test = _reduce(campaign, survey, [models[survey.plan.id, n] for n in survey.plan.specimens], None, "{}")
+print(json.dumps({"seconds": time.perf_counter() - start, "located": located - start,
+    "cycles": test.cycles.n_cycles,
+    "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}))
+"""
+
+
+def run(code: str, argument: Path) -> dict[str, float]:
+    """Run one side in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(argument)], capture_output=True, text=True, check=True
+    )
+    return dict(json.loads(done.stdout))
+
+
+def main(n_rows: int, repeats: int) -> None:
+    """Print a Markdown table of both sides and their ratio."""
+    sys.path.insert(0, str(HERE))
+    from generate import write_campaign
+
+    folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
+    campaign = write_campaign(folder, n_rows=n_rows)
+    log = folder / f"long_{n_rows}.csv"
+    pairs = [(run(REDUCE, campaign), run(PARSE, log)) for _ in range(repeats + 1)][1:]
+    ratios = [ours["seconds"] / theirs["seconds"] for ours, theirs in pairs]
+    print(f"{n_rows} rows, {log.stat().st_size / 1e6:.0f} MB, {pairs[0][0]['cycles']} cycles, "
+          f"{os.cpu_count()} processors, {repeats} pairs after one warm-up")
+    print("| | median s | min | max | peak MB |\n|---|---|---|---|---|")
+    for name, side in (("reduction, hashing included", 0), ("pandas.read_csv", 1)):
+        seconds = sorted(pair[side]["seconds"] for pair in pairs)
+        peak = max(pair[side]["peak_mb"] for pair in pairs)
+        print(f"| {name} | {median(seconds):.2f} | {seconds[0]:.2f} | {seconds[-1]:.2f} | {peak:.0f} |")
+    print(f"| ratio | {median(ratios):.2f} | {min(ratios):.2f} | {max(ratios):.2f} | |")
+
+
+if __name__ == "__main__":
+    main(
+        int(sys.argv[1]) if len(sys.argv) > 1 else 5_760_000,
+        int(sys.argv[2]) if len(sys.argv) > 2 else 3,
+    )
