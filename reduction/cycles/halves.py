@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.phases.standstill import Standstills
-from reduction.record import Bools, Floats
+from reduction.phases.standstill import Standstills, median_step
+from reduction.record import Bools, Floats, Integers
 
 __all__ = ["HalfCycles", "find_half_cycles"]
 
@@ -24,6 +24,7 @@ _FEWEST_DWELLS = 3
 _DWELL_RATIO = 2.0
 _GAP_SHARE = 0.3  # of a half cycle
 _GAP_STEPS = 3.5  # median time steps
+_EDGE_SHARE = 0.1  # of a half cycle
 _BLOCK_SAMPLES = 1 << 16
 
 Indices = NDArray[np.intp]
@@ -105,47 +106,98 @@ def _gaps(time: Floats, values: Floats, longest: float) -> tuple[Indices, Indice
     return np.concatenate(before), np.concatenate(after)
 
 
+def _replaced(samples: Indices, old: Indices, new: Integers) -> Indices:
+    """Samples with each of the old ones, in order of time, replaced by the new."""
+    if old.size == 0:
+        return samples
+    place = np.minimum(np.searchsorted(old, samples), old.size - 1)
+    return np.where(old[place] == samples, new[place], samples)
+
+
+@dataclass(frozen=True)
+class _Run:
+    """Extremes that follow each other, and whether the record or the movement ends at them."""
+
+    nodes: Indices
+    begins_at_edge: bool
+    ends_at_edge: bool
+
+
 def _stretches(
     values: Floats, reversals: Indices, breaks: tuple[Indices, Indices], band: float
-) -> list[Indices]:
+) -> list[_Run]:
     """Extremes of each stretch between breaks; a break's own edge where a movement begins there."""
     order = np.argsort(breaks[0], kind="stable")
-    break_first, break_last = breaks[0][order], breaks[1][order]
-    bounds = np.searchsorted(reversals, np.stack([break_last, break_first]))
-    begins = np.concatenate(
-        [[0], bounds[0] + (reversals[np.minimum(bounds[0], reversals.size - 1)] == break_last)]
-    )
-    ends = np.concatenate([bounds[1], [reversals.size]])
+    finite = np.isfinite(values)
+    start, stop = int(np.argmax(finite)), values.size - 1 - int(np.argmax(finite[::-1]))
+    begins = np.concatenate([[start], breaks[1][order]])
+    ends = np.concatenate([breaks[0][order], [stop]])
     found = []
-    for i, (begin, end) in enumerate(zip(begins, ends, strict=True)):
-        nodes = reversals[begin : max(begin, end)]
-        edge_before = break_last[i - 1 : i] if i > 0 else reversals[:0]
-        edge_after = break_first[i : i + 1]
-        if nodes.size:
-            if edge_before.size and abs(values[edge_before[0]] - values[nodes[0]]) < band:
-                edge_before = edge_before[:0]
-            if edge_after.size and abs(values[edge_after[0]] - values[nodes[-1]]) < band:
-                edge_after = edge_after[:0]
-        elif (
-            not (edge_before.size and edge_after.size)
-            or abs(values[edge_before[0]] - values[edge_after[0]]) < band
-        ):
-            continue
-        found.append(np.concatenate([edge_before, nodes, edge_after]))
-    return [nodes for nodes in found if nodes.size > 1]
+    for begin, end in zip(begins, ends, strict=True):
+        nodes = reversals[slice(*np.searchsorted(reversals, [begin + 1, end]))]
+        # the edge is an extreme of its own where the nearest one is a band away
+        inner = nodes if nodes.size else np.array([end])
+        if abs(values[begin] - values[inner[0]]) >= band:
+            nodes = np.concatenate([[begin], nodes])
+        inner = nodes if nodes.size else np.array([begin])
+        if abs(values[end] - values[inner[-1]]) >= band:
+            nodes = np.concatenate([nodes, [end]])
+        if nodes.size > 1:
+            near = _EDGE_SHARE * (nodes[-1] - nodes[0]) / (nodes.size - 1)
+            found.append(_Run(nodes, nodes[0] - begin <= near, end - nodes[-1] <= near))
+    return found
 
 
-def _cut(values: Floats, nodes: Indices, ranges: Floats, at_end: bool) -> None:
-    """Move an end to where a longer half cycle passes the level of its neighbour's other end."""
-    end, turn, level_node = (-1, -2, -3) if at_end else (0, 1, 2)
-    begin, stop = sorted((int(nodes[end]), int(nodes[turn])))
-    level = values[nodes[level_node]]
-    beyond = values[begin : stop + 1] <= level
-    if values[nodes[turn]] < level:
-        beyond = values[begin : stop + 1] >= level
-    passed = np.flatnonzero(beyond)
-    nodes[end] = begin + (passed[0] if at_end else passed[-1])
-    ranges[-1 if at_end else 0] = abs(values[nodes[turn]] - level)
+def _parts(values: Floats, run: _Run) -> list[_Run]:
+    """A stretch, parted at moves from one level to another; the move ends both parts."""
+    nodes = run.nodes
+    ranges = np.abs(np.diff(values[nodes]))
+    moves = 1 + np.flatnonzero(ranges[1:-1] >= ranges[:-2] + ranges[2:])
+    begins = np.concatenate([[0], moves])
+    ends = np.concatenate([moves + 2, [nodes.size]])
+    return [
+        _Run(
+            nodes[begin:end].copy(),
+            run.begins_at_edge and begin == 0,
+            run.ends_at_edge and end == nodes.size,
+        )
+        for begin, end in zip(begins, ends, strict=True)
+    ]
+
+
+def _is_cycling(ranges: Floats) -> bool:
+    """Whether two half cycles in a row have similar ranges."""
+    smaller = np.minimum(ranges[1:], ranges[:-1])
+    return bool((smaller >= (1 - _DIFFERENT) * np.maximum(ranges[1:], ranges[:-1])).any())
+
+
+def _passing(values: Floats, turn: int, end: int, level: float) -> int:
+    """Sample between a turn and a far end at which the signal passes a level."""
+    step = 1 if end > turn else -1
+    way = values[turn : end + step if end + step >= 0 else None : step]
+    beyond = way <= level if values[turn] > level else way >= level
+    return turn + step * int(np.argmax(beyond))
+
+
+def _fit_ends(values: Floats, run: _Run) -> tuple[Indices, list[int], list[int]]:
+    """Extremes of a run that cycles, with ends that ran on (second) and fell short (third)."""
+    nodes = run.nodes
+    ranges = np.abs(np.diff(values[nodes]))
+    cut, short = [], []
+    for end, turn, beside, at_edge in (
+        (0, 1, 2, run.begins_at_edge),
+        (-1, -2, -3, run.ends_at_edge),
+    ):
+        own, neighbour = ranges[end], ranges[-2 if end else 1]
+        if own > (1 + _DIFFERENT) * neighbour:
+            cut.append(int(nodes[turn]))
+            nodes[end] = _passing(values, nodes[turn], nodes[end], values[nodes[beside]])
+            ranges[end] = neighbour
+        # a short one between true reversals is whole: an amplitude that grows or decays
+        elif at_edge and own < (1 - _DIFFERENT) * neighbour:
+            short.append(end)
+    kept = nodes[1 if 0 in short else 0 : nodes.size - (-1 in short)]
+    return kept, cut, [int(nodes[end]) for end in short]
 
 
 def find_half_cycles(
@@ -193,7 +245,8 @@ def find_half_cycles(
 
     *Ends.* A first or last half cycle with a range over 1.3 times its neighbour's is cut
     where it passes the neighbour's level, cf. the return to slack after the tenth peak
-    in [1]_.  One below 0.7 times is incomplete and left out.
+    in [1]_.  One below 0.7 times that begins or ends with the record, at a standstill or
+    at a gap is incomplete and left out; between two reversals it is whole.
 
     Examples
     --------
@@ -211,92 +264,43 @@ def find_half_cycles(
     """
     half_duration = float(np.median(np.diff(time[reversals])))
     at, is_dwell = _dwells(values, reversals, standstills, band)
-    gap_before, gap_after = _gaps(
-        time, values, max(_GAP_SHARE * half_duration, _GAP_STEPS * _median_step(time))
-    )
+    longest = max(_GAP_SHARE * half_duration, _GAP_STEPS * median_step(time))
+    gap_before, gap_after = _gaps(time, values, longest)
     breaks = (
         np.concatenate([standstills.first[~is_dwell], gap_before]),
         np.concatenate([standstills.last[~is_dwell], gap_after]),
     )
-    arrives, leaves = reversals.copy(), reversals.copy()
-    arrives[at[is_dwell]] = standstills.first[is_dwell]
-    leaves[at[is_dwell]] = standstills.last[is_dwell]
-    dwell_at = {
-        int(node): (int(one), int(other))
-        for node, one, other in zip(
-            reversals[at[is_dwell]], arrives[at[is_dwell]], leaves[at[is_dwell]], strict=True
-        )
-    }
-
-    firsts, lasts, rising, runs = [], [], [], []
-    cut, short = [], []
-    n_runs = 0
+    runs: list[Indices] = []
+    cut: list[int] = []
+    short: list[int] = []
     for stretch in _stretches(values, reversals, breaks, band):
-        for nodes in _parts(values, stretch):
-            ranges = np.abs(np.diff(values[nodes]))
-            if not _is_cycling(ranges):
-                continue
-            if ranges[0] > (1 + _DIFFERENT) * ranges[1]:
-                cut.append(time[nodes[1]])
-                _cut(values, nodes, ranges, at_end=False)
-            if ranges[-1] > (1 + _DIFFERENT) * ranges[-2]:
-                cut.append(time[nodes[-2]])
-                _cut(values, nodes, ranges, at_end=True)
-            if ranges[0] < (1 - _DIFFERENT) * ranges[1]:
-                short.append(time[nodes[0]])
-                nodes, ranges = nodes[1:], ranges[1:]
-            if ranges.size > 1 and ranges[-1] < (1 - _DIFFERENT) * ranges[-2]:
-                short.append(time[nodes[-1]])
-                nodes, ranges = nodes[:-1], ranges[:-1]
-            firsts.append(nodes[:-1])
-            lasts.append(nodes[1:])
-            rising.append(values[nodes[1:]] > values[nodes[:-1]])
-            runs.append(np.full(nodes.size - 1, n_runs))
-            n_runs += 1
-    if not firsts:
-        none = np.empty(0, dtype=np.intp)
-        return HalfCycles(none, none, none > 0, none, ())
-    first, last = np.concatenate(firsts), np.concatenate(lasts)
-    if dwell_at:
-        first = np.array([dwell_at.get(int(i), (i, i))[1] for i in first])
-        last = np.array([dwell_at.get(int(i), (i, i))[0] for i in last])
+        for run in _parts(values, stretch):
+            if _is_cycling(np.abs(np.diff(values[run.nodes]))):
+                nodes, ran_on, fell_short = _fit_ends(values, run)
+                runs.append(nodes)
+                cut += ran_on
+                short += fell_short
+
     notes = []
-    if cut:
-        notes.append(
-            f"{len(cut)} first or last half cycles ran on beyond the level of their neighbours "
-            f"and are cut there, first near {cut[0]:g} s"
-        )
-    if short:
-        notes.append(
-            f"{len(short)} first or last half cycles fall short of their neighbours by more than "
-            f"30 % and are not counted, first near {short[0]:g} s"
-        )
-    if gap_before.size:
-        notes.append(
-            f"{gap_before.size} gaps longer than 30 % of a half cycle end a run of cycles, "
-            f"first near {time[gap_before[0]]:g} s"
-        )
-    return HalfCycles(first, last, np.concatenate(rising), np.concatenate(runs), tuple(notes))
-
-
-def _median_step(time: Floats) -> float:
-    """Median time step, of at most 100,001 steps."""
-    first = np.arange(0, time.size - 1, max(1, time.size // 100_001))
-    return float(np.median(time[first + 1] - time[first]))
-
-
-def _parts(values: Floats, nodes: Indices) -> list[Indices]:
-    """A stretch, parted at moves from one level to another; the move ends both parts."""
-    ranges = np.abs(np.diff(values[nodes]))
-    moves = 1 + np.flatnonzero(ranges[1:-1] >= ranges[:-2] + ranges[2:])
-    begins = np.concatenate([[0], moves])
-    ends = np.concatenate([moves + 2, [nodes.size]])
-    return [nodes[begin:end].copy() for begin, end in zip(begins, ends, strict=True)]
-
-
-def _is_cycling(ranges: Floats) -> bool:
-    """Whether two half cycles in a row have similar ranges."""
-    if ranges.size < 2:
-        return False
-    smaller = np.minimum(ranges[1:], ranges[:-1])
-    return bool((smaller >= (1 - _DIFFERENT) * np.maximum(ranges[1:], ranges[:-1])).any())
+    for samples, what in (
+        (cut, "half cycles at the end of a run, cut where they pass their neighbours' level"),
+        (short, "half cycles at the end of a run, 30 % short of their neighbours, not counted"),
+        (gap_before, "gaps of the record longer than 30 % of a half cycle, each the end of a run"),
+    ):
+        if len(samples):
+            notes.append(f"{what}: {len(samples)}, first near {time[samples[0]]:g} s")
+    empty = np.empty(0, dtype=np.intp)
+    first = np.concatenate([empty, *(nodes[:-1] for nodes in runs)])
+    last = np.concatenate([empty, *(nodes[1:] for nodes in runs)])
+    rises = values[last] > values[first]
+    # at a dwell one half cycle ends where the crosshead arrives, the next begins where it leaves
+    dwell = reversals[at[is_dwell]]
+    first = _replaced(first, dwell, standstills.last[is_dwell])
+    last = _replaced(last, dwell, standstills.first[is_dwell])
+    return HalfCycles(
+        first=first,
+        last=last,
+        rises=rises,
+        run=np.repeat(np.arange(len(runs)), [nodes.size - 1 for nodes in runs]),
+        notes=tuple(notes),
+    )

@@ -200,14 +200,15 @@ def first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
     Raises
     ------
     DataError
-        If fewer than 8 samples are finite, or all are zero.
+        If fewer than 8 samples are finite.
 
     Notes
     -----
-    The greater of the range that noise alone may span (`noise_range`) and a tenth of
-    the typical half cycle, found with the former: backward slips of a tenth of the
-    stroke make no cycles, and neither do the samples of a dwell.  Cycles smaller than a
-    tenth of the typical ones need a stated band.
+    The band is the greater of the range that noise alone may span (`noise_range`) and a
+    tenth of the typical half cycle: backward slips of less than a tenth of the stroke
+    make no cycles.  Slips part half cycles, so that the typical one is found again with
+    each wider band until it stays.  Cycles smaller than a tenth of the typical ones need
+    a stated band.
 
     Examples
     --------
@@ -218,14 +219,14 @@ def first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
     """
     values = np.asarray(values, dtype=np.float64)
     noise = noise_range(values)
-    if not noise > 0:
-        raise DataError("the channel is zero throughout", needed="a signal with reversals")
-    reversals = find_reversals(values, band=noise)
-    if reversals.size < 2:
-        return reversals, noise
-    band = max(noise, _BAND_SHARE * typical_range(values[reversals]))
-    # dropping with the smaller band first changes nothing
-    return reversals[find_reversals(values[reversals], band=band)], band
+    reversals, band = find_reversals(values, band=noise), noise
+    while reversals.size > 1:
+        wider = _BAND_SHARE * typical_range(values[reversals])
+        if wider <= band:
+            break
+        # dropping with the smaller band first changes nothing
+        reversals, band = reversals[find_reversals(values[reversals], band=wider)], wider
+    return reversals, band
 
 
 def estimate_band(values: ArrayLike) -> float:
@@ -244,7 +245,7 @@ def estimate_band(values: ArrayLike) -> float:
     Raises
     ------
     DataError
-        If fewer than 8 samples are finite, or all are zero.
+        If fewer than 8 samples are finite.
 
     Examples
     --------

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from reduction.errors import SettingsError
 from reduction.phases.noise import estimate_noise
+from reduction.phases.standstill import median_step
 from reduction.record import Bools, Floats
 
 __all__ = ["constant_rate_span", "stroke_span"]
@@ -27,7 +28,6 @@ _WIDEST = 4  # a window is at most this part of a branch
 _RATES_READ = 33
 _CELLS = 1 << 18  # samples looked at in one step, so that they stay in the cache
 _FIRST_STEPS = 8
-_STEPS_READ = 100_001
 _FEWEST = 8
 _STROKE_END = 0.05
 
@@ -165,10 +165,10 @@ def _window(time: Floats, travel: Floats, n_steps: Indices, noise: float) -> Ind
     """Steps between the two samples of a rate."""
     known = np.isfinite(travel) & (n_steps > 0)
     step_travel = float(np.median(np.abs(travel[known]) / n_steps[known])) if known.any() else 0.0
-    step_time = float(np.median(np.diff(time[:_STEPS_READ])))
+    step_time = median_step(time)
     time_noise = estimate_noise(time)[0] if time.size >= _FEWEST else 0.0
     share = 0.0
-    if step_travel > 0 and step_time > 0:
+    if step_travel > 0:
         share = hypot(noise / step_travel, time_noise / step_time)
     wanted = ceil(sqrt(2) * share / _RATE_NOISE - 1e-6)
     return np.clip(np.minimum(wanted, n_steps // _WIDEST), 1, None)

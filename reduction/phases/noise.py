@@ -21,6 +21,7 @@ __all__ = ["estimate_noise", "noise_range"]
 
 _STRETCHES, _STRETCH_SAMPLES = 64, 1024
 _ORDERS = (2, 4, 6)
+_TINY = 1e-12  # a channel that is zero throughout has a range to stay within, too
 _NORMAL_MEDIAN = 0.67449  # median of |z| of a normal variable
 _NOISE_WIDTHS = 10.0  # range of 10**6 normal samples, in standard deviations
 _QUANTA = 3.0  # range of a level between two steps, with noise below one step
@@ -115,7 +116,7 @@ def noise_range(values: ArrayLike) -> float:
     -------
     noise_range : float
         The greater of ten standard deviations of the noise and three quanta, at least 1e-9 of the
-        greatest magnitude, so that rounding alone is no movement. [unit of the channel]
+        greatest magnitude, so that rounding alone is no movement, and 1e-12. [unit of the channel]
 
     Raises
     ------
@@ -134,5 +135,5 @@ def noise_range(values: ArrayLike) -> float:
     """
     values = np.asarray(values, dtype=np.float64)
     noise, quantum = estimate_noise(values)
-    floor = 1e-9 * float(np.nanmax(np.abs(_stretches(values))))
+    floor = max(1e-9 * float(np.nanmax(np.abs(_stretches(values)))), _TINY)
     return max(_NOISE_WIDTHS * noise, _QUANTA * quantum, floor)

@@ -21,7 +21,7 @@ from reduction.phases.noise import noise_range
 from reduction.record import Bools, Floats, Integers, freeze_arrays
 from reduction.settings import PhaseSettings
 
-__all__ = ["Standstills", "find_standstills"]
+__all__ = ["Standstills", "find_standstills", "median_step"]
 
 _FEWEST_SAMPLES = 4  # two equal samples may be the two sides of a peak
 _SLACK_SHARE = 0.02
@@ -191,10 +191,30 @@ def _interval_means(values: Floats, first: Integers, last: Integers) -> Floats:
     return mean
 
 
-def _median_step(time: Floats) -> float:
-    """Median time step, of at most 100,001 steps."""
-    stride = max(1, time.size // _STEPS_READ)
-    first = np.arange(0, time.size - 1, stride)
+def median_step(time: Floats) -> float:
+    """Return the median time step, of at most 100,001 steps that advance.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time. [s]
+
+    Returns
+    -------
+    median_step : float
+        Greater than zero. [s]
+
+    Raises
+    ------
+    DataError
+        If time does not advance.
+
+    Examples
+    --------
+    >>> median_step(np.array([0.0, 0.1, 0.2, 0.2, 0.3, 60.0]))
+    0.1
+    """
+    first = np.arange(0, time.size - 1, max(1, time.size // _STEPS_READ))
     steps = time[first + 1] - time[first]
     steps = steps[steps > 0]
     if steps.size == 0:
@@ -284,7 +304,7 @@ def find_standstills(
     if slack is None:
         slack = _slack_tension(tension)
 
-    fewest = max(ceil(settings.minimum_duration / _median_step(time) - 1e-6) + 1, _FEWEST_SAMPLES)
+    fewest = max(ceil(settings.minimum_duration / median_step(time) - 1e-6) + 1, _FEWEST_SAMPLES)
     length = max(fewest // 4, 1)
     # a standstill of the fewest samples holds this many whole blocks, wherever it begins
     window = max((fewest - length + 1) // length, 1)
@@ -299,6 +319,10 @@ def find_standstills(
     first -= _reach(position, first, centre, tolerance / 2, -length)
     last += _reach(position, last, centre, tolerance / 2, length)
     last[:-1] = np.minimum(last[:-1], first[1:] - 1)
+
+    for edge, step in ((first, 1), (last, -1)):  # an edge is a sample that is there
+        for i in np.flatnonzero(np.isnan(position[edge])):
+            edge[i] += step * np.argmax(np.isfinite(position[first[i] : last[i] + 1][::step]))
 
     long_enough = (time[last] - time[first] >= settings.minimum_duration * (1 - 1e-6)) & (
         last - first + 1 >= _FEWEST_SAMPLES
