@@ -225,7 +225,7 @@ def fit_separable(
     lowest = np.inf
     for start in first_shapes:
         inner = least_squares(projected, start, x_scale="jac", xtol=NEAR, ftol=NEAR, gtol=NEAR)
-        if np.isfinite(inner.cost) and inner.cost < lowest:
+        if inner.cost < lowest and np.isfinite(weighted(inner.x)).all():
             best, lowest = np.asarray(inner.x, dtype=np.float64), float(inner.cost)
     if best is None:
         raise FitError("no start of the fit converges", found=f"{len(first_shapes)} starts")

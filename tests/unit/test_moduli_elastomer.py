@@ -1,0 +1,124 @@
+"""Elastomer fits: parameters come back, and unstable ones are named."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.moduli.elastomer import even_grid, fit_elastomers, is_stable, mooney_plot
+from reduction.moduli.hyperelastic import LAWS, hyperelastic_stress
+
+STRAIN = np.linspace(0.005, 2.75, 1500)
+EXAMPLE = {
+    "neo-hookean": {"shear_modulus": 4e5},
+    "mooney-rivlin": {"c10": 1.5e5, "c01": 0.6e5},
+    "yeoh": {"c10": 2e5, "c20": -8e3, "c30": 4e2},
+    "ogden-2": {"modulus_1": 4e5, "modulus_2": 2e3, "exponent_1": 1.3, "exponent_2": 5.0},
+}
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_law_gives_its_own_parameters_back_within_its_uncertainty(law):
+    rng = np.random.default_rng(1)
+    stress = hyperelastic_stress(STRAIN, law=law, parameters=EXAMPLE[law])
+    fits = fit_elastomers(STRAIN, stress + 500 * rng.standard_normal(STRAIN.size), specimen="new")
+    fit = fits[LAWS.index(law)]
+    assert (fit.specimen, fit.law) == ("new", law)
+    for name, value in EXAMPLE[law].items():
+        assert abs(fit.parameters[name] - value) < 4 * fit.standard_uncertainty[name]
+        assert fit.standard_uncertainty[name] < 0.05 * abs(value)
+    assert fit.strain_high == pytest.approx(2.75, abs=0.01)
+    assert fit.rms_stress < 300
+    others = [other.aicc for other in fits if len(other.parameters) < len(fit.parameters)]
+    assert all(fit.aicc < aicc for aicc in others)
+
+
+def test_a_hold_in_the_pull_does_not_count_for_more():
+    stress = hyperelastic_stress(STRAIN, law="yeoh", parameters=EXAMPLE["yeoh"])
+    held = np.concatenate([STRAIN, np.full(20000, STRAIN[700])])
+    loads = np.concatenate([stress, np.full(20000, stress[700])])
+    once, twice = (
+        fit_elastomers(x, y, specimen="a")[0] for x, y in [(STRAIN, stress), (held, loads)]
+    )
+    assert twice.parameters["shear_modulus"] == pytest.approx(
+        once.parameters["shear_modulus"], rel=1e-3
+    )
+
+
+def test_a_scaled_stress_scales_the_moduli_and_not_the_exponents():
+    stress = hyperelastic_stress(STRAIN, law="ogden-2", parameters=EXAMPLE["ogden-2"])
+    one, ten = (fit_elastomers(STRAIN, k * stress, specimen="a")[3] for k in (1, 10))
+    for name, value in one.parameters.items():
+        factor = 10 if name.startswith("modulus") else 1
+        assert ten.parameters[name] == pytest.approx(factor * value, rel=1e-5)
+
+
+def test_an_unstable_fit_says_so():
+    parameters = {"c10": 3e5, "c01": -1e5}
+    stress = hyperelastic_stress(STRAIN, law="mooney-rivlin", parameters=parameters)
+    fit = fit_elastomers(STRAIN, stress, specimen="new")[1]
+    assert not fit.is_stable
+    assert "not stable over its range: do not use it in a model" in fit.notes
+
+
+def test_a_parameter_not_told_from_zero_is_named():
+    rng = np.random.default_rng(2)
+    stress = hyperelastic_stress(STRAIN, law="neo-hookean", parameters=EXAMPLE["neo-hookean"])
+    fits = fit_elastomers(STRAIN, stress + 5e4 * rng.standard_normal(STRAIN.size), specimen="new")
+    assert any("not told from zero" in note for fit in fits for note in fit.notes)
+
+
+def test_a_law_that_cannot_be_fitted_gives_nan_and_the_reason():
+    fit = fit_elastomers(STRAIN, np.zeros_like(STRAIN), specimen="new")[3]
+    assert np.isnan(list(fit.parameters.values())).all()
+    assert fit.notes[0].startswith("not fitted: ")
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_sound_examples_are_stable(law):
+    assert is_stable(law=law, parameters=EXAMPLE[law], strain_high=2.75)
+
+
+def test_stability_is_asked_in_every_deformation():
+    # Uniaxial stress of this material rises throughout; the equibiaxial one does not.
+    parameters = {"c10": 3e5, "c01": -2e4}
+    grid = np.linspace(0, 3, 300)
+    stress = {
+        deformation: hyperelastic_stress(
+            grid, law="mooney-rivlin", parameters=parameters, deformation=deformation
+        )
+        for deformation in ("uniaxial", "equibiaxial")
+    }
+    assert np.all(np.diff(stress["uniaxial"]) > 0)
+    assert np.any(np.diff(stress["equibiaxial"]) < 0)
+    assert not is_stable(law="mooney-rivlin", parameters=parameters, strain_high=3.0)
+
+
+def test_an_empty_range_is_refused():
+    with pytest.raises(DataError, match="range of strain is empty; found 0 to 0"):
+        is_stable(law="yeoh", parameters=EXAMPLE["yeoh"], strain_high=0.0)
+
+
+def test_mooney_plot_of_a_mooney_rivlin_material_is_its_line():
+    stress = hyperelastic_stress(STRAIN, law="mooney-rivlin", parameters=EXAMPLE["mooney-rivlin"])
+    inverse, reduced = mooney_plot(STRAIN, stress)
+    shown = np.isfinite(reduced)
+    np.testing.assert_allclose(reduced[shown], 1.5e5 + 0.6e5 * inverse[shown], rtol=1e-9)
+    assert np.isnan(reduced[STRAIN <= 0.02]).all()
+
+
+def test_the_grid_leaves_out_slack_and_missing_samples():
+    strain, stress = even_grid(
+        [-0.1, 0.0, np.nan, 0.5, 1.0], [0.0, 0.0, 1.0, 5.0, 10.0], n_points=2
+    )
+    np.testing.assert_array_equal(strain, [0.75])
+    np.testing.assert_array_equal(stress, [7.5])
+
+
+def test_a_pull_that_never_stretches_is_refused():
+    with pytest.raises(DataError, match="no stretched sample; found 0 samples"):
+        even_grid([0.0, -1.0], [0.0, 0.0])
+
+
+def test_too_few_intervals_are_refused():
+    with pytest.raises(DataError, match="too few strain intervals hold a sample; found 5"):
+        fit_elastomers(np.linspace(0.1, 1, 5), np.ones(5), specimen="new")

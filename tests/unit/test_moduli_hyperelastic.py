@@ -1,0 +1,112 @@
+"""Stress of hyperelastic laws: limits, identities, and the work they come from."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.moduli.hyperelastic import (
+    LAWS,
+    hyperelastic_stress,
+    ogden_columns,
+    polynomial_columns,
+    small_strain_modulus,
+)
+
+EXAMPLE = {
+    "neo-hookean": {"shear_modulus": 4e5},
+    "mooney-rivlin": {"c10": 1.5e5, "c01": 0.6e5},
+    "yeoh": {"c10": 2e5, "c20": -8e3, "c30": 4e2},
+    "ogden-2": {"modulus_1": 4e5, "modulus_2": 2e3, "exponent_1": 1.3, "exponent_2": 5.0},
+}
+# Initial slope over shear modulus: uniaxial 3, equibiaxial 6, pure shear 4.
+INITIAL = {"uniaxial": 3.0, "equibiaxial": 6.0, "pure-shear": 4.0}
+
+
+def energy(law, parameters, principal):
+    """Strain energy from principal stretches, shape (3, n)."""
+    first = np.sum(principal**2, axis=0) - 3
+    second = np.sum(principal**-2.0, axis=0) - 3
+    if law == "neo-hookean":
+        return parameters["shear_modulus"] / 2 * first
+    if law == "mooney-rivlin":
+        return parameters["c10"] * first + parameters["c01"] * second
+    if law == "yeoh":
+        return sum(parameters[f"c{i}0"] * first**i for i in (1, 2, 3))
+    return sum(
+        parameters[f"modulus_{i}"]
+        / parameters[f"exponent_{i}"]
+        * (np.sum(principal ** parameters[f"exponent_{i}"], axis=0) - 3)
+        for i in (1, 2)
+    )
+
+
+def principal_stretches(stretch, deformation):
+    lateral = {
+        "uniaxial": [stretch**-0.5, stretch**-0.5],
+        "equibiaxial": [stretch, stretch**-2.0],
+        "pure-shear": [np.ones_like(stretch), 1 / stretch],
+    }[deformation]
+    return np.stack([stretch, *lateral])
+
+
+@pytest.mark.parametrize("deformation", list(INITIAL))
+@pytest.mark.parametrize("law", LAWS)
+def test_stress_is_the_derivative_of_the_energy(law, deformation):
+    stretch, step = np.linspace(1.05, 3.5, 50), 1e-5
+    work = [
+        energy(law, EXAMPLE[law], principal_stretches(stretch + side, deformation))
+        for side in (-step, step)
+    ]
+    pulls = 2 if deformation == "equibiaxial" else 1
+    expected = (work[1] - work[0]) / (2 * step) / pulls
+    found = hyperelastic_stress(
+        stretch - 1, law=law, parameters=EXAMPLE[law], deformation=deformation
+    )
+    np.testing.assert_allclose(found, expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize("deformation", list(INITIAL))
+@pytest.mark.parametrize("law", LAWS)
+def test_initial_slope_is_that_of_an_incompressible_solid(law, deformation):
+    step = 1e-6
+    stress = hyperelastic_stress(
+        [-step, step], law=law, parameters=EXAMPLE[law], deformation=deformation
+    )
+    slope = (stress[1] - stress[0]) / (2 * step)
+    shear_modulus = small_strain_modulus(law=law, parameters=EXAMPLE[law]) / 3
+    assert slope == pytest.approx(INITIAL[deformation] * shear_modulus, rel=1e-6)
+
+
+def test_mooney_rivlin_is_ogden_of_exponents_two_and_minus_two():
+    ogden = {"modulus_1": 3e5, "modulus_2": -1.2e5, "exponent_1": 2.0, "exponent_2": -2.0}
+    strain = np.linspace(0.1, 3, 20)
+    for deformation in INITIAL:
+        np.testing.assert_allclose(
+            hyperelastic_stress(strain, law="ogden-2", parameters=ogden, deformation=deformation),
+            hyperelastic_stress(
+                strain,
+                law="mooney-rivlin",
+                parameters={"c10": 1.5e5, "c01": 0.6e5},
+                deformation=deformation,
+            ),
+            rtol=1e-12,
+        )
+
+
+def test_an_impossible_stretch_is_refused():
+    with pytest.raises(DataError, match="stretch_ratio are not positive"):
+        hyperelastic_stress([-1.5], law="neo-hookean", parameters=EXAMPLE["neo-hookean"])
+
+
+def test_an_unknown_deformation_is_refused():
+    with pytest.raises(DataError, match="no such deformation; found torsion"):
+        polynomial_columns([1.0], law="yeoh", deformation="torsion")
+    with pytest.raises(DataError, match="no such deformation; found torsion"):
+        ogden_columns(np.ones(1), np.ones(1), deformation="torsion")
+
+
+def test_an_unknown_law_is_refused():
+    with pytest.raises(DataError, match="not a law in the invariants; found gent"):
+        polynomial_columns([1.0], law="gent")
+    with pytest.raises(DataError, match="no such law; found gent"):
+        small_strain_modulus(law="gent", parameters={})
