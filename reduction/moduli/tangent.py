@@ -9,7 +9,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,53 +20,14 @@ from reduction.cycles.product import Cycles
 from reduction.errors import DataError
 from reduction.moduli.blur import window_blur
 from reduction.moduli.grid import StrainGrid, strain_grid
+from reduction.moduli.groups import CycleGroups, select_cycles
 from reduction.moduli.moments import accumulate_moments, fit_windows
 from reduction.moduli.product import ModulusCurves
 from reduction.moduli.running import RunningStatistics
-from reduction.record import Bools, Floats, Integers
+from reduction.record import Floats, Integers
 from reduction.settings import ModulusSettings
 
-__all__ = ["select_cycles", "tangent_curves"]
-
-_BLOCK_SAMPLES = 1 << 16  # a block's temporaries stay in the processor's cache
-_BLOCK_CELLS = 1 << 16
-_END_CYCLES = 3  # kept at the start and end of a long test, enough for a mean of each
-
-
-def select_cycles(n_cycles: int, *, longest: int) -> Integers:
-    """Numbers of the cycles whose own curves are kept.
-
-    Parameters
-    ----------
-    n_cycles : int
-        Cycles of the test. [1]
-    longest : int
-        Longest test of which every cycle is kept. [1]
-
-    Returns
-    -------
-    selected : ndarray of int, shape (n_selected,)
-        Cycle numbers, from 1: all of a short test; of a long one the first three,
-        the last three, and between them about as many, spaced by equal ratio, as
-        make up ``longest``. [1]
-
-    Raises
-    ------
-    DataError
-        If there is no cycle.
-
-    Examples
-    --------
-    >>> print(select_cycles(3000, longest=12))
-    [   1    2    3    7   20   55  149  405 1103 2998 2999 3000]
-    """
-    if n_cycles < 1:
-        raise DataError("there is no cycle to select", found=f"{n_cycles}", needed="1 or more")
-    if n_cycles <= longest:
-        return np.arange(1, n_cycles + 1)
-    ends = np.arange(1, _END_CYCLES + 1)
-    spaced = np.geomspace(1, n_cycles, max(longest - 2 * _END_CYCLES + 3, 2))
-    return np.unique(np.concatenate([ends, np.rint(spaced).astype(int), n_cycles + 1 - ends]))
+__all__ = ["tangent_curves"]
 
 
 def pair_specimens(
@@ -82,38 +43,6 @@ def pair_specimens(
             needed="(n_specimens, n_samples) and (n_specimens,)",
         )
     return strains, tensions, areas
-
-
-@dataclass(frozen=True)
-class _Groups:
-    """Consecutive cycles that give one curve; group g holds cycles first[g]..first[g+1]-1."""
-
-    first: Integers
-    of_cycle: Integers  # by cycle number, index 0 (outside cycles) is -1
-    is_break_in: Bools
-
-    @classmethod
-    def of(cls, n_cycles: int, break_in_cycles: int, pooled: int) -> _Groups:
-        # The last group takes the remainder: a group of fewer cycles than the
-        # others would be a curve of fewer samples than a window needs.
-        n_after = max((n_cycles - break_in_cycles) // pooled, 1)
-        after = break_in_cycles + pooled * np.arange(n_after)
-        before = np.arange(0, break_in_cycles, pooled)
-        first = np.concatenate([before, after])
-        of_cycle = np.searchsorted(first, np.arange(n_cycles), side="right") - 1
-        return cls(first, np.concatenate([[-1], of_cycle]), first < break_in_cycles)
-
-    def blocks(self, cycles: Cycles, n_bins: int) -> Iterator[tuple[int, int, slice]]:
-        """Groups [start, stop) and their samples, small enough to stay in the cache."""
-        start_sample = cycles.first[self.first]
-        start, n_groups = 0, self.first.size
-        most_groups = max(_BLOCK_CELLS // (4 * n_bins), 1)
-        while start < n_groups:
-            stop = int(np.searchsorted(start_sample, start_sample[start] + _BLOCK_SAMPLES))
-            stop = min(max(stop, start + 1), start + most_groups, n_groups)
-            last_cycle = self.first[stop] - 1 if stop < n_groups else cycles.n_cycles - 1
-            yield start, stop, slice(int(start_sample[start]), int(cycles.last[last_cycle]) + 1)
-            start = stop
 
 
 @dataclass(frozen=True)
@@ -133,7 +62,7 @@ def _reduce_specimen(
     tension: Floats,
     *,
     cycles: Cycles,
-    groups: _Groups,
+    groups: CycleGroups,
     grid: StrainGrid,
     minimum_count: int,
     selected: Integers,
@@ -292,7 +221,7 @@ def tangent_curves(
             found=f"{n_cycles} cycles, {break_in_cycles} of them break-in",
             needed="at least one cycle more than cycles.break_in_cycles",
         )
-    groups = _Groups.of(n_cycles, break_in_cycles, grid.cycles_pooled)
+    groups = CycleGroups.of(n_cycles, break_in_cycles, grid.cycles_pooled)
     numbers = select_cycles(n_cycles, longest=settings.selected_cycles)
     selected = np.unique(groups.of_cycle[numbers])
     specimens = [
@@ -350,7 +279,10 @@ def tangent_curves(
 
 
 def _notes(
-    grid: StrainGrid, groups: _Groups, break_in_cycles: int, specimens: Sequence[_SpecimenCurves]
+    grid: StrainGrid,
+    groups: CycleGroups,
+    break_in_cycles: int,
+    specimens: Sequence[_SpecimenCurves],
 ) -> list[str]:
     notes = [f"tangent modulus by local regression in a window of {grid.window:g} of strain"]
     if break_in_cycles:

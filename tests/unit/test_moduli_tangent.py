@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError
-from reduction.moduli import tangent
+from reduction.moduli import groups
 from reduction.moduli.grid import strain_grid
-from reduction.moduli.tangent import select_cycles, tangent_curves
+from reduction.moduli.tangent import tangent_curves
 from reduction.settings import ModulusSettings
 
 AREA = 5e-4
@@ -169,7 +169,7 @@ def test_size_of_a_block_changes_nothing(triangle, monkeypatch):
     strain, cycles = triangle(n_cycles=60, per_cycle=60)
     tension = law(strain) + rng.normal(0, 1, strain.shape)
     whole = curves_of(strain, tension, cycles)
-    monkeypatch.setattr(tangent, "_BLOCK_SAMPLES", 100)
+    monkeypatch.setattr(groups, "_BLOCK_SAMPLES", 100)
     pieces = curves_of(strain, tension, cycles)
     for item in dataclasses.fields(whole):
         one, other = getattr(whole, item.name), getattr(pieces, item.name)
@@ -184,25 +184,11 @@ def test_grid_of_the_whole_record_can_be_given(triangle):
     assert curves.window == pytest.approx(grid.window)
 
 
-def test_long_test_keeps_first_last_and_spaced_cycles(triangle):
-    numbers = select_cycles(3000, longest=24)
-    assert len(numbers) <= 24
-    assert list(numbers[:3]) == [1, 2, 3]
-    assert list(numbers[-3:]) == [2998, 2999, 3000]
+def test_long_test_keeps_the_curves_of_selected_cycles(triangle):
     strain, cycles = triangle(n_cycles=40, per_cycle=100)
     curves = curves_of(strain, law(strain), cycles)
     assert curves.tangent_modulus_by_cycle.shape[1] == curves.selected_cycle.size <= 24
     assert list(curves.selected_cycle[[0, -1]]) == [1, 40]
-
-
-@pytest.mark.parametrize("n_cycles", [1, 24])
-def test_short_test_keeps_every_cycle(n_cycles):
-    assert list(select_cycles(n_cycles, longest=24)) == list(range(1, n_cycles + 1))
-
-
-def test_selection_from_no_cycle_is_refused():
-    with pytest.raises(DataError, match="no cycle to select; found 0"):
-        select_cycles(0, longest=24)
 
 
 def test_break_in_of_every_cycle_is_refused(triangle):
