@@ -119,9 +119,11 @@ def _sample_spacing(strain: Floats, cycles: Cycles, stroke: float) -> float:
         cycles.branch_first[chosen].ravel(), cycles.branch_last[chosen].ravel(), strict=True
     ):
         kept = first + np.flatnonzero(cycles.is_constant_rate[first : last + 1])
-        if kept.size > 1:
+        if kept.size < 2:  # nothing at constant rate: the untrimmed curve alone can be had
+            kept = np.array([first, last])
+        if last > first:
             travel = np.abs(strain[:, kept[-1]] - strain[:, kept[0]])
-            spacings.append(travel / (kept.size - 1))
+            spacings.append(travel / (kept[-1] - kept[0]))
     known = np.asarray(spacings)
     known = known[np.isfinite(known)]
     return float(np.median(known)) if known.size else stroke

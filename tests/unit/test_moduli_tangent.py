@@ -137,6 +137,16 @@ def test_trimmed_ends_are_in_the_untrimmed_curve_alone(triangle):
     assert np.isfinite(whole).sum() > np.isfinite(trimmed).sum()
 
 
+def test_test_without_a_constant_rate_still_has_an_untrimmed_curve(triangle):
+    strain, cycles = triangle(per_cycle=200)
+    never = dataclasses.replace(cycles, is_constant_rate=np.zeros(strain.size, dtype=bool))
+    curves = curves_of(strain, law(strain), never)
+    assert np.isnan(curves.tangent_modulus).all()
+    ratio = curves.tangent_modulus_untrimmed[0] * AREA / law_slope(curves.strain_bin)
+    assert np.nanmax(np.abs(ratio - 1)) < 0.002
+    assert any("no tangent modulus" in note for note in curves.notes)
+
+
 def test_missing_samples_leave_a_smaller_count_and_no_bias(triangle):
     strain, cycles = triangle(per_cycle=400)
     tension = law(strain)
