@@ -17,7 +17,7 @@ from reduction.cycles.find import find_cycles
 from reduction.cycles.label import label_phases
 from reduction.cycles.loops import close_loops
 from reduction.cycles.product import Cycles
-from reduction.errors import DataError
+from reduction.errors import DataError, FitError
 from reduction.holds.reduce import reduce_holds
 from reduction.moduli.amplitude import summarise_amplitude
 from reduction.moduli.compare import compare_curves
@@ -46,8 +46,6 @@ __all__ = ["CYCLIC", "Located", "locate", "reduce_steps", "reduce_test"]
 CYCLIC = ("cyclic", "fatigue")
 PULLED = ("quasi-static", "tensile")
 HELD = ("relaxation", "creep")
-# fewer bins than this leave a hyperelastic law of four parameters no freedom
-FEWEST_FOR_A_LAW = 8
 _UNUSABLE = Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE
 
 
@@ -161,18 +159,20 @@ def _of_cycles(
 
 def _elastomers(
     name: str, strain: Floats, stress: Floats, earlier_maximum_strain: float
-) -> tuple[ElastomerFit, ...]:
+) -> tuple[tuple[ElastomerFit, ...], str]:
+    """Hyperelastic laws of one first loading, or the reason why there are none."""
     known = np.isfinite(stress)
-    if known.sum() < FEWEST_FOR_A_LAW:
-        return ()
-    fits = fit_elastomers(strain[known], stress[known], specimen=name)
+    try:
+        fits = fit_elastomers(strain[known], stress[known], specimen=name)
+    except (DataError, FitError) as error:
+        return (), f"{name}: no hyperelastic law from the first loading: {error}"
     if not np.isfinite(earlier_maximum_strain):
-        return fits
+        return fits, ""
     note = (
         "not a first loading of the specimen: earlier tests reached "
         f"{100 * earlier_maximum_strain:.0f} %, and below that the rubber is softened"
     )
-    return tuple(replace(fit, notes=(*fit.notes, note)) for fit in fits)
+    return tuple(replace(fit, notes=(*fit.notes, note)) for fit in fits), ""
 
 
 def _of_first_loading(
@@ -198,13 +198,12 @@ def _of_first_loading(
     }
     if located.standstills.is_rest.any() or located.cycles is None:
         earlier = np.full(area.size, np.nan) if history is None else history.earlier_maximum_strain
-        parts["elastomers"] = tuple(
-            fit
+        found = [
+            _elastomers(name, curves.strain_bin, rise[index] / area[index], float(earlier[index]))
             for index, name in enumerate(located.record.specimens)
-            for fit in _elastomers(
-                name, curves.strain_bin, rise[index] / area[index], float(earlier[index])
-            )
-        )
+        ]
+        parts["elastomers"] = tuple(fit for fits, _ in found for fit in fits)
+        parts["notes"] = [reason for _, reason in found if reason]
     return parts
 
 
@@ -270,6 +269,7 @@ def reduce_test(
         ),
     )
     notes = [note for specimen in specimens for note in check_constant_volume(specimen)]
+    notes += parts.pop("notes", [])
     notes += [
         f"{name}, permanent set: {text}"
         for name, text in zip(record.specimens, remarks, strict=True)

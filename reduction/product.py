@@ -23,7 +23,7 @@ from reduction.moduli.product import (
 from reduction.moduli.stepwise import StepwiseResult
 from reduction.phases.standstill import Standstills
 from reduction.provenance import Source, Step
-from reduction.record import Floats, Record, Specimen
+from reduction.record import Floats, Integers, Record, Specimen
 from reduction.strain.model import StrainModel
 
 __all__ = ["History", "ReducedTest", "TestDescription"]
@@ -78,7 +78,7 @@ class ReducedTest:
     notes: tuple[str, ...]
     history: History | None = None
     standstills: Standstills | None = None
-    phase: Floats | None = None
+    phase: Integers | None = None
     strain: Floats | None = None
     strain_models: tuple[StrainModel, ...] = ()
     cycles: Cycles | None = None

@@ -1,0 +1,53 @@
+"""The synthetic campaign, run once by the installed command, for all tests that look at it."""
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def reduction(*arguments, cwd=ROOT, **environment):
+    """Run the command as a user would, in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "reduction", *map(str, arguments)],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONPATH": str(ROOT)} | environment,
+    )
+
+
+@dataclass(frozen=True)
+class Run:
+    processed: Path
+    reports: Path
+    done: subprocess.CompletedProcess
+
+
+def run_campaign(name, folder, *options, **environment):
+    done = reduction(
+        "run", ROOT / "raw" / name / "campaign.toml", "--processed", folder / "processed",
+        "--reports", folder / "reports", *options, **environment,
+    )  # fmt: skip
+    return Run(folder / "processed" / name, folder / "reports" / name, done)
+
+
+@pytest.fixture(scope="session")
+def command():
+    return reduction
+
+
+@pytest.fixture(scope="session")
+def synthetic(tmp_path_factory):
+    return run_campaign("tmt-synthetic", tmp_path_factory.mktemp("synthetic"), "--json")
+
+
+@pytest.fixture(scope="session")
+def static(tmp_path_factory):
+    return run_campaign("buoy-technology-1997", tmp_path_factory.mktemp("static"))

@@ -1,0 +1,171 @@
+"""The main job end to end on the two campaigns of the project, against the truth and the page."""
+
+import csv
+import hashlib
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from reduction.archive.open import open_archive
+
+pytestmark = pytest.mark.xdist_group("campaign")
+ROOT = Path(__file__).parents[2]
+TRUTH = ROOT / "raw" / "tmt-synthetic" / "truth"
+PSI = 4.4482216152605 / 0.0254**2
+TESTS = [f"T-{n}" for n in range(1, 7)]
+TEN = {
+    *TESTS, "T-4-extended", "T-4-extended-start", "T-4-extended-end", "overnight-hold",
+}  # fmt: skip
+
+
+def table(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def truth(test):
+    with (TRUTH / f"{test}_cycles.csv").open(encoding="utf-8") as file:
+        names = file.readline().strip().split(",")
+    values = np.genfromtxt(TRUTH / f"{test}_cycles.csv", delimiter=",", skip_header=1)
+    return dict(zip(names, values.T, strict=True))
+
+
+def hashes(folder):
+    return {
+        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.name != "status.csv"
+    }
+
+
+def test_ten_tests_are_reduced_and_the_exit_status_is_zero(synthetic):
+    assert synthetic.done.returncode == 0, synthetic.done.stderr
+    answer = json.loads(synthetic.done.stdout)
+    assert {test["id"] for test in answer["tests"]} == TEN
+    assert {test["status"] for test in answer["tests"]} <= {"reduced", "reduced_with_notes"}
+    cycles = {test["id"]: test["n_cycles"] for test in answer["tests"]}
+    assert all(cycles[test] == 10 for test in TESTS)
+    assert cycles["T-4-extended"] == 3000
+    assert cycles["T-4-extended-start"] == cycles["T-4-extended-end"] == 20
+    assert cycles["overnight-hold"] == 0
+    assert set(answer["tests"][0]) >= {
+        "id", "status", "exit_status", "message", "n_rows", "n_cycles", "seconds",
+    }  # fmt: skip
+
+
+def test_products_stand_where_the_contract_says(synthetic):
+    files = hashes(synthetic.processed)
+    assert {f"{test}.nc" for test in TEN} <= set(files)
+    assert {f"tables/{name}.csv" for name in ("moduli", "cycles", "relaxation", "columns")} <= set(
+        files
+    )
+    assert [row["test"] for row in table(synthetic.processed / "status.csv")] != []
+    assert (synthetic.reports / "index.html").stat().st_size < 15e6
+
+
+@pytest.mark.parametrize("specimen", ["new", "used"])
+@pytest.mark.parametrize("branch", ["ascending", "descending"])
+@pytest.mark.parametrize("test", TESTS)
+def test_tangent_modulus_against_the_truth(synthetic, test, branch, specimen):
+    true = truth(test)
+    strain, modulus = true[f"eps_free_{specimen}"], true[f"E_tangent_psi_{specimen}"] * PSI
+    moves = np.gradient(strain) > 0 if branch == "ascending" else np.gradient(strain) < 0
+    with open_archive(synthetic.processed / f"{test}.nc") as archive:
+        curve = archive["tangent_modulus"].values[
+            list(archive["specimen"].values).index(specimen),
+            ["ascending", "descending"].index(branch),
+        ]
+        bounds = archive["strain_bin_bounds"].values
+    inside = [moves & (strain >= low) & (strain < high) for low, high in bounds]
+    expected = np.array([np.median(modulus[at]) if at.any() else np.nan for at in inside])
+    error = np.abs(curve / expected - 1)
+    assert np.isfinite(error).sum() > 30
+    assert np.nanmedian(error) <= 0.02
+
+
+@pytest.mark.parametrize("test", TESTS)
+def test_strain_against_the_truth(synthetic, test):
+    true = truth(test)
+    with open_archive(synthetic.processed / f"{test}.nc") as archive:
+        for index, specimen in enumerate(archive["specimen"].values):
+            at = np.interp(true["time_s"], archive["time"].values, archive["strain"].values[index])
+            # quantised position leaves 0.0122 ft / sqrt(12) on 8.4 ft; the rest is the method
+            assert np.mean(at - true[f"eps_free_{specimen}"]) == pytest.approx(0, abs=0.004)
+
+
+def test_slips_of_the_extended_test_are_found_and_dated(synthetic):
+    rows = table(synthetic.processed / "tables" / "slips.csv")
+    assert [row["specimen"] for row in rows] == ["new", "new"]
+    assert {row["test"] for row in rows} == {"T-4-extended"}
+    for row, onset in zip(rows, (601, 1501), strict=True):
+        assert abs(int(row["slip_cycle"]) - onset) <= 20
+
+
+def test_synthetic_data_say_so_wherever_they_go(synthetic):
+    for path in synthetic.processed.glob("*.nc"):
+        with open_archive(path) as archive:
+            assert archive.attrs["synthetic"] == "yes"
+            assert "synthetic" in archive.attrs["title"].lower()
+            assert "synthetic" in archive.attrs["source"].lower()
+    for path in (synthetic.processed / "tables").glob("*.csv"):
+        if path.name != "columns.csv":
+            assert all(row["synthetic"] == "yes" for row in table(path)), path.name
+    assert "SYNTHETIC" in (synthetic.reports / "index.html").read_text(encoding="utf-8")
+
+
+def test_first_tests_have_no_history_and_later_ones_the_sum_of_it(synthetic):
+    rows = {
+        (row["test"], row["specimen"]): row
+        for row in table(synthetic.processed / "tables" / "history.csv")
+    }
+    assert float(rows["T-1", "new"]["earlier_cycles [1]"]) == 0
+    assert float(rows["T-6", "new"]["earlier_cycles [1]"]) == 50
+    # the bursts are parts of the extended test: its cycles are not counted twice
+    assert float(rows["T-4-extended-end", "new"]["earlier_cycles [1]"]) == 60
+    assert float(rows["overnight-hold", "used"]["earlier_cycles [1]"]) == 3060
+    strain = float(rows["T-4-extended", "new"]["earlier_maximum_strain [1]"])
+    true = np.genfromtxt(TRUTH / "marks.csv", delimiter=",", names=True, dtype=None, encoding=None)
+    top = true[(true["test"] == "T-6") & (true["specimen"] == "new") & (true["hold"] == "max")]
+    assert strain == pytest.approx(float(top["stretch_true"][0]), abs=0.03)
+
+
+def test_two_runs_give_the_same_bytes_in_another_place_time_zone_and_locale(
+    synthetic, tmp_path_factory
+):
+    folder = tmp_path_factory.mktemp("again")
+    done = subprocess.run(
+        [
+            sys.executable, "-m", "reduction", "run", "raw/tmt-synthetic/campaign.toml",
+            "--processed", str(folder / "p"), "--reports", str(folder / "r"), "--quiet",
+        ],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+        env={"PATH": "/usr/bin:/bin", "TZ": "Asia/Kathmandu", "LC_ALL": "C", "PYTHONHASHSEED": "7"},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == ""
+    assert hashes(folder / "p" / "tmt-synthetic") == hashes(synthetic.processed)
+
+
+def test_every_product_follows_cf(synthetic, static):
+    products = [*synthetic.processed.glob("*.nc"), *static.processed.glob("*.nc")]
+    assert len(products) == 11
+    done = subprocess.run(
+        [sys.executable, str(ROOT / "tests" / "compliance.py"), *map(str, products)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-4000:]
+
+
+def test_static_test_is_reduced_and_its_odd_rows_are_flagged(static):
+    assert static.done.returncode == 0, static.done.stderr
+    rows = {row["clock"]: row for row in table(static.processed / "tables" / "stepwise.csv")}
+    assert len(rows) == 15
+    flags = {clock: row["step_flag"] for clock, row in rows.items() if row["step_flag"]}
+    assert set(flags) == {"1205", "1325"}
+    with open_archive(static.processed / "static.nc") as archive:
+        # WHOI-2005-10 prints a free length of 18 in; length and elongation give 6.125 in
+        assert float(archive["relaxed_gauge_length"]) / 0.0254 == pytest.approx(6.125, abs=0.005)
