@@ -22,7 +22,7 @@ _NOT_SHOWN = "no archive"
 _WARNING = re.compile(
     r"contradict|disagree|inconsisten|extrapolat|outside|saturat|stuck|spike|backward|repeated"
     r"|\bgaps?\b|missing|broken|slipped|steps? of|not stable|do not use|not a first loading|unequal"
-    r"|fewer|second look|implies|points off|grows",
+    r"|fewer|second look|implies|points off|grows|gives no|creep, not",
     re.IGNORECASE,
 )
 _NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
@@ -108,13 +108,17 @@ def tiles(
     n_specimens = len({name for view in tests for name in view.specimens})
     n_cycles = sum(view.n_cycles for view in tests)
     return [
-        Tile(f"{n_tests:,}", "tests" if n_tests != 1 else "test", "tested"),
-        Tile(f"{n_specimens:,}", "specimens" if n_specimens != 1 else "specimen", "tested"),
-        Tile(f"{n_cycles:,}", "cycles reduced", "answer"),
-        Tile(f"{counts['failure']:,}", "failures", "wrong", counts["failure"] > 0),
-        Tile(f"{counts['warning']:,}", "warnings", "wrong", counts["warning"] > 0),
-        Tile(f"{counts['note'] + counts['refusal']:,}", "other notes", "wrong"),
+        _tile(n_tests, "test", "tested"),
+        _tile(n_specimens, "specimen", "tested"),
+        _tile(n_cycles, "cycle", "answer"),
+        _tile(counts["failure"], "failure", "wrong", is_bad=counts["failure"] > 0),
+        _tile(counts["warning"], "warning", "wrong", is_bad=counts["warning"] > 0),
+        _tile(counts["note"] + counts["refusal"], "other note", "wrong"),
     ]
+
+
+def _tile(number: int, noun: str, target: str, *, is_bad: bool = False) -> Tile:
+    return Tile(f"{number:,}", noun if number == 1 else f"{noun}s", target, is_bad)
 
 
 def _all_faults(

@@ -243,6 +243,16 @@ def test_failures_come_first_and_a_kept_archive_is_called_old(report, rich_test)
     assert ["T-9", "failed, no archive"] in [[row[0][1], row[-1][1]] for row in rows]
 
 
+def test_notes_that_differ_in_numbers_alone_stand_once_on_top_and_all_in_their_section(
+    report, rich_test
+):
+    notes = tuple(f"window of 0.{place} of strain" for place in range(5))
+    page = report(replace(rich_test, notes=notes), renamed(rich_test, "T-2"))
+    text = "".join(page.text)
+    assert text.count("of strain (and 4 more like it)") == 1
+    assert all(text.count(note) >= 1 for note in notes)
+
+
 def test_an_archive_from_other_raw_files_is_a_warning(report, rich_test):
     page = report(rich_test, status=STATUS + "T-1,reduced,0,,abc,0.1\r\n")
     assert "other raw files than status.csv" in "".join(page.text)
@@ -296,7 +306,7 @@ def test_headings_go_down_one_level_at_a_time_and_tables_say_what_heads_what(rep
 def test_a_plot_says_what_it_shows_and_has_a_caption(report, rich_test):
     page = report(rich_test)
     plots = [a for _, a in page.elements if a.get("class") == "plot"]
-    assert all(a["role"] == "img" and a["aria-label"] for a in plots)
+    assert all(a["role"] == "group" and a["aria-label"] for a in plots)
     assert len(plots) == sum(tag == "figcaption" for tag, _ in page.elements) > 0
 
 
