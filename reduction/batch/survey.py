@@ -31,8 +31,8 @@ class Survey:
     """One test after the first pass.
 
     ``mark_tension`` holds, by specimen, one tension [N] for each pooled mark that was
-    read in this test, in the order of the marks.  ``greatest`` holds, by specimen, the
-    position [m] and tension [N] where the position is greatest, and the greatest tension.
+    read in this test, in the order of the marks.  ``greatest`` holds, by specimen, position
+    [m] and tension [N] where the strain is greatest, and the greatest tension [N].
     """
 
     plan: TestPlan
@@ -126,7 +126,11 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
         readings, sources = read_step_readings(files, test_id=plan.id)
         return [Survey(plan, sources, steps=readings, n_rows=readings.time.size)]
     record, sources = read_record(
-        files, test_id=plan.id, specimens=plan.specimens, quality=plan.settings.quality
+        files,
+        test_id=plan.id,
+        specimens=plan.specimens,
+        quality=plan.settings.quality,
+        length_needed=_needs_length(campaign, plan),
     )
     if not plan.steps:
         return [_located(plan, record, sources)]
@@ -141,6 +145,14 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
     return surveys
 
 
+def _needs_length(campaign: Campaign, plan: TestPlan) -> bool:
+    """Whether strain of some specimen comes from the distance between the thimbles."""
+    method = plan.settings.strain.method
+    if method is not None:
+        return method not in ("extensometer", "gauge-length")
+    return any(name in campaign.marks for name in plan.specimens)
+
+
 def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Survey:
     located = locate(record, kind=plan.kind, settings=plan.settings)
     survey = Survey(plan, sources, located, n_rows=record.n_samples)
@@ -149,14 +161,31 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
     )
     survey.has_extensometer = record.measured_strain is not None
     survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
-    position = record.crosshead_position
-    if np.isfinite(position).any():
-        far = int(np.nanargmax(position))
-        for index, name in enumerate(plan.specimens):
-            tension = record.tension[index]
-            peak = float(np.nanmax(tension)) if np.isfinite(tension).any() else float("nan")
-            survey.greatest[name] = (float(position[far]), float(tension[far]), peak)
+    survey.greatest = _greatest(located)
     return survey
+
+
+def _greatest(located: Located) -> dict[str, tuple[float, float, float]]:
+    """Where the position is greatest: position, least tension there, and greatest tension.
+
+    At a held length the rubber goes on stretching as its splices relax, so the greatest
+    strain stands where tension is least among the samples at the greatest position.
+    """
+    record = located.record
+    position = record.crosshead_position
+    if not np.isfinite(position).any():
+        return {}
+    far = float(np.nanmax(position))
+    at_top = np.flatnonzero(position >= far - located.standstills.position_tolerance)
+    found = {}
+    for name, tension in zip(record.specimens, record.tension, strict=True):
+        if np.isfinite(tension[at_top]).any():
+            found[name] = (
+                float(np.nanmedian(position[at_top])),
+                float(np.nanmin(tension[at_top])),
+                float(np.nanmax(tension)),
+            )
+    return found
 
 
 def _measure_marks(survey: Survey, marks: dict[str, SpliceMarks]) -> None:
