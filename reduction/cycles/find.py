@@ -268,8 +268,8 @@ def _counter_notes(
     still = stroke < band
     if still.any():
         notes.append(
-            f"{int(still.sum())} counted cycles have no stroke, machine cycle "
-            f"{int(number[np.argmax(still)])} first"
+            f"counted cycles without a stroke: {int(still.sum())}, first machine cycle "
+            f"{int(number[np.argmax(still)])}"
         )
     if number.size and (np.diff(number) != 1).any():
         row = int(np.argmax(np.diff(number) != 1))

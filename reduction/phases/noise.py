@@ -23,7 +23,7 @@ _STRETCHES, _STRETCH_SAMPLES = 64, 1024
 _ORDERS = (2, 4, 6)
 _TINY = 1e-12  # a channel that is zero throughout has a range to stay within, too
 _NORMAL_MEDIAN = 0.67449  # median of |z| of a normal variable
-_NOISE_WIDTHS = 10.0  # range of 10**6 normal samples, in standard deviations
+_NOISE_WIDTHS = 12.0  # range that 10**7 normal samples hardly leave, in standard deviations
 _QUANTA = 3.0  # range of a level between two steps, with noise below one step
 _FLICKER_SHARE = 0.2  # steps undone by the next step; 0.1 at 10 samples a triangle's branch
 
@@ -105,7 +105,7 @@ def estimate_noise(values: ArrayLike) -> tuple[float, float]:
 
 
 def noise_range(values: ArrayLike) -> float:
-    """Range that noise alone may span in a channel: ten deviations or three quanta.
+    """Range that noise alone may span in a channel: twelve deviations or three quanta.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def noise_range(values: ArrayLike) -> float:
     Returns
     -------
     noise_range : float
-        The greater of ten standard deviations of the noise and three quanta, at least 1e-9 of the
+        The greater of twelve standard deviations of the noise and three quanta, at least 1e-9 of the
         greatest magnitude, so that rounding alone is no movement, and 1e-12. [unit of the channel]
 
     Raises
@@ -125,13 +125,13 @@ def noise_range(values: ArrayLike) -> float:
 
     Notes
     -----
-    A million normal samples span ten deviations; a level between two codes with noise
+    Ten million normal samples span eleven deviations; a level between two codes with noise
     below one of them flickers over two or three, cf. the 12-bit position of [1]_.
 
     Examples
     --------
     >>> print(round(noise_range(np.random.default_rng(0).normal(0, 0.5, 5000)), 1))
-    5.1
+    6.1
     """
     values = np.asarray(values, dtype=np.float64)
     noise, quantum = estimate_noise(values)

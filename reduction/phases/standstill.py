@@ -119,7 +119,8 @@ def _still_blocks(
             continue
         firsts, lasts = begin + firsts, begin + lasts
         low, high = _extremes_between(least, greatest, firsts, lasts)
-        within = high - low <= tolerance
+        # a window at each end may hold the begin of a move, one up and one down
+        within = high - low <= 2 * tolerance
         found.append(np.column_stack([firsts, lasts])[within])
         work += [
             (int(first), int(last) + 1, 2 * width)
@@ -263,7 +264,9 @@ def find_standstills(
     Notes
     -----
     *Tolerance.* None: `noise_range` of position.  The crosshead stands where the range
-    of position over the whole interval stays within it.
+    of position stays within it over every stretch of the shortest duration, and within
+    twice that over the whole interval; the edges are where it comes and goes nearer to
+    the mean than half the tolerance.
 
     *Duration.* At least ``minimum_duration`` and at least four samples, so that the two
     samples beside a peak of a slow log are no hold.  A movement too slow to leave the
@@ -316,6 +319,16 @@ def find_standstills(
     first = first_block * length
     last = np.minimum((last_block + 1) * length, position.size) - 1
     centre = _interval_means(position, first, last)
+    for block, step in ((first_block, 1), (last_block, -1)):  # a block that moves is no edge
+        outside = np.ones(centre.size, dtype=bool)
+        while outside.any():
+            outside = (greatest[block] - centre > tolerance / 2) | (
+                centre - least[block] > tolerance / 2
+            )
+            outside &= first_block < last_block
+            block[outside] += step
+    first = first_block * length
+    last = np.minimum((last_block + 1) * length, position.size) - 1
     first -= _reach(position, first, centre, tolerance / 2, -length)
     last += _reach(position, last, centre, tolerance / 2, length)
     last[:-1] = np.minimum(last[:-1], first[1:] - 1)

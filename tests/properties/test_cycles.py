@@ -1,0 +1,98 @@
+"""Laws of reversals and cycles: what does not change when the signal is scaled, shifted, mirrored."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from reduction.cycles.find import find_cycles
+from reduction.cycles.reversals import find_reversals
+from reduction.phases.standstill import find_standstills
+from reduction.settings import CycleSettings, PhaseSettings
+
+# eighths and powers of two: scaling and shifting them rounds nothing
+LEVELS = st.integers(-400, 400).map(lambda level: level / 8)
+SIGNALS = st.integers(2, 120).flatmap(lambda n: arrays(np.float64, n, elements=LEVELS))
+BANDS = st.integers(1, 400).map(lambda band: band / 8)
+
+
+@given(SIGNALS, BANDS, st.integers(-8, 8), LEVELS)
+def test_scale_and_shift_change_no_reversal(values, band, power, shift):
+    scale = 2.0**power
+    moved = find_reversals(scale * (values + shift), band=scale * band)
+    assert moved.tolist() == find_reversals(values, band=band).tolist()
+
+
+@given(SIGNALS, BANDS)
+def test_a_mirrored_signal_has_the_same_reversals(values, band):
+    mirrored = find_reversals(-values, band=band)
+    assert mirrored.tolist() == find_reversals(values, band=band).tolist()
+
+
+@given(SIGNALS, BANDS)
+def test_a_signal_read_backwards_has_the_same_levels(values, band):
+    forwards = values[find_reversals(values, band=band)]
+    backwards = values[::-1][find_reversals(values[::-1], band=band)]
+    assert forwards.tolist() == backwards[::-1].tolist()
+
+
+@given(SIGNALS, BANDS, BANDS)
+def test_a_smaller_band_first_changes_nothing(values, one, other):
+    first = find_reversals(values, band=min(one, other))
+    both = first[find_reversals(values[first], band=max(one, other))]
+    assert values[both].tolist() == values[find_reversals(values, band=max(one, other))].tolist()
+
+
+@given(SIGNALS, BANDS)
+def test_a_repeated_sample_changes_no_level(values, band):
+    twice = np.repeat(values, 2)
+    found = values[find_reversals(values, band=band)]
+    assert twice[find_reversals(twice, band=band)].tolist() == found.tolist()
+
+
+@given(st.integers(1, 30), st.integers(10, 80), st.floats(0.0, 0.45), st.integers(0, 2**32 - 1))
+def test_noise_below_the_band_changes_no_count(n_cycles, n_samples, share, seed):
+    phase = np.arange(n_cycles * n_samples + 1) / n_samples % 1
+    noise = np.random.default_rng(seed).uniform(-share, share, phase.size)
+    # at a band of 1 on a stroke of 2.5 neither noise makes a swing nor takes one away
+    signal = 2.5 * (1 - np.abs(2 * phase - 1))
+    peak = signal.max() - signal.min()
+    if peak - 2 * share >= 1:
+        assert find_reversals(signal + noise, band=1.0).size == 2 * n_cycles + 1
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.integers(2, 12),
+    st.integers(20, 60),
+    st.integers(0, 400),
+    st.integers(0, 400),
+    st.integers(0, 2**32 - 1),
+)
+def test_holds_before_and_after_change_no_cycle(n_cycles, n_samples, before, after, seed):
+    phase = np.arange(n_cycles * n_samples + 1) / n_samples % 1
+    stroke = 4 + (1 - np.abs(2 * phase - 1))
+    noise = np.random.default_rng(seed).normal(0, 0.002, before + stroke.size + after)
+    time = 0.1 * np.arange(noise.size)
+    position = np.concatenate([np.full(before, 4.0), stroke, np.full(after, 4.0)]) + noise
+    stand = find_standstills(time, position, [100 * position], settings=PhaseSettings())
+    cycles = find_cycles(time, position, [100 * position], stand, settings=CycleSettings())
+    assert cycles.n_cycles == n_cycles
+    assert np.abs(cycles.first - (before + n_samples * np.arange(n_cycles))).max() <= 2
+    assert np.abs(cycles.branch_last[:, 1] - cycles.last).max() == 0
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(3, 10), st.floats(0.01, 100), st.floats(-50, 50), st.booleans())
+def test_units_and_datum_of_position_change_no_cycle(n_cycles, scale, shift, is_noisy):
+    phase = np.arange(n_cycles * 50 + 1) / 50 % 1
+    position = np.concatenate([np.zeros(80), 1 - np.abs(2 * phase - 1), np.zeros(80)])
+    position += np.random.default_rng(1).normal(0, 0.002 if is_noisy else 1e-6, position.size)
+    time = 0.1 * np.arange(position.size)
+
+    def samples(values):
+        stand = find_standstills(time, values, [10 + 100 * position], settings=PhaseSettings())
+        cycles = find_cycles(time, values, [100 * position], stand, settings=CycleSettings())
+        return [*stand.first, *stand.last, *cycles.first, *cycles.last, *cycles.branch_last[:, 0]]
+
+    assert samples(scale * (position + shift)) == samples(position)

@@ -1,0 +1,32 @@
+"""Cycles by the machine's counter, whatever is missing in them."""
+
+import numpy as np
+
+from reduction.cycles.counter import counted_cycles
+
+
+def test_branches_lie_between_the_extremes_of_the_counted_samples():
+    # the count changes before the valley, as the crosshead lags behind the command
+    position = np.array([2.0, 1, 0, 1, 2, 3, 2, 1, 0.5, 1, 2, 3, 2, 1])
+    counter = np.array([1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2])
+    first, last, begin, end, number = counted_cycles(counter, position)
+    assert (first.tolist(), last.tolist(), number.tolist()) == ([0, 7], [6, 13], [1, 2])
+    assert begin.tolist() == [[2, 5], [8, 11]]
+    assert end.tolist() == [[5, 6], [11, 13]]
+
+
+def test_samples_before_the_first_count_are_outside():
+    first, *_ = counted_cycles(np.array([0, 0, 1, 1, 0]), np.arange(5.0))
+    assert first.tolist() == [2]
+
+
+def test_a_cycle_without_samples_has_branches_of_one_sample():
+    position = np.array([0.0, 1, 0, np.nan, np.nan, np.nan])
+    _, _, begin, end, _ = counted_cycles(np.array([1, 1, 1, 2, 2, 2]), position)
+    assert begin[1].tolist() == [3, 3] and end[1].tolist() == [3, 5]
+
+
+def test_missing_samples_are_passed_over():
+    position = np.array([np.nan, 0, 1, np.nan, 2, 1, np.nan])
+    _, _, begin, end, _ = counted_cycles(np.ones(7, dtype=int), position)
+    assert begin.tolist() == [[1, 4]] and end.tolist() == [[4, 5]]

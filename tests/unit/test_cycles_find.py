@@ -1,0 +1,352 @@
+"""Cycles are counted right whatever real logs do: the counts are those the paths were drawn with."""
+
+import numpy as np
+import pytest
+
+from reduction.cycles.find import find_cycles
+from reduction.cycles.label import label_phases
+from reduction.errors import DataError
+from reduction.phases.standstill import find_standstills
+from reduction.settings import CycleSettings, PhaseSettings
+from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES
+
+LEAD = [(0, 3), (20, 3), (40, 4)]
+
+
+def path(points, *, rate=10.0, noise=0.002):
+    knots = np.array(points, dtype=float)
+    time = np.arange(0, knots[-1, 0] + 0.5 / rate, 1 / rate)
+    generator = np.random.default_rng(3)
+    return time, np.interp(time, *knots.T) + generator.normal(0, noise, time.size)
+
+
+def strokes(start, n_cycles, low=4.0, high=5.0, *, half=5.0, dwell_low=0.0, dwell_high=0.0):
+    points = [(start, low)]
+    for _ in range(n_cycles):
+        for level, dwell in ((high, dwell_high), (low, dwell_low)):
+            points.append((points[-1][0] + half, level))
+            if dwell:
+                points.append((points[-1][0] + dwell, level))
+    return points
+
+
+def back(points, *, after=10.0, rest=50.0):
+    end = points[-1][0] + after
+    return [*points, (end, 3), (end + rest, 3)]
+
+
+def find(time, position, counter=None, **settings):
+    tension = np.stack([100 * (position - 3), 80 * (position - 3)])
+    stand = find_standstills(time, position, tension, settings=PhaseSettings())
+    return find_cycles(
+        time, position, tension, stand, settings=CycleSettings(**settings), cycle_counter=counter
+    )
+
+
+@pytest.fixture
+def twenty():
+    return path(back([*LEAD, *strokes(50, 20)]))
+
+
+def test_cycles_run_from_valley_to_valley_between_set_up_and_return(twenty):
+    time, position = twenty
+    cycles = find(time, position)
+    assert cycles.n_cycles == 20
+    assert time[cycles.first] == pytest.approx(50 + 10 * np.arange(20), abs=0.2)
+    assert time[cycles.last] == pytest.approx(60 + 10 * np.arange(20), abs=0.2)
+    assert time[cycles.branch_last[:, 0]] == pytest.approx(55 + 10 * np.arange(20), abs=0.2)
+    assert (cycles.branch_last[:, 0] == cycles.branch_first[:, 1]).all()
+    assert (cycles.last[:-1] == cycles.first[1:]).all()
+    assert cycles.counted_by == "reversals"
+
+
+def test_the_return_to_slack_is_cut_at_the_valley_with_a_note(twenty):
+    time, position = twenty
+    cycles = find(time, position)
+    assert position[cycles.last[-1]] == pytest.approx(4.0, abs=0.03)
+    assert cycles.notes == (
+        "half cycles at the end of a run, cut where they pass their neighbours' level: 1, "
+        f"first near {time[cycles.branch_last[-1, 0]]:g} s",
+    )
+
+
+def test_labels_follow_the_branches(twenty):
+    time, position = twenty
+    cycles = find(time, position)
+    labels = cycles.cycle_number, cycles.branch
+    assert [np.unique(label).tolist() for label in labels] == [list(range(21)), [0, 1, 2]]
+    for i in (0, 7, 19):
+        (up, down), (peak, _) = cycles.branch_first[i], cycles.branch_last[i]
+        assert (cycles.branch[up : peak + 1] == BRANCH_VALUES["ascending"]).all()
+        assert (cycles.branch[down + 1 : cycles.last[i]] == BRANCH_VALUES["descending"]).all()
+        assert (cycles.cycle_number[cycles.first[i] : cycles.last[i]] == i + 1).all()
+    assert cycles.cycle_number[cycles.first[1]] == 2  # a shared valley begins the next cycle
+    assert cycles.cycle_number[cycles.last[-1]] == 20
+    assert (cycles.is_constant_rate <= (cycles.branch > 0)).all()
+    assert cycles.cycle_number.dtype == np.int32 and cycles.branch.dtype == np.int8
+
+
+def test_set_up_moves_between_holds_are_no_cycles():
+    set_up = [(0, 3), (20, 3), (40, 4), (100, 4), (110, 4.5), (170, 4.5), (180, 5), (360, 5)]
+    points = back([*set_up, (380, 4), *strokes(390, 10)])
+    time, position = path(points)
+    for control in ("position", "load"):
+        cycles = find(time, position, control=control)
+        assert cycles.n_cycles == 10
+        assert time[cycles.first[0]] == pytest.approx(390, abs=0.3)
+
+
+def test_missing_samples_on_branches_and_at_peaks_change_no_count(twenty):
+    time, position = twenty
+    for begin, length in ((700, 5), (1000, 3), (1049, 3), (1300, 11)):
+        position[begin : begin + length] = np.nan
+    assert find(time, position).n_cycles == 20
+
+
+def test_drop_outs_to_zero_and_to_full_scale_change_no_count(twenty):
+    time, position = twenty
+    position[720:725] = position[1010] = position[1077:1080] = position[1300] = 0
+    position[1104:1108] = 8
+    cycles = find(time, position)
+    assert cycles.n_cycles == 20
+    assert any("jumps of the control channel" in note for note in cycles.notes)
+
+
+def test_backward_slips_below_the_band_change_no_count():
+    time, position = path(back([*LEAD, *strokes(50, 20)]))
+    slips = 0.08 * (np.arange(time.size) // 20 % 2) * ((time > 50) & (time < 245))
+    assert find(time, position + slips).n_cycles == 20
+
+
+@pytest.mark.parametrize("dwell", [0.5, 2.0, 10.0])
+@pytest.mark.parametrize("where", ["peaks", "valleys", "both"])
+def test_dwells_are_parts_of_cycles(dwell, where):
+    points = strokes(
+        50,
+        12,
+        dwell_high=dwell if where != "valleys" else 0,
+        dwell_low=dwell if where != "peaks" else 0,
+    )
+    time, position = path(back([*LEAD, *points]))
+    cycles = find(time, position)
+    assert cycles.n_cycles == 12
+    assert (cycles.plateau_rate == pytest.approx(0.2, rel=0.02)) or dwell == 2.0
+
+
+def test_branches_leave_out_dwells_that_are_standstills():
+    time, position = path(back([*LEAD, *strokes(50, 12, dwell_low=10, dwell_high=10)], after=30))
+    cycles = find(time, position)
+    duration = time[cycles.branch_last] - time[cycles.branch_first]
+    assert duration == pytest.approx(5, abs=0.4)
+    between = slice(cycles.branch_last[3, 0] + 1, cycles.branch_first[3, 1])
+    assert (cycles.branch[between] == 0).all()
+    assert (cycles.cycle_number[between] == 4).all()
+
+
+def test_two_holds_of_the_set_up_are_no_dwells():
+    points = [*LEAD, (50, 4), (60, 5), (70, 5), (80, 4), (90, 4), (100, 5), (110, 5), (120, 4)]
+    time, position = path(back([*points, *strokes(130, 5)]))
+    assert find(time, position).n_cycles == 5
+
+
+@pytest.mark.parametrize(
+    ("begin", "end", "n_cycles"),
+    [(12, 189, 17), (2, 189, 18), (1, 199, 20), (6, 194, 18), (0, 200, 20)],
+)
+def test_a_record_that_begins_and_ends_in_a_cycle_counts_whole_ones(begin, end, n_cycles):
+    time, position = path(strokes(0, 20))
+    part = (time >= begin) & (time <= end)
+    assert find(time[part], position[part]).n_cycles == n_cycles
+
+
+def test_a_broken_first_half_cycle_is_noted():
+    time, position = path(strokes(0, 20))
+    cycles = find(time[20:], position[20:])
+    assert cycles.n_cycles == 19
+    assert cycles.notes == (
+        "half cycles at the end of a run, 30 % short of their neighbours, not counted: 1, "
+        f"first near {time[20 + np.argmin(position[20:30])]:g} s",
+    )
+
+
+def test_a_gap_of_the_record_ends_a_run_and_cycles_across_it_are_not_counted(twenty):
+    time, position = twenty
+    kept = (time < 103) | (time > 128)  # from cycle 6 on the way up to cycle 8 on the way down
+    cycles = find(time[kept], position[kept])
+    assert cycles.n_cycles == 17
+    assert any(note.startswith("gaps of the record") for note in cycles.notes)
+    missing = np.where(kept, position, np.nan)
+    assert find(time, missing).n_cycles == 17
+
+
+def test_a_short_gap_does_not_end_a_run(twenty):
+    time, position = twenty
+    kept = (time < 103) | (time > 104)
+    assert find(time[kept], position[kept]).n_cycles == 20
+
+
+def test_levels_may_change_from_block_to_block_with_moves_between():
+    first = strokes(20, 10)
+    second = strokes(first[-1][0] + 20, 8, 6.0, 6.4, half=2)
+    third = strokes(second[-1][0] + 15, 7, 3.5, 5.5, half=10)
+    time, position = path(back([(0, 3), (10, 3), *first, *second, *third], after=20))
+    assert find(time, position).n_cycles == 25
+
+
+def test_levels_may_change_from_block_to_block_without_a_break():
+    first = strokes(20, 10)
+    second = strokes(first[-1][0], 8, 3.8, 5.2, half=7)
+    time, position = path(back([(0, 3), (10, 3), *first, *second], after=20))
+    assert find(time, position).n_cycles == 18
+
+
+def test_a_growing_amplitude_counts_from_the_first_valley():
+    time = np.arange(0, 100, 0.05)
+    amplitude = 0.5 * np.minimum(time / 20, 1)
+    noise = np.random.default_rng(2).normal(0, 0.001, time.size)
+    # valleys at 1.5, 3.5, ... 99.5 s; the last rise is broken off
+    wave = 4.5 + amplitude * np.sin(np.pi * time) + noise
+    cycles = find(time, wave, waveform="sinusoidal")
+    assert cycles.n_cycles == 49
+    assert any(note.startswith("a sinusoidal waveform has no plateau") for note in cycles.notes)
+
+
+@pytest.mark.parametrize("shape", ["triangle", "sine", "quantised"])
+def test_19_samples_a_cycle_at_1_hz_are_enough(shape):
+    time = np.arange(30 * 19 + 1.0)
+    position = 3 + 2 * (1 - np.abs(2 * (time / 19 % 1) - 1))
+    if shape == "sine":
+        position = 4 - np.cos(2 * np.pi * time / 19)
+    elif shape == "quantised":
+        noise = np.random.default_rng(0).normal(0, 0.0012, time.size)
+        position = np.round((position + noise) / 0.0037) * 0.0037
+    cycles = find(time, position)
+    assert cycles.n_cycles == 30
+    kept = np.add.reduceat(cycles.is_constant_rate, cycles.first)
+    assert (kept[:-1] >= 10).all()
+
+
+def test_ragged_cycles_of_49_to_51_samples_are_counted():
+    lengths = np.random.default_rng(8).integers(49, 52, 60)
+    position = np.concatenate([4 + 1 - np.abs(2 * np.arange(n) / n - 1) for n in lengths])
+    position = np.append(position, 4.0) + np.random.default_rng(1).normal(
+        0, 0.002, lengths.sum() + 1
+    )
+    cycles = find(0.1 * np.arange(position.size), position)
+    assert cycles.n_cycles == 60
+    assert cycles.last - cycles.first == pytest.approx(lengths, abs=2)
+
+
+def test_one_cycle_is_allowed_with_a_note():
+    cycles = find(*path([(0, 3), (10, 3), (20, 5), (30, 3), (40, 3)]))
+    assert cycles.n_cycles == 1
+    assert "one cycle only: there is no scatter from cycle to cycle" in cycles.notes
+
+
+def test_a_count_that_differs_from_the_plan_is_noted(twenty):
+    assert "20 whole cycles found, 25 planned" in find(*twenty, expected_cycles=25).notes
+    assert not any("planned" in note for note in find(*twenty, expected_cycles=20).notes)
+
+
+def test_a_stated_band_is_used(twenty):
+    assert find(*twenty, band=0.3).band == 0.3
+    assert find(*twenty, band=0.9).n_cycles == 20
+
+
+def test_control_by_load_finds_reversals_of_tension_and_its_rate(twenty):
+    cycles = find(*twenty, control="load")
+    assert cycles.n_cycles == 20
+    assert cycles.plateau_rate == pytest.approx(0.2 * 90, rel=0.02)
+    assert cycles.band == pytest.approx(0.1 * 90, rel=0.1)
+
+
+@pytest.mark.parametrize("control", ["position", "load"])
+@pytest.mark.parametrize("noise", [0.0, 0.002])
+def test_a_constant_channel_is_refused(control, noise):
+    time, position = path([(0, 4), (100, 4)], noise=noise)
+    name = "crosshead position" if control == "position" else "tension"
+    with pytest.raises(DataError, match=f"no cycle: {name} does not reverse; found .* needed two"):
+        find(time, position, control=control)
+
+
+def test_a_single_pull_is_refused():
+    with pytest.raises(DataError, match="1 movements of .* m or more; needed two half cycles"):
+        find(*path([(0, 3), (10, 3), (20, 5), (60, 5)]))
+
+
+def test_movements_that_never_repeat_are_refused():
+    points = [(0, 3), (10, 3), (20, 5), (50, 5), (60, 4), (90, 4), (100, 6), (130, 6), (140, 3)]
+    with pytest.raises(
+        DataError, match="no whole cycle; found 4 movements .* without a standstill"
+    ):
+        find(*path(points))
+
+
+def test_the_counter_of_the_machine_says_where_cycles_begin(twenty):
+    time, position = twenty
+    counter = np.where((time >= 50) & (time < 250), ((time - 50 + 1e-6) // 10 + 1), 0).astype(int)
+    cycles = find(time, position, counter=counter)
+    assert cycles.counted_by == "machine counter"
+    assert cycles.n_cycles == 20
+    assert cycles.first.tolist() == (500 + 100 * np.arange(20)).tolist()
+    assert cycles.last.tolist() == (599 + 100 * np.arange(20)).tolist()
+    assert not any("machine" in note for note in cycles.notes)
+
+
+def test_a_counter_that_disagrees_with_the_reversals_is_noted(twenty):
+    time, position = twenty
+    counter = np.where((time >= 50) & (time < 230), ((time - 50 + 1e-6) // 10 + 1), 0).astype(int)
+    cycles = find(time, position, counter=counter)
+    assert cycles.n_cycles == 18
+    note = "the machine counted 18 cycles with a stroke, the reversals give 20 whole ones"
+    assert note in cycles.notes
+
+
+def test_counted_cycles_that_are_missing_or_without_stroke_are_noted(twenty):
+    time, position = twenty
+    counter = np.where((time >= 50) & (time < 250), ((time - 50 + 1e-6) // 10 + 1), 0).astype(int)
+    counter[time >= 265] = 22
+    notes = find(time, position, counter=counter).notes
+    assert "counted cycles without a stroke: 1, first machine cycle 22" in notes
+    assert "the log holds 21 of the machine's cycles 1 to 22: 22 follows 20" in notes
+
+
+def test_a_counter_that_never_changes_is_not_used(twenty):
+    cycles = find(*twenty, counter=np.ones(twenty[0].size, dtype=int))
+    assert cycles.n_cycles == 20
+    assert cycles.counted_by == "reversals"
+    assert any(
+        note.startswith("the machine's cycle counter never changes") for note in cycles.notes
+    )
+
+
+def test_branches_without_a_constant_rate_are_noted(twenty):
+    time, position = twenty
+    counter = np.where((time >= 50) & (time < 250), ((time - 50 + 1e-6) // 10 + 1), 0).astype(int)
+    position[(time >= 265) & (time < 269)] = np.nan
+    counter[(time >= 265) & (time < 269)] = 21
+    notes = find(time, position, counter=counter).notes
+    assert any(
+        note.startswith("2 of 42 branches have no part at a constant rate") for note in notes
+    )
+
+
+def test_phases_of_a_test(twenty):
+    time, position = twenty
+    tension = np.stack([100 * (position - 3)])
+    stand = find_standstills(time, position, tension, settings=PhaseSettings())
+    cycles = find_cycles(time, position, tension, stand, settings=CycleSettings())
+    phase = label_phases(time.size, standstills=stand, cycles=cycles)
+    value = {when: phase[int(10 * when)] for when in (10, 30, 45, 150, 255, 290)}
+    names = ["rest", "approach", "hold", "cycling", "approach", "rest"]
+    assert list(value.values()) == [PHASE_VALUES[name] for name in names]
+    assert phase.dtype == np.int8
+
+
+def test_dwells_are_cycling_in_the_phases():
+    time, position = path(back([*LEAD, *strokes(50, 5, dwell_high=10)]))
+    tension = np.stack([100 * (position - 3)])
+    stand = find_standstills(time, position, tension, settings=PhaseSettings())
+    cycles = find_cycles(time, position, tension, stand, settings=CycleSettings())
+    phase = label_phases(time.size, standstills=stand, cycles=cycles)
+    assert (phase[cycles.first[0] : cycles.last[-1]] == PHASE_VALUES["cycling"]).all()

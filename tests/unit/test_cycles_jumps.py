@@ -1,0 +1,47 @@
+"""Drop-outs of the channel are told from reversals."""
+
+import numpy as np
+import pytest
+
+from reduction.cycles.jumps import drop_jumps
+from reduction.cycles.reversals import find_reversals
+
+
+def stroke(n_cycles=6, half=50):
+    return np.append(np.tile(np.r_[np.arange(half), np.arange(half, 0, -1)], n_cycles), 0) + 100.0
+
+
+@pytest.mark.parametrize("level", [0.0, 130.0, 300.0])
+@pytest.mark.parametrize("length", [1, 3, 8])
+@pytest.mark.parametrize("at", [120, 145, 151, 170, 185, 203])
+def test_a_drop_out_leaves_the_number_of_reversals(level, length, at):
+    values = stroke()
+    whole = find_reversals(values, band=10)
+    values[at : at + length] = level
+    kept, _ = drop_jumps(values, find_reversals(values, band=10))
+    assert kept.size == whole.size
+    steps = np.diff(values[kept])
+    assert (steps[1:] * steps[:-1] < 0).all()
+
+
+def test_where_a_jump_was_is_returned():
+    values = stroke()
+    values[120:122] = 0
+    assert drop_jumps(values, find_reversals(values, band=10))[1].tolist() == [119]
+
+
+def test_cycles_of_few_samples_are_no_jumps():
+    values = np.tile([0.0, 1, 2, 1], 20)
+    reversals = find_reversals(values, band=1)
+    assert drop_jumps(values, reversals)[0].tolist() == reversals.tolist()
+
+
+def test_a_square_wave_is_no_row_of_jumps_and_back():
+    values = np.repeat(np.tile([0.0, 1.0], 10), 40)
+    reversals = find_reversals(values, band=0.5)
+    assert drop_jumps(values, reversals)[0].tolist() == reversals.tolist()
+
+
+def test_fewer_than_four_reversals_are_returned_as_they_are():
+    values = np.r_[np.arange(50.0), np.arange(50.0, 0, -1)]
+    assert drop_jumps(values, np.array([0, 50, 99]))[0].tolist() == [0, 50, 99]

@@ -1,0 +1,79 @@
+"""Noise and quantum are told from movement."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.phases.noise import estimate_noise, noise_range
+
+TIME = np.arange(20_000)
+
+
+@pytest.fixture
+def noise():
+    return np.random.default_rng(7).normal(0, 0.01, TIME.size)
+
+
+@pytest.mark.parametrize(
+    "movement",
+    [
+        0 * TIME,
+        0.3 * TIME,
+        np.abs((TIME / 100) % 2 - 1),
+        np.sin(2 * np.pi * TIME / 19),
+        np.where(TIME < 9_000, 0.0, np.sin(2 * np.pi * TIME / 400)),
+    ],
+    ids=["standing", "ramp", "triangle of 200 samples", "sine of 19 samples", "hold, then sine"],
+)
+def test_noise_is_found_under_any_movement(noise, movement):
+    found, quantum = estimate_noise(movement + noise)
+    assert found == pytest.approx(0.01, rel=0.08)
+    assert quantum == 0
+
+
+def test_triangle_of_20_samples_without_noise_has_neither_noise_nor_quantum():
+    assert estimate_noise(np.abs((np.arange(4000) / 10) % 2 - 1)) == (
+        pytest.approx(0, abs=1e-12),
+        0,
+    )
+
+
+def test_quantum_of_a_12_bit_channel_is_found():
+    step = 50 / 4096
+    level = 12.26 + np.random.default_rng(1).normal(0, 0.004, 5000)
+    noise, quantum = estimate_noise(np.round(level / step) * step)
+    assert quantum == pytest.approx(step, rel=1e-9)
+    # below a quantum of noise the differences of a held level may be mostly zero
+    assert noise < step
+
+
+def test_scale_and_level_carry_through(noise):
+    one, _ = estimate_noise(noise)
+    assert estimate_noise(1000 * noise + 5e4)[0] == pytest.approx(1000 * one, rel=1e-9)
+
+
+def test_missing_samples_are_left_out(noise):
+    noise[::7] = np.nan
+    assert estimate_noise(noise)[0] == pytest.approx(0.01, rel=0.1)
+
+
+def test_eight_samples_are_needed():
+    with pytest.raises(DataError, match="too few samples to tell noise .* found 3 finite samples"):
+        estimate_noise([1.0, 2.0, np.nan, 3.0])
+    with pytest.raises(DataError, match="found 0 finite samples"):
+        estimate_noise(np.full(100, np.nan))
+
+
+def test_noise_range_covers_a_long_hold():
+    level = np.random.default_rng(2).normal(0, 1.0, 1_000_000)
+    assert noise_range(level) > np.ptp(level)
+
+
+def test_noise_range_covers_a_quantised_hold():
+    level = np.round(np.random.default_rng(1).normal(0, 0.3, 100_000))
+    assert noise_range(level) >= np.ptp(level)
+
+
+@pytest.mark.parametrize("level", [0.0, 1e-3, 2e5])
+def test_noise_range_of_a_constant_is_not_zero(level):
+    assert 0 < noise_range(np.full(100, level)) <= max(1e-9 * level, 1e-12)
