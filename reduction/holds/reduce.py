@@ -23,7 +23,7 @@ from reduction.holds.ramp import find_ramp
 from reduction.holds.relaxation import Rate, rate_per_decade, value_at_times
 from reduction.holds.support import SIGNIFICANT, Ends, Hold, hold_ends, reasons_against
 from reduction.phases.standstill import Standstills
-from reduction.record import Floats
+from reduction.record import Floats, Integers
 from reduction.settings import HoldSettings
 
 __all__ = ["reduce_holds"]
@@ -31,14 +31,13 @@ __all__ = ["reduce_holds"]
 _EMPTY = np.empty(0)
 
 
-def _in_order(time: Floats, *series: Floats) -> list[Floats]:
+def _sound_rows(time: Floats, *series: Floats) -> Integers:
     """Rows whose values are finite and whose time is later than all before."""
     finite = np.isfinite(time)
     for one in series:
         finite &= np.isfinite(one)
     rows = np.flatnonzero(finite)
-    later = np.diff(np.maximum.accumulate(time[rows]), prepend=-np.inf) > 0
-    return [one[rows[later]] for one in (time, *series)]
+    return rows[np.diff(np.maximum.accumulate(time[rows]), prepend=-np.inf) > 0]
 
 
 def _rate(hold: Hold, ends: Ends) -> Rate | None:
@@ -100,7 +99,7 @@ def _creep(hold: Hold) -> Rate | None:
             "is not known"
         )
         return None
-    kept = hold.since_centre > 0
+    kept = (hold.since_centre > 0) & np.isfinite(hold.strain)
     try:
         return creep_rate(
             hold.since_centre[kept],
@@ -125,10 +124,10 @@ def _select(
     first, last = int(standstills.first[index]), int(standstills.last[index])
     begin = int(standstills.first[index - 1]) if index else 0
     inside = slice(first, last + 1)
-    seconds, place, load, stretch = _in_order(
-        time[inside], position[inside], tension[inside], strain[inside]
-    )
-    before = _in_order(*(one[begin : first + 1] for one in (time, position, tension)))
+    rows = first + _sound_rows(time[inside], position[inside], tension[inside])
+    seconds, place, load, stretch = (one[rows] for one in (time, position, tension, strain))
+    rows = begin + _sound_rows(*(one[begin : first + 1] for one in (time, position, tension)))
+    before = [one[rows] for one in (time, position, tension)]
     ramp = find_ramp(*before, band=standstills.position_tolerance) if before[0].size > 2 else None
     return Hold(
         time=seconds,
@@ -138,6 +137,7 @@ def _select(
         start_time=float(standstills.start_time[index]),
         ramp=ramp,
         position_tolerance=standstills.position_tolerance,
+        slack_tension=standstills.slack_tension,
     )
 
 
@@ -172,13 +172,17 @@ def _result(
     prony: PronyFit | None = None
     tension_at, strain_at = nothing, nothing
     initial = final = np.nan
+    known = np.isfinite(hold.strain)
     if hold.time.size < 3:
         hold.refusals.append(f"everything: {hold.time.size} samples in the hold")
     else:
         ends = hold_ends(hold)
         initial, final = ends.initial, ends.final
         tension_at = value_at_times(hold.time - hold.start_time, hold.tension, times)
-        strain_at = value_at_times(hold.time - hold.start_time, hold.strain, times)
+        if known.sum() > 1:
+            strain_at = value_at_times(
+                hold.time[known] - hold.start_time, hold.strain[known], times
+            )
         reasons = reasons_against(hold, ends, settings) if kind == "relaxation" else []
         hold.refusals.extend(f"drop, rate per decade, Prony series: {one}" for one in reasons)
         if kind == "creep":
@@ -194,7 +198,7 @@ def _result(
         kind=kind,
         hold_start_time=hold.start_time,
         hold_duration=hold.duration,
-        hold_strain=float(hold.strain.mean()) if hold.strain.size else np.nan,
+        hold_strain=float(np.mean(hold.strain[known])) if known.any() else np.nan,
         hold_initial_tension=initial,
         hold_final_tension=final,
         relaxation_drop=drop.value,

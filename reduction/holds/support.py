@@ -43,6 +43,8 @@ class Hold:
         None where the record does not show it.
     position_tolerance : float
         Range of position that was allowed inside the standstill. [m]
+    slack_tension : float
+        Tension at or below which the specimen is slack. [N]
     refusals, notes : list of str
         Filled as the hold is reduced.
     """
@@ -54,6 +56,7 @@ class Hold:
     start_time: float
     ramp: Ramp | None
     position_tolerance: float
+    slack_tension: float = 0.0
     refusals: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -203,7 +206,7 @@ def reasons_against(hold: Hold, ends: Ends, settings: HoldSettings) -> list[str]
 
     Notes
     -----
-    Too short; too few samples; no tension; tension that rises by more than three standard
+    Too short; too few samples; a slack specimen; tension that rises by more than three standard
     uncertainties; a crosshead that moves by more than three standard uncertainties where
     the motion is worth more than a tenth of the drop (by the stiffness of the ramp); a
     step of tension that relaxation does not explain (`find_steps`, false alarm 0.1 %).
@@ -223,8 +226,11 @@ def reasons_against(hold: Hold, ends: Ends, settings: HoldSettings) -> list[str]
         )
     if hold.time.size < FEWEST_SAMPLES:
         reasons.append(f"too few samples: {hold.time.size}; {FEWEST_SAMPLES} are needed")
-    if not ends.drop_uncertainty < 1 / SIGNIFICANT:
-        reasons.append(f"tension is not told from zero: {ends.initial:.3g} N")
+    if not ends.final > hold.slack_tension or not ends.drop_uncertainty < 1 / SIGNIFICANT:
+        reasons.append(
+            f"the specimen is slack: {ends.final:.3g} N; more than "
+            f"{hold.slack_tension:.3g} N is needed"
+        )
     elif ends.drop < -SIGNIFICANT * ends.drop_uncertainty:
         reasons.append(
             f"tension rises by {-ends.drop:.2%} over the hold (recovery after unloading, or drift)"

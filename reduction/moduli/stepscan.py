@@ -188,7 +188,7 @@ def strongest_response(
     noise : float
         Standard deviation of single samples. [unit of the series]
     allowed : ndarray of bool, shape (n_samples,)
-        Where an onset may lie.
+        Where an onset may lie. [1]
 
     Returns
     -------

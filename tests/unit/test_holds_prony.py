@@ -1,0 +1,108 @@
+"""Prony series: truth comes back, and what is not there is not reported."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError, FitError
+from reduction.holds.blocks import logarithmic_blocks
+from reduction.holds.prony import fit_prony
+from reduction.holds.series import prony_tension
+
+RAMP = 4.0
+TERMS = {
+    1: ([60.0], [30.0]),
+    2: ([40.0, 35.0], [5.0, 70.0]),
+    3: ([30.0, 25.0, 20.0], [2.0, 20.0, 150.0]),
+}
+
+
+def hold(n_terms, *, duration=600.0, step=0.1, noise=0.3, seed=0):
+    tension, times = TERMS[n_terms]
+    elapsed = np.arange(step, duration, step)
+    series = prony_tension(
+        elapsed,
+        tension=tension,
+        relaxation_time=times,
+        long_time_tension=325.0,
+        ramp_duration=RAMP,
+    )
+    return elapsed, series + noise * np.random.default_rng(seed).standard_normal(elapsed.size)
+
+
+def fit(elapsed, series, **options):
+    blocks = logarithmic_blocks(elapsed, series)
+    return fit_prony(
+        blocks.elapsed, blocks.value, weights=blocks.weight, ramp_duration=RAMP, **options
+    )
+
+
+@pytest.mark.parametrize("n_terms", [1, 2, 3])
+def test_terms_times_and_their_number_come_back(n_terms):
+    found = fit(*hold(n_terms))
+    tension, times = TERMS[n_terms]
+    assert found.time.size == n_terms
+    assert np.all(np.abs(found.time - times) < 4 * found.time_standard_uncertainty)
+    assert np.all(np.abs(found.tension - tension) < 4 * found.tension_standard_uncertainty)
+    assert np.all(found.time_standard_uncertainty < 0.2 * found.time)
+    assert abs(found.long_time_tension - 325) < 4 * found.long_time_tension_standard_uncertainty
+    assert found.criterion.startswith(f"{n_terms} of up to 3 terms")
+
+
+def test_stated_uncertainties_are_the_scatter_of_repeated_holds():
+    fits = [fit(*hold(2, seed=seed), maximum_terms=2) for seed in range(60)]
+    for name in ("tension", "time"):
+        found = np.array([getattr(one, name) for one in fits])
+        stated = np.mean([getattr(one, f"{name}_standard_uncertainty") for one in fits], axis=0)
+        ratio = stated / found.std(axis=0)
+        assert np.all((ratio > 0.7) & (ratio < 1.5))
+
+
+def test_a_scaled_tension_scales_terms_and_leaves_times():
+    elapsed, series = hold(2)
+    one, ten = fit(elapsed, series), fit(elapsed, 10 * series)
+    np.testing.assert_allclose(ten.tension, 10 * one.tension, rtol=1e-6)
+    np.testing.assert_allclose(ten.time, one.time, rtol=1e-6)
+
+
+def test_a_noise_free_hold_does_not_grow_terms():
+    assert fit(*hold(1, noise=0.0)).time.size == 1
+
+
+def test_a_term_beyond_the_hold_is_named_extrapolated():
+    elapsed = np.arange(0.1, 200, 0.1)
+    series = 325 + 75 * np.exp(-elapsed / 300)
+    noise = 0.1 * np.random.default_rng(1).standard_normal(elapsed.size)
+    assert "extrapolated" in fit(elapsed, series + noise).criterion
+
+
+def test_a_straight_fall_has_no_series():
+    elapsed = np.arange(0.1, 60, 0.1)
+    noise = 0.1 * np.random.default_rng(2).standard_normal(elapsed.size)
+    with pytest.raises(FitError, match="no Prony series is supported; found .*1 terms: "):
+        fit(elapsed, 400 - 0.2 * elapsed + noise)
+
+
+def test_a_rise_has_no_series():
+    elapsed = np.arange(0.1, 60, 0.1)
+    noise = 0.1 * np.random.default_rng(3).standard_normal(elapsed.size)
+    with pytest.raises(FitError, match="no Prony series is supported"):
+        fit(elapsed, 400 - 30 * np.exp(-elapsed / 10) + noise)
+
+
+def test_a_short_series_is_refused_where_the_record_shows_that_it_is_wrong():
+    # One term is determined, but the second one, far longer than the hold, is there as well.
+    elapsed = np.arange(0.05, 100, 0.05)
+    series = 300 + 60 * np.exp(-elapsed / 8) + 90 * np.exp(-elapsed / 900)
+    noise = 0.05 * np.random.default_rng(4).standard_normal(elapsed.size)
+    with pytest.raises(FitError, match="1 terms are supported but do not fit|no Prony series"):
+        fit(elapsed, series + noise)
+
+
+def test_no_terms_are_refused():
+    with pytest.raises(DataError, match="a series needs a term; found 0"):
+        fit_prony([1.0, 2.0], [1.0, 1.0], maximum_terms=0)
+
+
+def test_series_that_do_not_pair_up_are_refused():
+    with pytest.raises(DataError, match="series do not pair up"):
+        fit_prony([1.0, 2.0], [1.0])

@@ -1,0 +1,253 @@
+"""Holds of a whole record: numbers where supported, reasons where not."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.holds.reduce import reduce_holds
+from reduction.holds.series import prony_tension
+from reduction.phases.standstill import Standstills
+from reduction.settings import HoldSettings
+
+STEP = 0.1
+TERMS = {"tension": np.array([40.0, 35.0]), "relaxation_time": np.array([5.0, 60.0])}
+
+
+def standstills(time, spans, tension, rest=()):
+    first = np.array([np.searchsorted(time, start) for start, _ in spans])
+    last = np.array([np.searchsorted(time, end) - 1 for _, end in spans])
+    return Standstills(
+        first=first,
+        last=last,
+        start_time=time[first],
+        end_time=time[last],
+        mean_position=np.full(len(spans), 6.0),
+        mean_tension=np.array(
+            [[load[a : b + 1].mean() for a, b in zip(first, last, strict=True)] for load in tension]
+        ),
+        is_rest=np.array([index in rest for index in range(len(spans))]),
+        position_tolerance=0.02,
+        slack_tension=3.0,
+    )
+
+
+def record(duration=300.0, noise=0.3, seed=0):
+    """Rest of 20 s, a ramp of 5 s, a hold: linear viscoelastic superposition, exactly."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(0, 25 + duration, STEP)
+    position = 4 + 2 * np.clip((time - 20) / 5, 0, 1)
+    after = np.clip(time - 25, 0, None)
+    tension = prony_tension(after, long_time_tension=325.0, ramp_duration=5.0, **TERMS)
+    part = np.clip((time - 20) / 5, 0, 1)
+    times, size = TERMS["relaxation_time"], TERMS["tension"]
+    # During the ramp every term has grown by its own ramp so far.
+    growing = 325 * part + (-np.expm1(-5 * part[:, None] / times) * times / 5) @ size
+    tension = np.where(time < 25, growing, tension)
+    position = position + rng.uniform(-0.004, 0.004, time.size)
+    return time, position, tension + noise * rng.standard_normal(time.size)
+
+
+def reduce(time, position, tension, spans=((0, 20), (25, 1e9)), rest=(0,), **options):
+    loads = np.atleast_2d(tension)
+    return reduce_holds(
+        time,
+        position,
+        loads,
+        np.ones_like(loads) * (position - 4) / 3,
+        standstills(time, spans, loads, rest),
+        specimens=tuple("ab"[: len(loads)]),
+        settings=HoldSettings(),
+        **options,
+    )
+
+
+def test_a_hold_after_a_finite_ramp_gives_the_terms_of_a_step():
+    (hold,) = reduce(*record())
+    assert hold.refusals == ()
+    np.testing.assert_allclose(hold.prony_time, TERMS["relaxation_time"], rtol=0.1)
+    np.testing.assert_allclose(hold.prony_tension, TERMS["tension"], rtol=0.05)
+    assert hold.long_time_tension == pytest.approx(325, abs=0.5)
+    assert hold.hold_strain == pytest.approx(2 / 3, abs=1e-3)
+    assert hold.kind == "relaxation"
+
+
+def test_the_ramp_correction_matters():
+    # The fast term has lost more than a third of itself when the hold begins.
+    (hold,) = reduce(*record())
+    initial = hold.hold_initial_tension - hold.long_time_tension
+    assert hold.prony_tension.sum() > 1.2 * initial
+
+
+def test_drop_and_tension_at_times_are_those_of_the_record():
+    time, position, tension = record(noise=0.05)
+    (hold,) = reduce(time, position, tension)
+    expected = prony_tension(
+        [1.0, 10.0, 60.0, 180.0], long_time_tension=325.0, ramp_duration=5.0, **TERMS
+    )
+    np.testing.assert_allclose(hold.tension_at_time[:4], expected, atol=0.3)
+    assert np.isnan(hold.tension_at_time[4:]).all()
+    assert hold.relaxation_drop == pytest.approx(
+        1 - hold.hold_final_tension / hold.hold_initial_tension
+    )
+    assert hold.rate_per_decade > 0
+
+
+def test_results_come_by_hold_and_then_by_specimen_without_rests():
+    time, position, tension = record()
+    holds = reduce(
+        time, position, [tension, tension / 2], spans=((0, 20), (25, 150), (150, 300)), rest=(0,)
+    )
+    assert [hold.specimen for hold in holds] == ["a", "b", "a", "b"]
+    assert [hold.hold_start_time for hold in holds] == pytest.approx([25, 25, 150, 150])
+    assert "what an earlier hold has left to relax goes on under this one" in holds[2].notes
+    assert "what an earlier hold has left to relax goes on under this one" not in holds[0].notes
+
+
+def test_a_scaled_tension_scales_tensions_and_leaves_shares():
+    time, position, tension = record()
+    one, two = reduce(time, position, [tension, 2 * tension])
+    assert two.relaxation_drop == pytest.approx(one.relaxation_drop)
+    assert two.rate_per_decade == pytest.approx(one.rate_per_decade)
+    np.testing.assert_allclose(two.prony_tension, 2 * one.prony_tension, rtol=1e-6)
+
+
+def test_a_shifted_clock_and_datum_change_nothing():
+    time, position, tension = record()
+    (here,) = reduce(time, position, tension)
+    (there,) = reduce(time + 5000, position + 3, tension, spans=((5000, 5020), (5025, 1e9)))
+    assert there.relaxation_drop == pytest.approx(here.relaxation_drop)
+    np.testing.assert_allclose(there.prony_time, here.prony_time, rtol=1e-4)
+
+
+def test_missing_and_backward_samples_are_left_out_and_counted():
+    time, position, tension = record()
+    tension[500:520] = np.nan
+    time[700] = time[698]
+    (hold,) = reduce(time, position, tension)
+    assert "21 of 3000 samples left out" in hold.notes
+    np.testing.assert_allclose(hold.prony_time, TERMS["relaxation_time"], rtol=0.15)
+
+
+def test_a_hold_that_cannot_carry_numbers_has_reasons_instead():
+    time, position, tension = record(duration=12.0)
+    (hold,) = reduce(time, position, tension)
+    assert np.isnan([hold.relaxation_drop, hold.rate_per_decade, hold.long_time_tension]).all()
+    assert hold.prony_tension.size == 0
+    assert hold.refusals == (
+        "drop, rate per decade, Prony series: the hold is too short: 11.9 s; "
+        "30 s or more are needed",
+    )
+    assert np.isfinite([hold.hold_initial_tension, hold.hold_final_tension]).all()
+
+
+def test_a_hold_without_its_ramp_has_no_rate():
+    time, position, tension = record()
+    inside = time > 40
+    (hold,) = reduce(time[inside], position[inside], tension[inside], spans=((0, 1e9),), rest=())
+    assert np.isnan(hold.rate_per_decade)
+    assert any("does not show the ramp" in reason for reason in hold.refusals)
+
+
+def test_a_hold_that_does_not_relax_keeps_its_drop_and_refuses_the_rest():
+    time, position, _ = record()
+    rng = np.random.default_rng(3)
+    tension = 300 * np.clip((time - 20) / 5, 0, 1) + 0.5 * rng.standard_normal(time.size)
+    (hold,) = reduce(time, position, tension)
+    assert abs(hold.relaxation_drop) < 3 * hold.relaxation_drop_standard_uncertainty
+    assert np.isnan(hold.rate_per_decade)
+    assert hold.prony_time.size == 0
+    assert sum("is not told from zero" in reason for reason in hold.refusals) == 2
+
+
+def test_a_straight_fall_has_a_drop_and_a_reason_for_no_series():
+    time, position, _ = record(duration=60.0)
+    rng = np.random.default_rng(4)
+    fall = np.where(time < 25, 80 * np.clip(time - 20, 0, None), 400 - 0.3 * (time - 25))
+    (hold,) = reduce(time, position, fall + 0.1 * rng.standard_normal(time.size))
+    assert hold.relaxation_drop == pytest.approx(18 / 400, abs=0.002)
+    assert any(reason.startswith("Prony series: no Prony series") for reason in hold.refusals)
+
+
+def test_a_long_ramp_leaves_too_little_for_a_rate():
+    time = np.arange(0, 160, STEP)
+    part = np.clip((time - 20) / 80, 0, 1)
+    tension = 300 * part + 20 * np.exp(-np.clip(time - 100, 0, None) / 20) * part
+    (hold,) = reduce(time, 4 + 2 * part, tension, spans=((0, 20), (100, 1e9)))
+    assert any("too short for a rate per decade" in reason for reason in hold.refusals)
+
+
+def test_a_hold_without_samples_says_so():
+    time, position, tension = record()
+    tension[time >= 25] = np.nan
+    (hold,) = reduce(time, position, tension)
+    assert hold.refusals == ("everything: 0 samples in the hold",)
+    assert np.isnan([hold.hold_initial_tension, hold.hold_strain]).all()
+
+
+def test_a_hold_without_strain_still_relaxes():
+    time, position, tension = record()
+    (hold,) = reduce_holds(
+        time, position, tension, np.full(time.size, np.nan),
+        standstills(time, ((0, 20), (25, 1e9)), tension[None], rest=(0,)),
+        specimens=("a",), settings=HoldSettings(),
+    )  # fmt: skip
+    assert hold.refusals == ()
+    assert np.isnan(hold.hold_strain)
+    assert np.isnan(hold.strain_at_time).all()
+
+
+def creeping(tension_drift=0.0):
+    time = np.arange(0, 600, STEP)
+    part = np.clip((time - 20) / 5, 0, 1)
+    strain = part * (1 + 0.03 * np.log10(1 + np.clip(time - 22.5, 0, None)))
+    tension = 400 * part * (1 + tension_drift * np.clip(time - 25, 0, None) / 575)
+    stand = standstills(time, ((0, 20), (25, 1e9)), tension[None], rest=(0,))
+    return reduce_holds(
+        time, 4 + strain, tension, strain, stand,
+        specimens=("a",), settings=HoldSettings(), kind="creep",
+    )  # fmt: skip
+
+
+def test_creep_is_strain_per_decade_at_constant_tension():
+    (hold,) = creeping()
+    assert hold.kind == "creep"
+    assert hold.rate_per_decade == pytest.approx(0.03, rel=0.02)
+    assert np.isnan(hold.relaxation_drop)
+    assert np.isfinite(hold.strain_at_time[:4]).all()
+
+
+def test_creep_under_a_moving_tension_is_refused():
+    (hold,) = creeping(tension_drift=0.05)
+    assert np.isnan(hold.rate_per_decade)
+    assert "tension is not constant" in hold.refusals[0]
+
+
+def test_creep_without_its_ramp_is_refused():
+    time = np.arange(0, 100, STEP)
+    tension, strain = np.full(time.size, 400.0), np.ones(time.size)
+    stand = standstills(time, ((0, 1e9),), tension[None])
+    (hold,) = reduce_holds(
+        time, 4 + strain, tension, strain, stand,
+        specimens=("a",), settings=HoldSettings(), kind="creep",
+    )  # fmt: skip
+    assert "does not show the ramp" in hold.refusals[0]
+
+
+def test_names_that_do_not_fit_are_refused():
+    time, position, tension = record()
+    with pytest.raises(DataError, match="specimens do not fit the record; found 2 names, 1 rows"):
+        reduce_holds(
+            time, position, tension, tension,
+            standstills(time, ((0, 20),), tension[None]),
+            specimens=("a", "b"), settings=HoldSettings(),
+        )  # fmt: skip
+
+
+def test_millions_of_samples_are_reduced_as_a_few_hundred():
+    time = np.arange(0, 100_000, 0.05)
+    part = np.clip((time - 20) / 5, 0, 1)
+    after = np.clip(time - 25, 0, None)
+    tension = part * (325 + 40 * np.exp(-after / 300) + 30 * np.exp(-after / 9000))
+    tension += 0.5 * np.random.default_rng(0).standard_normal(time.size)
+    (hold,) = reduce(time, 4 + 2 * part, tension)
+    np.testing.assert_allclose(hold.prony_time, [300, 9000], rtol=0.02)

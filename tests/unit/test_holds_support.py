@@ -1,0 +1,120 @@
+"""What speaks against numbers from a hold: each reason alone."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.holds.ramp import Ramp
+from reduction.holds.support import Hold, hold_ends, reasons_against
+from reduction.settings import HoldSettings
+
+TIME = np.arange(0.0, 180.0, 0.1)
+RELAXING = 350 + 50 * np.exp(-TIME / 40)
+RAMP = Ramp(start_time=-5.0, end_time=0.0, centre_time=-2.5, duration=5.0, stiffness=100.0)
+
+
+def hold(tension=RELAXING, *, time=TIME, position=None, ramp=RAMP, noise=0.3):
+    rng = np.random.default_rng(0)
+    place = 6 + 0.001 * rng.standard_normal(time.size)
+    return Hold(
+        time=time,
+        position=place if position is None else place + position,
+        tension=tension + noise * rng.standard_normal(time.size),
+        strain=np.ones(time.size),
+        start_time=float(time[0]),
+        ramp=ramp,
+        position_tolerance=0.02,
+        slack_tension=3.0,
+    )
+
+
+def reasons(one):
+    return reasons_against(one, hold_ends(one), HoldSettings())
+
+
+def test_nothing_speaks_against_a_sound_hold():
+    assert reasons(hold()) == []
+
+
+def test_a_short_hold():
+    short = TIME < 20
+    assert reasons(hold(RELAXING[short], time=TIME[short])) == [
+        "the hold is too short: 19.9 s; 30 s or more are needed"
+    ]
+
+
+def test_few_samples():
+    rows = slice(None, None, 150)
+    assert reasons(hold(RELAXING[rows], time=TIME[rows])) == ["too few samples: 12; 20 are needed"]
+
+
+def test_a_slack_specimen_beside_a_taut_one():
+    (reason,) = reasons(hold(np.full(TIME.size, 2.0)))
+    assert reason.startswith("the specimen is slack: ")
+    assert reason.endswith("more than 3 N is needed")
+
+
+def test_rising_tension():
+    (reason,) = reasons(hold(400 - RELAXING / 10))
+    assert reason.startswith("tension rises by 1.3")
+
+
+@pytest.mark.parametrize(("motion", "moves"), [(0.06, True), (0.005, False)])
+def test_a_moving_crosshead_counts_by_what_it_is_worth(motion, moves):
+    # The drop is 49 N; at 100 N/m a tenth of it is worth 49 mm.
+    found = reasons(hold(position=motion * TIME / 180))
+    assert bool(found) is moves
+    if moves:
+        assert found[0].startswith("the crosshead moves by 0.05")
+        assert "worth" in found[0]
+
+
+@pytest.mark.parametrize(("motion", "moves"), [(0.015, True), (0.005, False)])
+def test_without_a_ramp_half_the_tolerance_is_a_motion(motion, moves):
+    assert bool(reasons(hold(position=motion * TIME / 180, ramp=None))) is moves
+
+
+def test_a_slip_in_the_hold():
+    (reason,) = reasons(hold(RELAXING - 6 * (TIME > 90)))
+    assert reason.startswith("tension steps by -")
+    assert "at 90 s into the hold" in reason
+    assert "a slip of the splice?" in reason
+
+
+def test_a_slip_in_a_night_is_found_on_block_means():
+    time = np.arange(0.0, 40000.0, 1.0)
+    series = 350 + 20 * np.exp(-time / 3000) - 3 * (time > 25000)
+    (reason,) = reasons(hold(series, time=time))
+    assert "steps by -3" in reason or "steps by -2.9" in reason
+
+
+def test_a_gap_in_the_hold_ends_the_search_for_steps():
+    kept = (TIME < 60) | (TIME > 80)
+    assert reasons(hold(RELAXING[kept], time=TIME[kept])) == []
+
+
+def test_many_sound_holds_raise_no_alarm():
+    rng = np.random.default_rng(5)
+    for _ in range(40):
+        times, size = rng.uniform(1, 300, 2), rng.uniform(1, 60, 2)
+        series = 300 + np.exp(-TIME[:, None] / times) @ size
+        one = hold(series, noise=rng.uniform(0.1, 2))
+        assert not any("steps" in reason for reason in reasons(one))
+
+
+def test_the_drop_carries_the_noise_of_both_ends():
+    rng = np.random.default_rng(6)
+    drops = []
+    for _ in range(200):
+        one = hold(np.full(TIME.size, 400.0), noise=0.0)
+        one.tension[:] += rng.standard_normal(TIME.size)
+        drops.append(hold_ends(one))
+    found = np.array([one.drop for one in drops])
+    stated = np.mean([one.drop_uncertainty for one in drops])
+    assert stated == pytest.approx(found.std(), rel=0.2)
+
+
+def test_a_hold_without_samples_is_refused():
+    empty = Hold(*[np.empty(0)] * 4, 0.0, None, 0.01)
+    with pytest.raises(DataError, match="no noise can be read"):
+        hold_ends(empty)
