@@ -1,0 +1,207 @@
+"""The commands on small campaigns: what they answer, what they refuse, and what they leave alone."""
+
+import csv
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+RAW = ROOT / "raw" / "tmt-synthetic"
+CAMPAIGN = """
+[campaign]
+id = "small"
+title = "Small campaign (synthetic)"
+source = "synthetic"
+[specimens.new]
+kind = "rubber tether"
+diameter = ["1.04 in"]
+[specimens.used]
+kind = "rubber tether"
+diameter = ["0.94 in"]
+[layouts.logger]
+format = "delimited"
+comment = "#"
+[layouts.logger.channels]
+time = { column = "time_s", unit = "s" }
+crosshead_position = { column = "crosshead_ft", unit = "ft", datum = "pin-to-pin" }
+tension.1 = { column = "load_new_lb", unit = "lbf" }
+tension.2 = { column = "load_used_lb", unit = "lbf" }
+[defaults]
+layout = "logger"
+specimens = ["new", "used"]
+strain = { marks = "marks.csv" }
+[tests.A]
+file = "A.csv"
+n_cycles = 10
+[tests.B]
+file = "B.csv"
+n_cycles = 10
+"""
+
+
+@pytest.fixture
+def small(tmp_path):
+    """Two synthetic logs, their marks, and a campaign."""
+    folder = tmp_path / "raw"
+    folder.mkdir()
+    shutil.copy(RAW / "T-1.csv", folder / "A.csv")
+    shutil.copy(RAW / "T-2.csv", folder / "B.csv")
+    lines = (RAW / "marks.csv").read_text().splitlines()
+    kept = [line for line in lines if line.startswith(("test,", "T-1,", "T-2,"))]
+    (folder / "marks.csv").write_text(
+        "\n".join(kept).replace("T-1,", "A,").replace("T-2,", "B,") + "\n"
+    )
+    (folder / "campaign.toml").write_text(CAMPAIGN)
+    return tmp_path
+
+
+def test_check_prints_what_it_found_and_writes_nothing(small, command):
+    before = sorted(small.rglob("*"))
+    done = command("check", small / "raw" / "campaign.toml", "--json", cwd=small)
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout)
+    assert [test["id"] for test in answer["tests"]] == ["A", "B"]
+    assert [test["n_cycles"] for test in answer["tests"]] == [10, 10]
+    assert answer["tests"][0]["n_rows"] == 7632
+    assert sorted(small.rglob("*")) == before
+
+
+def test_a_test_that_did_not_change_is_not_done_again(small, command):
+    campaign = small / "raw" / "campaign.toml"
+    first = command("run", campaign, "--json", cwd=small)
+    assert first.returncode == 0, first.stderr
+    product = small / "processed" / "small" / "A.nc"
+    stamp, content = product.stat().st_mtime_ns, product.read_bytes()
+    again = json.loads(command("run", campaign, "--json", cwd=small).stdout)
+    assert [test["status"] for test in again["tests"]] == ["unchanged", "unchanged"]
+    assert product.stat().st_mtime_ns == stamp
+    forced = json.loads(command("run", campaign, "--json", "--force", cwd=small).stdout)
+    assert {test["status"] for test in forced["tests"]} == {"reduced_with_notes"}
+    assert product.read_bytes() == content
+    campaign.write_text(campaign.read_text().replace("1.04 in", "1.01 in"))
+    changed = json.loads(command("run", campaign, "--json", "--test", "A", cwd=small).stdout)
+    assert [test["status"] for test in changed["tests"]] == ["reduced_with_notes"]
+    assert product.read_bytes() != content
+    report = command("report", small / "processed", "--json", cwd=small)
+    assert json.loads(report.stdout)["reports"] == [str(Path("reports/small/index.html"))]
+
+
+def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(small, command):
+    campaign = small / "raw" / "campaign.toml"
+    assert command("run", campaign, "--quiet", cwd=small).returncode == 0
+    old = (small / "processed" / "small" / "A.nc").read_bytes()
+    log = small / "raw" / "A.csv"
+    lines = log.read_text().splitlines()
+    lines[1000] = "99.7,ovrflw,1,1"
+    log.write_text("\n".join(lines) + "\n")
+    done = command("run", campaign, "--json", cwd=small)
+    assert done.returncode == 3
+    statuses = {test["id"]: test for test in json.loads(done.stdout)["tests"]}
+    assert statuses["A"]["status"] == "failed" and statuses["A"]["exit_status"] == 3
+    assert "A.csv:1001 [crosshead_ft]" in statuses["A"]["message"]
+    assert "ovrflw" in done.stderr and "Traceback" not in done.stderr
+    # the marks of A can no longer be used, so B is another reduction than before
+    assert statuses["B"]["status"] == "reduced_with_notes"
+    assert (small / "processed" / "small" / "A.nc").read_bytes() == old
+    with (small / "processed" / "small" / "status.csv").open(newline="") as file:
+        assert {row["test"]: row["status"] for row in csv.DictReader(file)}["A"] == "failed"
+
+
+@pytest.mark.parametrize(
+    ("change", "status", "message"),
+    [
+        (("[tests.A]", "[tests.A"), 2, "is not TOML"),
+        (('unit = "ft"', 'unit = "furlongs_x"'), 2, "unit 'furlongs_x' is not known"),
+        (('unit = "ft"', 'unit = "lbf"'), 2, "unit 'lbf' is not a unit of length"),
+        (('column = "load_new_lb"', 'column = "load"'), 3, "load"),
+        (('file = "A.csv"', 'file = "C.csv"'), 3, "C.csv: the file is not there"),
+        (('"pin-to-pin"', '"displacement"'), 2, "displacement"),
+        (("[tests.A]", '[tests.A]\nkind = "snap"'), 4, "does not reduce"),
+    ],
+)
+def test_settings_that_cannot_be_used_end_with_their_status(
+    small, command, change, status, message
+):
+    campaign = small / "raw" / "campaign.toml"
+    campaign.write_text(campaign.read_text().replace(*change))
+    done = command("check", campaign, "--quiet", cwd=small)
+    assert done.returncode == status, done.stderr
+    assert message in done.stderr and "Traceback" not in done.stderr and not done.stdout
+
+
+def test_an_unknown_test_on_the_command_line_is_refused(small, command):
+    done = command("run", small / "raw" / "campaign.toml", "--test", "Z", cwd=small)
+    assert done.returncode == 2 and "needed one of A, B" in done.stderr
+    assert not (small / "processed").exists()
+
+
+def test_unknown_units_are_refused(small, command):
+    done = command("check", small / "raw" / "campaign.toml", "--units", "imperial", cwd=small)
+    assert done.returncode == 2 and "needed si or us" in done.stderr
+
+
+def test_a_log_in_steps_gives_one_product_a_step(small, command):
+    campaign = small / "raw" / "campaign.toml"
+    text = campaign.read_text().split("[tests.B]")[0]
+    campaign.write_text(
+        text + '[[tests.A.steps]]\nname = "first five"\nfrom = 1\nto = 5\nn_cycles = 5\n'
+        '[[tests.A.steps]]\nname = "hold"\nfrom = "150 s"\nto = "320 s"\nkind = "relaxation"\n'
+    )
+    (small / "raw" / "marks.csv").write_text(
+        "\n".join(
+            line
+            for line in (small / "raw" / "marks.csv").read_text().splitlines()
+            if not line.startswith("B,")
+        )
+    )
+    done = command("run", campaign, "--json", cwd=small)
+    assert done.returncode == 0, done.stderr
+    statuses = {test["id"]: test["n_cycles"] for test in json.loads(done.stdout)["tests"]}
+    assert statuses == {"A.first-five": 5, "A.hold": 0}
+    names = {path.name for path in (small / "processed" / "small").glob("*.nc")}
+    assert names == {"A.first-five.nc", "A.hold.nc"}
+
+
+def test_a_product_of_no_test_is_named_and_left_alone(small, command):
+    campaign = small / "raw" / "campaign.toml"
+    assert command("run", campaign, "--quiet", cwd=small).returncode == 0
+    campaign.write_text(campaign.read_text().split("[tests.B]")[0])
+    marks = small / "raw" / "marks.csv"
+    kept = [line for line in marks.read_text().splitlines() if not line.startswith("B,")]
+    marks.write_text("\n".join(kept) + "\n")
+    done = command("run", campaign, "--quiet", cwd=small)
+    assert done.returncode == 0 and "B.nc: belongs to no test of this campaign" in done.stderr
+    assert (small / "processed" / "small" / "B.nc").exists()
+
+
+def test_sniff_proposes_a_layout_that_a_person_completes(small, command):
+    done = command("sniff", small / "raw" / "A.csv")
+    assert done.returncode == 0, done.stderr
+    assert 'format = "delimited"' in done.stdout and "crosshead_ft" in done.stdout
+    assert "layout" in json.loads(command("sniff", small / "raw" / "A.csv", "--json").stdout)
+
+
+def test_init_writes_a_starter_once_and_never_over_a_file(small, command):
+    (small / "raw" / "campaign.toml").unlink()
+    done = command("init", small / "raw")
+    assert done.returncode == 0, done.stderr
+    assert {"campaign.toml", "tests.csv"} <= {path.name for path in (small / "raw").iterdir()}
+    again = command("init", small / "raw")
+    assert again.returncode == 2 and "a campaign is there already" in again.stderr
+
+
+def test_schema_is_json_and_knows_the_sections(command):
+    schema = json.loads(command("schema").stdout)
+    assert set(schema["properties"]) >= {"campaign", "specimens", "layouts", "defaults", "tests"}
+
+
+def test_report_without_an_archive_says_what_is_missing(tmp_path, command):
+    done = command("report", tmp_path)
+    assert done.returncode == 6 and "no archive was found" in done.stderr
+
+
+def test_help_and_version_answer(command):
+    assert "Reduce a campaign" in command("--help").stdout
+    assert command("--version").stdout.startswith("reduction ")
