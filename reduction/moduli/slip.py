@@ -17,7 +17,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.checks import as_same_shape
 from reduction.cycles.product import Loops
 from reduction.errors import DataError
 from reduction.moduli.product import Slips
@@ -30,6 +29,8 @@ __all__ = ["cycle_tension_level", "find_slips"]
 
 N_BINS = 32
 SAMPLES_PER_CYCLE = 64
+FEWEST_SAMPLES = 8
+FEWEST_IN_A_CYCLE = 4
 
 
 def _reference_branch(position: Floats, tension: Floats) -> tuple[Floats, Floats, Floats]:
@@ -84,14 +85,14 @@ def cycle_tension_level(
     -------
     tension_level : ndarray, shape (n_specimens, n_cycles)
         Mean tension at the top of the loop plus the shift of the cycle; NaN where a cycle
-        has fewer than four samples. [N]
+        has fewer than four samples, or a specimen fewer than eight on a branch. [N]
     tension_slope : ndarray, shape (n_specimens,)
         Slope of the mean ascending and descending branch at the top. [N m-1]
 
     Raises
     ------
     DataError
-        If the series do not pair up, or a branch has no samples or no stroke.
+        If the series do not pair up, or the cycles have no samples or no stroke.
 
     Notes
     -----
@@ -113,29 +114,36 @@ def cycle_tension_level(
     [[ 0.  0. -1. -1.]] [10.]
     """
     loads = np.atleast_2d(np.asarray(tension, dtype=np.float64))
-    position, *_ = as_same_shape(
-        crosshead_position=crosshead_position,
-        cycle_number=cycle_number,
-        branch=branch,
-        tension=loads[0],
-    )
-    used = np.flatnonzero((cycle_number > 0) & (branch > 0) & np.isfinite(position))
-    used = used[:: max(1, used.size // (SAMPLES_PER_CYCLE * max(1, n_cycles)))]
-    position, number, side = position[used], np.asarray(cycle_number)[used] - 1, branch[used]
-    level = np.empty((loads.shape[0], n_cycles))
-    slope = np.empty(loads.shape[0])
+    position = np.asarray(crosshead_position, dtype=np.float64)
+    if not position.shape == np.shape(cycle_number) == np.shape(branch) == loads.shape[1:]:
+        raise DataError(
+            "series do not pair up",
+            found=f"position {position.shape}, cycle number {np.shape(cycle_number)}, branch "
+            f"{np.shape(branch)}, tension {loads.shape}",
+            needed="one length",
+        )
+    number, side = np.asarray(cycle_number), np.asarray(branch)
+    # Thinned before anything is computed: a log may have thousands of samples a cycle.
+    step = max(1, int(np.count_nonzero(number)) // (SAMPLES_PER_CYCLE * max(1, n_cycles)))
+    rows = np.arange(0, position.size, step)
+    used = rows[(number[rows] > 0) & (side[rows] > 0) & np.isfinite(position[rows])]
+    position, number, side = position[used], number[used] - 1, side[used]
+    if position.size == 0 or np.ptp(position) == 0:
+        raise DataError(
+            "no stroke to compare cycles on",
+            found=f"{position.size} samples in cycles",
+            needed="samples at different positions",
+        )
+    level = np.full((loads.shape[0], n_cycles), np.nan)
+    slope = np.full(loads.shape[0], np.nan)
     for row, load in enumerate(loads[:, used]):
         product, power, count = np.zeros((3, n_cycles))
         top, top_slope = [], []
         for which in (1, 2):
             keep = (side == which) & np.isfinite(load)
             x, y, cycle = position[keep], load[keep], number[keep]
-            if x.size < 8 or np.ptp(x) == 0:
-                raise DataError(
-                    "a branch has no stroke to compare cycles on",
-                    found=f"{x.size} samples",
-                    needed="8 samples or more at different positions",
-                )
+            if x.size < FEWEST_SAMPLES or np.ptp(x) == 0:
+                break
             grid, mean, gradient = _reference_branch(x, y)
             g = np.interp(x, grid, gradient)
             # Beyond the grid the branch is the straight line of its end.
@@ -146,11 +154,10 @@ def cycle_tension_level(
             count += np.bincount(cycle, minlength=n_cycles)
             top.append(mean[-1])
             top_slope.append(gradient[-1])
-        slope[row] = np.mean(top_slope)
-        supported = (count >= 4) & (power > 0)
-        shift = np.full(n_cycles, np.nan)
-        shift[supported] = product[supported] / power[supported]
-        level[row] = np.mean(top) + slope[row] * shift
+        else:
+            slope[row] = np.mean(top_slope)
+            known = (count >= FEWEST_IN_A_CYCLE) & (power > 0)
+            level[row, known] = np.mean(top) + slope[row] * product[known] / power[known]
     return level, slope
 
 

@@ -17,9 +17,7 @@ from reduction.moduli.slip import cycle_tension_level, find_slips
 from reduction.phases.standstill import find_standstills
 from reduction.settings import CycleSettings, HoldSettings, PhaseSettings, SlipSettings
 
-SHARED = Path(__file__).parents[2].parent / "shared"
-DATA = SHARED / "data" / "tmt-synthetic"
-pytestmark = pytest.mark.skipif(not DATA.exists(), reason="the synthetic logs are not at hand")
+DATA = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 
 FOOT, POUND_FORCE = 0.3048, 4.4482216152605
 SPECIMENS = ("new", "used")

@@ -66,8 +66,18 @@ def test_a_cycle_without_samples_has_no_level():
     assert np.flatnonzero(np.isnan(level[0])).tolist() == [6]
 
 
-def test_a_branch_without_stroke_is_refused():
-    with pytest.raises(DataError, match="no stroke to compare cycles on; found 20 samples"):
+def test_a_dead_channel_beside_a_sound_one_has_no_level():
+    position, tension, number, branch = sampled_log(60, 40, np.zeros(60))
+    loads = np.stack([tension, np.full(tension.size, np.nan)])
+    level, slope = cycle_tension_level(
+        position, loads, cycle_number=number, branch=branch, n_cycles=60
+    )
+    assert np.isfinite(level[0]).all() and np.isfinite(slope[0])
+    assert np.isnan(level[1]).all() and np.isnan(slope[1])
+
+
+def test_cycles_without_stroke_are_refused():
+    with pytest.raises(DataError, match="no stroke to compare cycles on; found 40 samples"):
         cycle_tension_level(
             np.ones(40),
             np.ones((1, 40)),
