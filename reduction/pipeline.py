@@ -20,7 +20,7 @@ from reduction.cycles.product import Cycles
 from reduction.errors import DataError, FitError
 from reduction.holds.reduce import reduce_holds
 from reduction.moduli.amplitude import summarise_amplitude
-from reduction.moduli.compare import compare_curves
+from reduction.moduli.compare import compare_curves, compare_cycles
 from reduction.moduli.elastomer import fit_elastomers
 from reduction.moduli.first_loading import first_loading_curves
 from reduction.moduli.identity import check_identity
@@ -46,6 +46,8 @@ __all__ = ["CYCLIC", "Located", "locate", "reduce_steps", "reduce_test"]
 CYCLIC = ("cyclic", "fatigue")
 PULLED = ("quasi-static", "tensile")
 HELD = ("relaxation", "creep")
+# cycles at each end of a long test of which the kept curves are compared
+ENDS = 6
 _UNUSABLE = Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE
 
 
@@ -139,12 +141,14 @@ def _of_cycles(
         "amplitude": summarise_amplitude(loops, area=area, break_in_cycles=break_in),
         "trend": fit_peak_trend(loops, area=area, break_in_cycles=break_in),
     }
-    if len(record.specimens) == 2:
-        # the last specimen against the first: used against new, as the campaign names them
-        parts["ratio"] = compare_curves(
-            curves, curves, numerator_specimen=1, denominator_specimen=0,
-            numerator_name=record.specimens[1], denominator_name=record.specimens[0],
-        )  # fmt: skip
+    # each specimen against the first: used against new, where the campaign names new first
+    ratios = [
+        compare_curves(
+            curves, curves, numerator_specimen=index, denominator_specimen=0,
+            numerator_name=name, denominator_name=record.specimens[0],
+        )
+        for index, name in enumerate(record.specimens[1:], start=1)
+    ]  # fmt: skip
     if cycles.n_cycles >= settings.slip.minimum_cycles:
         level, slope = cycle_tension_level(
             record.crosshead_position, tension, cycle_number=cycles.cycle_number,
@@ -154,6 +158,21 @@ def _of_cycles(
             loops, specimens=record.specimens, settings=settings.slip,
             tension_level=level, tension_slope=slope,
         )  # fmt: skip
+        kept = curves.selected_cycle
+        begin = kept[kept <= ENDS].tolist()
+        end = kept[kept > cycles.n_cycles - ENDS].tolist()
+        for index, name in enumerate(record.specimens):
+            ratio = compare_cycles(
+                curves, specimen=index, numerator_cycles=end, denominator_cycles=begin
+            )
+            ratios.append(
+                replace(
+                    ratio,
+                    numerator=f"{name}, {ratio.numerator}",
+                    denominator=f"{name}, {ratio.denominator}",
+                )
+            )
+    parts["ratios"] = tuple(ratios)
     return parts
 
 

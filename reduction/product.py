@@ -90,7 +90,7 @@ class ReducedTest:
     amplitude: AmplitudeSummary | None = None
     trend: PeakTrend | None = None
     slips: Slips | None = None
-    ratio: Ratio | None = None
+    ratios: tuple[Ratio, ...] = ()
     elastomers: tuple[ElastomerFit, ...] = ()
     holds: tuple[HoldResult, ...] = ()
     stress_at_strain: Floats | None = None
@@ -121,12 +121,13 @@ class ReducedTest:
             ("moduli", self.curves),
             ("first loading", self.first_loading),
             ("slips", self.slips),
-            ("comparison", self.ratio),
             ("stepwise", self.stepwise),
         )
         for stage, product in stages:
             if product is not None:
                 yield from ((stage, text) for text in product.notes)
+        for ratio in self.ratios:
+            yield from (("comparison", text) for text in ratio.notes)
         for fit in self.elastomers:
             yield from ((f"{fit.law} {fit.specimen}", text) for text in fit.notes)
         for number, hold in enumerate(self.holds, start=1):

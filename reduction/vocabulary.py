@@ -124,11 +124,15 @@ _ROWS = (
     ),
     Quantity("branch_tension_first_loading", "N", "tension of the first loading in the bin"),
     Quantity("ratio_strain_bin", "1", "centre of the strain bin of the modulus ratio"),
-    Quantity("modulus_ratio", "1", "tangent modulus of one specimen over that of another"),
+    Quantity(
+        "modulus_ratio",
+        "1",
+        "tangent modulus of one specimen, or of some cycles, over that of another",
+    ),
     Quantity("modulus_ratio_low", "1", "lower end of the 95 % interval of the modulus ratio"),
     Quantity("modulus_ratio_high", "1", "upper end of the 95 % interval of the modulus ratio"),
     Quantity("modulus_ratio_is_different", "1", "whether the interval leaves out 1"),
-    Quantity("ratio_numerator", "", "specimen above the line of the modulus ratio"),
+    Quantity("ratio_numerator", "", "specimen or cycles above the line of the modulus ratio"),
     Quantity("ratio_denominator", "", "specimen below the line of the modulus ratio"),
     Quantity(
         "tangent_modulus",

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reduction.archive.values import Values, numbers, texts
 from reduction.moduli.product import ElastomerFit, ModulusCurves, Ratio, Segments
@@ -66,18 +68,22 @@ def segment_values(segments: Segments) -> Values:
     }
 
 
-def ratio_values(ratio: Ratio) -> Values:
-    """Return the modulus ratio of two specimens."""
+def ratio_values(ratios: Sequence[Ratio]) -> Values:
+    """Return the modulus ratios of a test, which share one strain grid."""
+
+    def stacked(name: str) -> NDArray[Any]:
+        return np.stack([getattr(ratio, name) for ratio in ratios])
+
     return {
         "branch_name": texts(BRANCH_NAMES),
-        "ratio_numerator": np.array(ratio.numerator),
-        "ratio_denominator": np.array(ratio.denominator),
-        "ratio_strain_bin": ratio.strain_bin,
-        "modulus_ratio": ratio.ratio,
-        "modulus_ratio_standard_uncertainty": ratio.ratio_standard_uncertainty,
-        "modulus_ratio_low": ratio.ratio_low,
-        "modulus_ratio_high": ratio.ratio_high,
-        "modulus_ratio_is_different": ratio.is_different,
+        "ratio_numerator": texts([ratio.numerator for ratio in ratios]),
+        "ratio_denominator": texts([ratio.denominator for ratio in ratios]),
+        "ratio_strain_bin": ratios[0].strain_bin,
+        "modulus_ratio": stacked("ratio"),
+        "modulus_ratio_standard_uncertainty": stacked("ratio_standard_uncertainty"),
+        "modulus_ratio_low": stacked("ratio_low"),
+        "modulus_ratio_high": stacked("ratio_high"),
+        "modulus_ratio_is_different": stacked("is_different"),
     }
 
 

@@ -117,8 +117,8 @@ def _all_values(test: ReducedTest) -> Values:
         values |= first_loading_values(test.first_loading)
     if test.segments is not None:
         values |= segment_values(test.segments)
-    if test.ratio is not None:
-        values |= ratio_values(test.ratio)
+    if test.ratios:
+        values |= ratio_values(test.ratios)
     if test.elastomers:
         values |= elastomer_values(test.elastomers)
     if test.holds:

@@ -13,7 +13,8 @@ dimension                      one entry for
 ``branch_name``                ascending, descending; text coordinate ``branch_name``
 ``strain_bin``                 each strain bin; ``strain_bin`` with ``strain_bin_bounds``
 ``first_loading_strain_bin``   the same for the first loading of the record
-``ratio_strain_bin``           the same for the ratio of two specimens
+``comparison``                 each ratio of moduli: two specimens, last cycles over first
+``ratio_strain_bin``           the same for the ratios
 ``selected_cycle``             each cycle whose own curve is kept
 ``segment``                    each piecewise-linear segment, from the lowest strain
 ``strain_level``               each stated elongation
@@ -101,7 +102,7 @@ _B = ("specimen", "branch_name", "strain_bin")
 _F = ("specimen", "branch_name", "first_loading_strain_bin")
 _BC = ("specimen", "selected_cycle", "branch_name", "strain_bin")
 _G = ("specimen", "branch_name", "segment")
-_R = ("branch_name", "ratio_strain_bin")
+_R = ("comparison", "branch_name", "ratio_strain_bin")
 
 _ROWS = chain(
     # coordinates
@@ -260,8 +261,8 @@ _ROWS = chain(
     stated("stress_at_strain", ("specimen", "strain_level"), NOT_EVALUATED),
     measured("permanent_set", _S),
     # the ratio of two specimens
-    label("ratio_numerator"),
-    label("ratio_denominator"),
+    label("ratio_numerator", ("comparison",)),
+    label("ratio_denominator", ("comparison",)),
     measured("modulus_ratio", _R),
     stated("modulus_ratio_low", _R, BOUND),
     stated("modulus_ratio_high", _R, BOUND),

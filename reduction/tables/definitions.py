@@ -202,7 +202,7 @@ TABLES = (
     Table("permanent_set", ("specimen",), ("permanent_set",), ("permanent_set",)),
     Table(
         "comparison",
-        ("branch_name", "ratio_strain_bin"),
+        ("comparison", "branch_name", "ratio_strain_bin"),
         (
             "ratio_numerator",
             "ratio_denominator",

@@ -304,7 +304,7 @@ def rich_test():
         ),
         trend=PeakTrend(**{item.name: array(rng, 2) for item in fields(PeakTrend)}),
         slips=make_slips(rng),
-        ratio=make_ratio(rng),
+        ratios=(make_ratio(rng), make_ratio(rng)),
         elastomers=make_elastomers("new"),
         holds=(
             make_hold(rng, "new"),

@@ -260,7 +260,7 @@ def test_a_log_without_a_whole_cycle_still_makes_an_archive(rich_test, write):
         identity=None,
         curves=None,
         segments=None,
-        ratio=None,
+        ratios=(),
         amplitude=None,
         trend=None,
     )

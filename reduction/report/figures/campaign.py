@@ -68,22 +68,31 @@ def draw_all_moduli(tests: Sequence[TestView]) -> list[Figure]:
 def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
     """Draw the ratio of the specimens of each test, one figure a branch."""
     found: list[Figure] = []
-    pairs = {(view.text("ratio_numerator"), view.text("ratio_denominator")) for view in tests}
-    for pair in sorted(pairs - {("", "")}):
+    pairs = dict.fromkeys(pair for view in tests for pair in _compared(view))
+    for pair in pairs:
         for place, branch in enumerate(BRANCH_NAMES):
             data: list[Trace] = []
             for index, view in enumerate(tests):
-                own = (view.text("ratio_numerator"), view.text("ratio_denominator"))
                 strain, ratio = view.array("ratio_strain_bin"), view.array("modulus_ratio")
-                if own != pair or strain is None or ratio is None:
+                if pair not in _compared(view) or strain is None or ratio is None:
                     continue
+                at = _compared(view).index(pair)
                 low, high = (
                     view.array_like(f"modulus_ratio_{end}", ratio) for end in ("low", "high")
                 )
                 x = strain * shown("strain", view.units).factor
                 data += [
-                    band(x, low[place], high[place], name=view.id, colour=colour(index), alpha=0.2),
-                    line(x, ratio[place], name=view.id, colour=colour(index), dash=DASHES[branch]),
+                    band(
+                        x,
+                        low[at, place],
+                        high[at, place],
+                        name=view.id,
+                        colour=colour(index),
+                        alpha=0.2,
+                    ),
+                    line(
+                        x, ratio[at, place], name=view.id, colour=colour(index), dash=DASHES[branch]
+                    ),
                 ]
             figure = make_figure(
                 f"campaign-ratio-{len(found)}", f"{pair[0]} over {pair[1]}, {branch}",
@@ -97,6 +106,11 @@ def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
             if figure.has_data:
                 found.append(figure)
     return found
+
+
+def _compared(view: TestView) -> list[tuple[str, str]]:
+    """What the ratios of a test are between, above and below the line."""
+    return list(zip(view.texts("ratio_numerator"), view.texts("ratio_denominator"), strict=True))
 
 
 def draw_parts(tests: Sequence[TestView]) -> list[Figure]:
