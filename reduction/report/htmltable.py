@@ -114,7 +114,7 @@ def measured(value: float, uncertainty: float, unit: Shown | None = None) -> Cel
     if not isfinite(uncertainty) or uncertainty <= 0:
         return number(value, unit)
     half = uncertainty * scale
-    if not 1e-6 <= half < 1e9:
+    if not 1e-10 <= half < 1e9:
         return Cell(f"{value * scale:.4g} ± {half:.2g}", _exact(value), is_number=True)
     places = _decimals(half, 2)
     return Cell(f"{value * scale:,.{places}f} ± {half:,.{places}f}", _exact(value), is_number=True)

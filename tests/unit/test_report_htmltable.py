@@ -19,7 +19,7 @@ MPA = Shown("MPa", 1e-6)
         (1.0e6, float("nan"), "1.000"),
         (float("nan"), 1.0, NOT_GIVEN),
         (-3.0e5, 2.0e3, "-0.3000 ± 0.0020"),
-        (1.0e6, 1e-3, "1 ± 1e-09"),
+        (1.0e6, 1e-6, "1 ± 1e-12"),
     ],
 )
 def test_a_value_ends_where_its_uncertainty_does(value, uncertainty, text):

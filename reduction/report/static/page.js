@@ -7,7 +7,8 @@
   // the two blues, lighter by one step each: the darker one fades on a dark page
   const ON_DARK = [["#56B4E9", "#B3E0FF"], ["#0072B2", "#4AA3DF"]];
   const AXIS = 52; // ticks and title under a plot, in CSS pixels
-  const PRINT_WIDTH = 660; // what an A4 or Letter page with 15 mm margins holds, in CSS pixels
+  // what an A4 or Letter page with 15 mm margins holds, in CSS pixels: one figure, or two abreast
+  const PAPER = { wide: 655, narrow: 318 };
 
   const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -55,12 +56,13 @@
       for (const [onWhite, onDark] of ON_DARK) text = text.replaceAll(onWhite, onDark);
     }
     const { data, layout } = JSON.parse(text);
-    const width = printing ? PRINT_WIDTH : plot.clientWidth;
+    const onPaper = plot.parentElement.classList.contains("wide") ? PAPER.wide : PAPER.narrow;
+    const width = printing ? onPaper : plot.clientWidth;
     const legend = legendHeight(data, width);
     const tall = Number(plot.dataset.height) + legend;
     plot.style.minHeight = `${tall}px`;
     const shown = { ...themed(layout, legend), height: tall, showlegend: legend > 0 };
-    if (printing) Object.assign(shown, { width: PRINT_WIDTH, autosize: false });
+    if (printing) Object.assign(shown, { width, autosize: false });
     drawn.add(plot);
     return Plotly.react(plot, data, shown, {
       responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"],
