@@ -115,8 +115,9 @@ def noise_range(values: ArrayLike) -> float:
     Returns
     -------
     noise_range : float
-        The greater of twelve standard deviations of the noise and three quanta, at least 1e-9 of the
-        greatest magnitude, so that rounding alone is no movement, and 1e-12. [unit of the channel]
+        The greater of twelve standard deviations of the noise and three quanta; at least
+        1e-9 of the greatest magnitude, so that rounding alone is no movement, and 1e-12.
+        [unit of the channel]
 
     Raises
     ------

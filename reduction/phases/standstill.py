@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
 from reduction.errors import DataError
+from reduction.phases.blocks import block_extremes, still_blocks
 from reduction.phases.noise import noise_range
 from reduction.record import Bools, Floats, Integers, freeze_arrays
 from reduction.settings import PhaseSettings
@@ -25,7 +26,6 @@ __all__ = ["Standstills", "find_standstills", "median_step"]
 
 _FEWEST_SAMPLES = 4  # two equal samples may be the two sides of a peak
 _SLACK_SHARE = 0.02
-_AWAY = 4.0  # tolerances
 _STEPS_READ = 100_001
 
 
@@ -71,68 +71,6 @@ class Standstills:
         return int(self.first.shape[0])
 
 
-def _block_extremes(position: Floats, length: int) -> tuple[Floats, Floats]:
-    """Least and greatest position of each block of samples; +inf, -inf where all are missing."""
-    whole = position.size // length * length
-    parts = [position[:whole].reshape(-1, length), position[None, whole:]]
-    least = np.concatenate([part.min(axis=1) for part in parts if part.size])
-    greatest = np.concatenate([part.max(axis=1) for part in parts if part.size])
-    for block in np.flatnonzero(np.isnan(least)):
-        finite = position[block * length : (block + 1) * length]
-        finite = finite[np.isfinite(finite)]
-        least[block] = finite.min(initial=np.inf)
-        greatest[block] = finite.max(initial=-np.inf)
-    return least, greatest
-
-
-def _still_runs(
-    least: Floats, greatest: Floats, window: int, tolerance: float
-) -> tuple[Integers, Integers]:
-    """First and last block of each run in which every window of blocks stays in tolerance."""
-    n_windows = least.size - window + 1
-    low, high, covered = least, greatest, 1
-    while covered < window:  # windows of twice the width from two of the width before
-        step = min(covered, window - covered)
-        low = np.minimum(low[: low.size - step], low[step:])
-        high = np.maximum(high[: high.size - step], high[step:])
-        covered += step
-    is_still = np.zeros(n_windows + 2, dtype=bool)
-    is_still[1:-1] = high - low <= tolerance
-    edges = np.flatnonzero(is_still[1:] != is_still[:-1])
-    first, last = edges[::2], edges[1::2] - 1 + window - 1
-    last[:-1] = np.minimum(last[:-1], first[1:] - 1)
-    return first, last
-
-
-def _still_blocks(
-    least: Floats, greatest: Floats, window: int, tolerance: float
-) -> tuple[Integers, Integers]:
-    """First and last block of each standstill; a slow movement is taken apart by wider windows."""
-    found = []
-    work = [(0, least.size, window)]
-    while work:
-        begin, end, width = work.pop()
-        if end - begin < width:
-            continue
-        firsts, lasts = _still_runs(least[begin:end], greatest[begin:end], width, tolerance)
-        if firsts.size == 0:
-            continue
-        firsts, lasts = begin + firsts, begin + lasts
-        low, high = _extremes_between(least, greatest, firsts, lasts)
-        # a window at each end may hold the begin of a move, one up and one down
-        within = high - low <= 2 * tolerance
-        found.append(np.column_stack([firsts, lasts])[within])
-        work += [
-            (int(first), int(last) + 1, 2 * width)
-            for first, last in zip(firsts[~within], lasts[~within], strict=True)
-        ]
-    if not found:
-        return np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp)
-    both = np.concatenate(found)
-    both = both[np.argsort(both[:, 0])]
-    return both[:, 0].copy(), both[:, 1].copy()
-
-
 def _reach(position: Floats, edge: Integers, centre: Floats, half: float, step: int) -> Integers:
     """Samples beyond each edge, at most ``abs(step)``, that stay near the centre."""
     offsets = np.sign(step) * np.arange(1, abs(step) + 1)
@@ -141,39 +79,6 @@ def _reach(position: Floats, edge: Integers, centre: Floats, half: float, step: 
     value = position[np.clip(index, 0, position.size - 1)]
     near = inside & ~(np.abs(value - centre[:, None]) > half)  # a missing sample is no movement
     return np.where(near.all(axis=1), abs(step), np.argmin(near, axis=1))
-
-
-def _extremes_between(
-    least: Floats, greatest: Floats, first: Integers, last: Integers
-) -> tuple[Floats, Floats]:
-    """Least and greatest position of each run of blocks, both ends inside."""
-    bounds = np.column_stack([first, last + 1]).ravel()
-    # one more block, of no samples, so that a run may end with the record
-    low = np.minimum.reduceat(np.append(least, np.inf), bounds)[::2]
-    high = np.maximum.reduceat(np.append(greatest, -np.inf), bounds)[::2]
-    return low, high
-
-
-def _outlasts_its_approach(
-    least: Floats, greatest: Floats, first: Integers, last: Integers, tolerance: float
-) -> Bools:
-    """Whether the crosshead comes or goes faster than it stays.
-
-    The turn of a slow cycle stays within the tolerance for a while, too, but it takes as
-    long again to get away from there.
-    """
-    if first.size == 0 or greatest.max() - least.min() <= 2 * _AWAY * tolerance:
-        return np.ones(first.size, dtype=bool)  # there is nowhere to go
-    length = last - first + 1
-    low, high = _extremes_between(least, greatest, first, last)
-    middle = (low + high) / 2
-    low, high = _extremes_between(
-        least,
-        greatest,
-        np.maximum(first - length, 0),
-        np.minimum(last + length, least.size - 1),
-    )
-    return np.asarray(np.maximum(high - middle, middle - low) > _AWAY * tolerance)
 
 
 def _interval_means(values: Floats, first: Integers, last: Integers) -> Floats:
@@ -311,10 +216,8 @@ def find_standstills(
     length = max(fewest // 4, 1)
     # a standstill of the fewest samples holds this many whole blocks, wherever it begins
     window = max((fewest - length + 1) // length, 1)
-    least, greatest = _block_extremes(position, length)
-    first_block, last_block = _still_blocks(least, greatest, window, tolerance)
-    stays = _outlasts_its_approach(least, greatest, first_block, last_block, tolerance)
-    first_block, last_block = first_block[stays], last_block[stays]
+    least, greatest = block_extremes(position, length)
+    first_block, last_block = still_blocks(least, greatest, window=window, tolerance=tolerance)
 
     first = first_block * length
     last = np.minimum((last_block + 1) * length, position.size) - 1

@@ -1,5 +1,7 @@
 """Reversals by a hysteresis band: the sequential definition, exact counts, no slow cases."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -78,7 +80,7 @@ def test_reversals_alternate_and_are_extremes_of_what_lies_between():
     steps = np.diff(values[reversals])
     assert (steps[1:] * steps[:-1] < 0).all()
     assert (np.abs(steps) >= 0.3).all()
-    for before, after in zip(reversals[:-1], reversals[1:], strict=True):
+    for before, after in pairwise(reversals):
         inside = values[before : after + 1]
         assert {inside.min(), inside.max()} == {values[before], values[after]}
 
