@@ -19,6 +19,8 @@ from reduction.record import Floats
 
 __all__ = ["exponentials", "prony_tension", "ramp_factor"]
 
+SMALLEST_RATIO = 1e-12
+
 
 def ramp_factor(relaxation_time: ArrayLike, *, ramp_duration: float) -> Floats:
     r"""Share of a Prony term that is left at the end of a constant-rate ramp.
@@ -56,9 +58,8 @@ def ramp_factor(relaxation_time: ArrayLike, *, ramp_duration: float) -> Floats:
     if ramp_duration < 0:
         raise DataError("the ramp has a negative duration", found=f"{ramp_duration:g} s")
     times = as_positive("relaxation_time", relaxation_time)
-    if ramp_duration == 0:
-        return np.ones_like(times)
-    ratio = ramp_duration / times
+    # The quotient tends to 1; below this it would be 0 over 0.
+    ratio = np.maximum(ramp_duration / times, SMALLEST_RATIO)
     factor: Floats = -np.expm1(-ratio) / ratio
     return factor
 

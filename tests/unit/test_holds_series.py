@@ -22,7 +22,8 @@ def test_counted_from_its_start_the_factor_takes_its_usual_form():
 
 
 def test_a_step_leaves_every_term_whole():
-    np.testing.assert_array_equal(ramp_factor([1.0, 5.0], ramp_duration=0.0), 1.0)
+    np.testing.assert_allclose(ramp_factor([1.0, 5.0], ramp_duration=0.0), 1.0, rtol=1e-12)
+    np.testing.assert_allclose(ramp_factor([5.0], ramp_duration=5e-324), 1.0, rtol=1e-12)
 
 
 def test_a_series_begins_at_the_sum_and_ends_at_its_long_time_tension():

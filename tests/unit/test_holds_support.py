@@ -95,7 +95,7 @@ def test_a_gap_in_the_hold_ends_the_search_for_steps():
 
 def test_many_sound_holds_raise_no_alarm():
     rng = np.random.default_rng(5)
-    for _ in range(40):
+    for _ in range(15):
         times, size = rng.uniform(1, 300, 2), rng.uniform(1, 60, 2)
         series = 300 + np.exp(-TIME[:, None] / times) @ size
         one = hold(series, noise=rng.uniform(0.1, 2))
