@@ -164,6 +164,8 @@ def _polished(
     return parameters
 
 
+# A search may stray to where the model overflows; its values tell it so.
+@np.errstate(over="ignore", invalid="ignore")
 def fit_separable(
     basis: Callable[[Floats], Floats],
     values: ArrayLike,
@@ -228,9 +230,7 @@ def fit_separable(
         )
 
     def weighted(shape: Floats) -> Floats:
-        # A search may stray to where the model overflows; it is then told so by its values.
-        with np.errstate(over="ignore", invalid="ignore"):
-            columns: Floats = basis(shape) * root[:, None]
+        columns: Floats = basis(shape) * root[:, None]
         return columns
 
     def jacobian(parameters: Floats) -> Floats:
@@ -246,8 +246,7 @@ def fit_separable(
         return target - columns @ _solve(columns, target)
 
     def together(parameters: Floats) -> Floats:
-        with np.errstate(over="ignore", invalid="ignore"):
-            return target - weighted(parameters[n_amplitudes:]) @ parameters[:n_amplitudes]
+        return target - weighted(parameters[n_amplitudes:]) @ parameters[:n_amplitudes]
 
     best: Floats | None = None
     lowest = np.inf
