@@ -19,19 +19,22 @@ from reduction.cycles.energy import sums_over_cycles
 from reduction.errors import DataError
 from reduction.record import Floats, Integers, freeze_arrays
 
-__all__ = ["CycleBasis", "cycle_basis", "fundamental"]
+__all__ = ["CycleBasis", "cycle_basis", "fundamental", "mean_drift"]
 
 
 @dataclass(frozen=True)
 class CycleBasis:
     """Cosine and sine of each sample's phase in its cycle, times its share of the cycle.
 
-    ``cosine`` and ``sine`` have shape (n_samples,) and carry the trapezoid's weights;
-    ``first`` and ``last`` are the cycles they were made for.
+    ``share`` (twice the trapezoid's weight over the period), ``cosine`` and ``sine`` have
+    shape (n_samples,); ``end_share`` is the share of the last sample of each cycle, whose
+    phase is a whole turn; ``first`` and ``last`` are the cycles they were made for.
     """
 
+    share: Floats
     cosine: Floats
     sine: Floats
+    end_share: Floats
     first: Integers
     last: Integers
 
@@ -76,8 +79,8 @@ def cycle_basis(time: Floats, first: Integers, last: Integers) -> CycleBasis:
         )
     weight = np.zeros_like(time)
     np.subtract(time[2:], time[:-2], out=weight[1:-1])
-    # the last sample of a cycle has the phase of its first one, so the two ends make one weight
-    weight[first] = (time[first + 1] - time[first]) + (time[last] - time[last - 1])
+    # an end of the cycle counts half; the other half belongs to the cycle that it touches
+    weight[first] = time[first + 1] - time[first]
     # one value a sample from one value a cycle, with nothing between cycles
     gaps = np.diff(first, append=time.size) - (last - first)
     lengths = np.column_stack([last - first, gaps]).ravel()
@@ -88,14 +91,16 @@ def cycle_basis(time: Floats, first: Integers, last: Integers) -> CycleBasis:
     phase *= rate
     rate *= weight[begin:]
     rate /= 2 * np.pi
-    cosine, sine = np.zeros_like(time), np.zeros_like(time)
+    share, cosine, sine = np.zeros_like(time), np.zeros_like(time), np.zeros_like(time)
+    share[begin:] = rate
     np.multiply(np.cos(phase), rate, out=cosine[begin:])
     np.multiply(np.sin(phase, out=phase), rate, out=sine[begin:])
-    return CycleBasis(cosine=cosine, sine=sine, first=first, last=last)
+    end_share = (time[last] - time[last - 1]) / period
+    return CycleBasis(share, cosine, sine, end_share, first, last)
 
 
-def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats]:
-    """Cosine and sine amplitude of the fundamental in each cycle.
+def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats, Floats]:
+    """Cosine and sine amplitude of the fundamental in each cycle, and its mean.
 
     Parameters
     ----------
@@ -106,8 +111,8 @@ def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats]:
 
     Returns
     -------
-    cosine, sine : ndarray, shape (n_cycles,)
-        Amplitudes, in the unit of the series. [any]
+    cosine, sine, mean : ndarray, shape (n_cycles,)
+        Amplitudes and mean over time, in the unit of the series. [any]
 
     Raises
     ------
@@ -116,21 +121,61 @@ def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats]:
 
     Notes
     -----
-    A drift over the cycle, from its first to its last sample, is taken as linear in time
-    and removed: left in, a drift d would add -d/pi to the sine.
+    A drift d over the cycle, linear in time, adds -d/pi to the sine: see `mean_drift`.
 
     Examples
     --------
     >>> t = np.arange(13.0)
     >>> basis = cycle_basis(t, np.array([0]), np.array([12]))
-    >>> a, b = fundamental(7 + 3 * np.cos(2 * np.pi * t / 12) - np.sin(2 * np.pi * t / 12), basis)
-    >>> print(a.round(12), b.round(12))
-    [3.] [-1.]
+    >>> wave = 7 + 3 * np.cos(2 * np.pi * t / 12) - np.sin(2 * np.pi * t / 12)
+    >>> print(*(part.round(12) for part in fundamental(wave, basis)))
+    [3.] [-1.] [7.]
     """
     first, last = basis.first, basis.last
-    drift = values[last] - values[first]
-    cosine = sums_over_cycles(values * basis.cosine, first, last)
+    at_end = values[last] * basis.end_share
+    cosine = sums_over_cycles(values * basis.cosine, first, last) + at_end
     sine = sums_over_cycles(values * basis.sine, first, last)
-    # the first sample's weight holds both ends: its value there is the mean of the two
-    cosine += drift / 2 * basis.cosine[first]
-    return cosine, sine + drift / np.pi
+    mean = (sums_over_cycles(values * basis.share, first, last) + at_end) / 2
+    return cosine, sine, mean
+
+
+def mean_drift(mean: Floats, first: Integers, last: Integers) -> Floats:
+    """Drift of a series over each cycle, from the means of the cycles beside it.
+
+    Parameters
+    ----------
+    mean : ndarray, shape (n_cycles,)
+        Mean over each cycle. [any]
+    first, last : ndarray of int, shape (n_cycles,)
+        First and last sample of each cycle. [1]
+
+    Returns
+    -------
+    drift : ndarray, shape (n_cycles,)
+        Half the change between the two neighbours, the change to the only neighbour at an
+        end of a run, and zero for a cycle that touches no other. [any]
+
+    Raises
+    ------
+    IndexError
+        If the arrays differ in length.
+
+    Notes
+    -----
+    The difference of the two end samples of a cycle would do without noise; with it, that
+    difference puts 0.45 standard deviations of a reading into the sine, where the sum
+    over a hundred samples puts 0.14.  Means of cycles carry a tenth of that noise.
+
+    Examples
+    --------
+    >>> print(mean_drift(np.array([1.0, 2.0, 4.0]), np.array([0, 9, 18]), np.array([9, 18, 27])))
+    [1.  1.5 2. ]
+    """
+    change = np.diff(mean)
+    touches = last[:-1] == first[1:]
+    before = np.concatenate([[np.nan], np.where(touches, change, np.nan)])
+    after = np.concatenate([np.where(touches, change, np.nan), [np.nan]])
+    both = (before + after) / 2
+    one = np.where(np.isnan(before), after, before)
+    drift: Floats = np.nan_to_num(np.where(np.isnan(both), one, both), nan=0.0)
+    return drift

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from reduction.cycles.energy import loop_energy, sums_over_cycles
-from reduction.cycles.harmonic import CycleBasis, cycle_basis, fundamental
+from reduction.cycles.harmonic import CycleBasis, cycle_basis, fundamental, mean_drift
 from reduction.cycles.product import Cycles, Loops
 from reduction.record import Bools, Floats, Integers
 
@@ -28,6 +28,10 @@ _NOISE_SAMPLES = 65_536
 _BLOCK = 32_768
 # samples beside a block that its differences of strain reach
 _REACH = 4
+_MEASURED = (
+    "peak", "valley", "high", "low", "energy", "strain_step_norm", "force_cosine", "force_sine",
+    "force_mean", "strain_cosine", "strain_sine", "strain_mean",
+)  # fmt: skip
 _FIELDS = (
     "frequency", "cycle_start_time", "mean_tension", "tension_amplitude", "mean_strain",
     "strain_amplitude", "peak_tension", "valley_tension", "apparent_spring_constant",
@@ -99,25 +103,38 @@ def _extremes(values: Floats, first: Integers, last: Integers) -> tuple[Floats, 
     return np.maximum(greatest, values[last]), np.minimum(least, values[last])
 
 
-def _of_specimen(
-    tension: Floats,
-    strain: Floats,
-    basis: CycleBasis,
-    *,
-    noise: float,
-    strain_noise: float,
-    waveform: Waveform,
-) -> tuple[dict[str, Floats], dict[str, Floats]]:
+def _measure(tension: Floats, strain: Floats, basis: CycleBasis, waveform: Waveform) -> Floats:
+    """What only the samples tell, one row a quantity of `_MEASURED`, one column a cycle."""
     first, last = basis.first, basis.last
     force, lost_force = _filled(tension, first, last)
     stretch, lost_stretch = _filled(strain, first, last)
-    n_samples = (last - first).astype(np.float64)
-    peak, valley = _extremes(force, first, last)
-    high, low = _extremes(stretch, first, last)
-    amplitude, strain_amplitude = (peak - valley) / 2, (high - low) / 2
-    energy, step_norm = loop_energy(force, stretch, first, last, waveform=waveform)
-    force_cos, force_sin = fundamental(force, basis)
-    strain_cos, strain_sin = fundamental(stretch, basis)
+    measured = np.array(
+        [
+            *_extremes(force, first, last),
+            *_extremes(stretch, first, last),
+            *loop_energy(force, stretch, first, last, waveform=waveform),
+            *fundamental(force, basis),
+            *fundamental(stretch, basis),
+        ]
+    )
+    measured[:, lost_force | lost_stretch] = np.nan
+    return measured
+
+
+def _derive(
+    measured: Floats, cycles: Cycles, *, noise: float, strain_noise: float
+) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Quantities of each cycle of one specimen, and their standard uncertainties."""
+    row = dict(zip(_MEASURED, measured, strict=True))
+    n_samples = (cycles.last - cycles.first).astype(np.float64)
+    peak, valley, energy = row["peak"], row["valley"], row["energy"]
+    amplitude = (peak - valley) / 2
+    strain_amplitude = (row["high"] - row["low"]) / 2
+    force_cos, strain_cos = row["force_cosine"], row["strain_cosine"]
+    force_sin = row["force_sine"] + mean_drift(row["force_mean"], cycles.first, cycles.last) / np.pi
+    strain_sin = (
+        row["strain_sine"] + mean_drift(row["strain_mean"], cycles.first, cycles.last) / np.pi
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         # a series a cos + b sin is the real part of (a - ib) exp(i omega t)
         square = strain_cos**2 + strain_sin**2
@@ -128,15 +145,14 @@ def _of_specimen(
         factor = loss / storage
         both = np.hypot(noise, apparent * strain_noise)
         u_part = np.sqrt(2 / n_samples) * both / np.sqrt(square)
-        u_energy = step_norm * both
-        u_extreme = np.full_like(peak, noise)
+        u_energy = row["strain_step_norm"] * both
+        u_extreme = np.where(np.isnan(peak), np.nan, noise)
         u_half = u_extreme / np.sqrt(2)
-        u_strain = np.full_like(peak, strain_noise / np.sqrt(2))
-        u_factor = u_part / np.abs(storage) * np.sqrt(1 + factor**2)
+        u_strain = np.where(np.isnan(peak), np.nan, strain_noise / np.sqrt(2))
         values = {
             "mean_tension": (peak + valley) / 2,
             "tension_amplitude": amplitude,
-            "mean_strain": (high + low) / 2,
+            "mean_strain": (row["high"] + row["low"]) / 2,
             "strain_amplitude": strain_amplitude,
             "peak_tension": peak,
             "valley_tension": valley,
@@ -159,14 +175,10 @@ def _of_specimen(
             "hysteresis_energy": u_energy,
             "storage_spring_constant": u_part,
             "loss_spring_constant": u_part,
-            "loss_factor": u_factor,
+            "loss_factor": u_part / np.abs(storage) * np.sqrt(1 + factor**2),
             "fundamental_energy_share": np.abs(share)
             * np.hypot(u_part / np.abs(loss), u_energy / np.abs(energy)),
         }
-    lost = lost_force | lost_stretch
-    for table in (values, uncertainty):
-        for name, column in table.items():
-            table[name] = np.where(lost, np.nan, column)
     return values, uncertainty
 
 
@@ -236,31 +248,29 @@ def close_loops(
     [[12.566 12.566]] 12.566
     """
     period = time[cycles.last] - time[cycles.first]
-    shape = (tension.shape[0], cycles.n_cycles)
-    tables = {name: np.empty(shape) for name in _FIELDS}
-    uncertainty = {name: np.empty(shape) for name in _FIELDS if name != "cycle_start_time"}
-    tables["cycle_start_time"][:] = time[cycles.first]
-    noise = [
-        (reading_noise(force), reading_noise(stretch))
-        for force, stretch in zip(tension, strain, strict=True)
-    ]
+    measured = np.empty((tension.shape[0], len(_MEASURED), cycles.n_cycles))
     for block in _blocks_of_cycles(cycles):
         low = max(int(cycles.first[block.start]) - _REACH, 0)
         high = int(cycles.last[block.stop - 1]) + _REACH + 1
         basis = cycle_basis(time[low:high], cycles.first[block] - low, cycles.last[block] - low)
-        for index, (of_tension, of_strain) in enumerate(noise):
-            values, errors = _of_specimen(
-                tension[index, low:high],
-                strain[index, low:high],
-                basis,
-                noise=of_tension,
-                strain_noise=of_strain,
-                waveform=waveform,
+        for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
+            measured[index, :, block] = _measure(
+                force[low:high], stretch[low:high], basis, waveform
             )
-            for name, column in values.items():
-                tables[name][index, block] = column
-            for name, column in errors.items():
-                uncertainty[name][index, block] = column
+    shape = (tension.shape[0], cycles.n_cycles)
+    tables = {name: np.empty(shape) for name in _FIELDS}
+    uncertainty = {name: np.empty(shape) for name in _FIELDS if name != "cycle_start_time"}
+    for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
+        values, errors = _derive(
+            measured[index],
+            cycles,
+            noise=reading_noise(force),
+            strain_noise=reading_noise(stretch),
+        )
+        for name, column in values.items():
+            tables[name][index] = column
+            uncertainty[name][index] = errors[name]
+    tables["cycle_start_time"][:] = time[cycles.first]
     tables["frequency"][:] = 1 / period
     # a turn is known to one sample at each end of the cycle, evenly spread
     step = period / (cycles.last - cycles.first)

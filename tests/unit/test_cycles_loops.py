@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reduction.cycles.energy import loop_energy, sums_over_cycles
-from reduction.cycles.harmonic import cycle_basis, fundamental
+from reduction.cycles.harmonic import cycle_basis, fundamental, mean_drift
 from reduction.cycles.loops import close_loops, reading_noise
 from reduction.cycles.product import Cycles
 from reduction.errors import DataError
@@ -107,16 +107,36 @@ def test_fundamental_on_uneven_times():
     rng = np.random.default_rng(0)
     t = np.sort(np.concatenate([[0, 10], rng.uniform(0, 10, 4000)]))
     basis = cycle_basis(t, np.array([0]), np.array([t.size - 1]))
-    cosine, sine = fundamental(3 * np.cos(0.2 * np.pi * t) - np.sin(0.2 * np.pi * t), basis)
+    cosine, sine, _ = fundamental(3 * np.cos(0.2 * np.pi * t) - np.sin(0.2 * np.pi * t), basis)
     assert cosine[0] == pytest.approx(3, abs=2e-3) and sine[0] == pytest.approx(-1, abs=2e-3)
 
 
-def test_fundamental_does_not_see_a_drift_that_is_linear_in_time():
-    t = np.arange(401.0)
+def test_a_drift_linear_in_time_is_taken_off_by_the_means_of_the_cycles():
+    t = np.arange(601.0)
     wave = 5 * np.cos(2 * np.pi * t / 200) + 2 * np.sin(2 * np.pi * t / 200)
-    basis = cycle_basis(t, np.array([0, 200]), np.array([200, 400]))
-    cosine, sine = fundamental(wave + 0.01 * t, basis)
-    assert cosine == pytest.approx(5, abs=1e-3) and sine == pytest.approx(2, abs=1e-3)
+    first = np.array([0, 200, 400])
+    basis = cycle_basis(t, first, first + 200)
+    cosine, sine, mean = fundamental(wave + 0.01 * t, basis)
+    drift = mean_drift(mean, first, first + 200)
+    assert drift == pytest.approx(2)
+    assert sine == pytest.approx(2 - 2 / np.pi, abs=1e-3)
+    assert cosine == pytest.approx(5, abs=1e-3)
+    assert sine + drift / np.pi == pytest.approx(2, abs=1e-3)
+
+
+def test_a_cycle_that_touches_no_other_has_no_drift():
+    mean, first = np.array([1.0, 5.0, 7.0]), np.array([0, 20, 30])
+    assert mean_drift(mean, first, np.array([10, 30, 40])).tolist() == [0.0, 2.0, 2.0]
+
+
+def test_noise_moves_the_loss_factor_by_its_stated_uncertainty():
+    rng = np.random.default_rng(11)
+    t, tension, strain = ellipse(100, 400)
+    noisy = tension + rng.normal(0, 1.2, t.size)
+    loops = close_loops(t, noisy[None], strain[None], cycles_of(100, 400, t.size))
+    stated = loops.uncertainty["loss_factor"][0].mean()
+    assert loops.loss_factor[0].std(ddof=1) == pytest.approx(stated, rel=0.15)
+    assert loops.loss_factor[0].mean() == pytest.approx(LOSS / STORAGE, abs=4 * stated / 20)
 
 
 def test_a_cycle_without_time_is_refused():
