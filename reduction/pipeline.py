@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reduction.cycles.find import find_cycles
 from reduction.cycles.label import label_phases
@@ -84,10 +85,10 @@ def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located
     return Located(record, standstills, cycles)
 
 
-def _usable(record: Record) -> Floats:
-    """Tension without the samples that no number may rest on, NaN there. [N]."""
-    flagged = (record.quality_flag & _UNUSABLE) != 0
-    return np.where(flagged, np.nan, record.tension) if flagged.any() else record.tension
+def _usable(values: Floats, flags: NDArray[np.uint16]) -> Floats:
+    """A channel without the samples that no number may rest on, NaN there."""
+    flagged = (flags & _UNUSABLE) != 0
+    return np.where(flagged, np.nan, values) if flagged.any() else values
 
 
 def _flag(located: Located, models: Sequence[StrainModel]) -> Record:
@@ -106,13 +107,15 @@ def _flag(located: Located, models: Sequence[StrainModel]) -> Record:
     return replace(record, quality_flag=flags, crosshead_position_quality_flag=of_position)
 
 
-def _strain(record: Record, models: Sequence[StrainModel]) -> Floats:
-    strain = np.empty_like(record.tension)
+def _strain(record: Record, tension: Floats, models: Sequence[StrainModel]) -> Floats:
+    """Strain of each specimen; NaN where position, or a tension that it needs, is not usable."""
+    position = _usable(record.crosshead_position, record.crosshead_position_quality_flag)
+    strain = np.empty_like(tension)
     for index, model in enumerate(models):
         strain[index] = free_length_strain_of(
             model,
-            position=record.crosshead_position,
-            tension=record.tension[index],
+            position=position,
+            tension=tension[index],
             measured_strain=None
             if record.measured_strain is None
             else record.measured_strain[index],
@@ -270,8 +273,8 @@ def reduce_test(
     """
     record, standstills, cycles = located.record, located.standstills, located.cycles
     area = np.array([specimen.area for specimen in specimens])
-    tension = _usable(record)
-    strain = _strain(record, models)
+    tension = _usable(record.tension, record.quality_flag)
+    strain = _strain(record, tension, models)
     parts = _of_cycles(located, strain, tension, area, settings)
     parts |= _of_first_loading(located, strain, tension, area, settings, history)
     holds = reduce_holds(
