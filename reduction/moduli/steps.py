@@ -191,7 +191,9 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
     -----
     Generalized likelihood ratio ([1]_), strongest first in local windows ([2]_).
     Noise that is not white is seen in the spread of the responses and in the correlation
-    of neighbours, and raises the threshold.  No step is looked for in the first ten
+    of neighbours, and raises the threshold; the stated chance is not kept for it: with a
+    correlation of 0.9, 4 % of generated series of 100 samples showed a step at a stated
+    0.1 % (none of 300 with white noise).  No step is looked for in the first ten
     samples, nor where the window would begin before half the sample number: there
     softening is as fast as a step.  A change that takes longer than twice the window, or
     that a change of slope explains as well, is drift.  An opposite change of less than
