@@ -19,7 +19,7 @@ from reduction.batch.survey import Survey, located_again, survey_campaign
 from reduction.campaign.plan import Campaign
 from reduction.errors import ArchiveError, ReductionError, SettingsError
 from reduction.ingest.quality import account_rows
-from reduction.pipeline import reduce_steps, reduce_test
+from reduction.pipeline.reduce import reduce_steps, reduce_test
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.report.page import write_report
 from reduction.strain.model import StrainModel

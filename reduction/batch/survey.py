@@ -15,7 +15,7 @@ from reduction.campaign.plan import Campaign, StepPlan, TestPlan
 from reduction.errors import DataError, ReductionError
 from reduction.ingest.record_of_test import read_record
 from reduction.ingest.steps import read_step_readings
-from reduction.pipeline import Located, locate
+from reduction.pipeline.locate import Located, locate
 from reduction.provenance import Source
 from reduction.record import Floats, Record, SpliceMarks, StepReadings
 from reduction.strain.fit import measure_mark_tension, zero_strain_position

@@ -1,0 +1,70 @@
+"""What the first loading of a located test gives, by field of `ReducedTest`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from reduction.errors import DataError, FitError
+from reduction.moduli.elastomer import fit_elastomers
+from reduction.moduli.first_loading import first_loading_curves
+from reduction.moduli.product import ElastomerFit
+from reduction.moduli.stress_at import stress_at_strain
+from reduction.pipeline.locate import Located
+from reduction.product import History
+from reduction.record import Floats
+from reduction.settings import ReductionSettings
+
+__all__ = ["parts_of_first_loading"]
+
+
+def _elastomers(
+    name: str, strain: Floats, stress: Floats, earlier_maximum_strain: float
+) -> tuple[tuple[ElastomerFit, ...], str]:
+    """Hyperelastic laws of one first loading, or the reason why there are none."""
+    known = np.isfinite(stress)
+    try:
+        fits = fit_elastomers(strain[known], stress[known], specimen=name)
+    except (DataError, FitError) as error:
+        return (), f"{name}: no hyperelastic law from the first loading: {error}"
+    if not np.isfinite(earlier_maximum_strain):
+        return fits, ""
+    note = (
+        "not a first loading of the specimen: earlier tests reached "
+        f"{100 * earlier_maximum_strain:.0f} %, and below that the rubber is softened"
+    )
+    return tuple(replace(fit, notes=(*fit.notes, note)) for fit in fits), ""
+
+
+def parts_of_first_loading(
+    located: Located,
+    strain: Floats,
+    tension: Floats,
+    area: Floats,
+    settings: ReductionSettings,
+    history: History | None,
+) -> dict[str, Any]:
+    """The first rise of a record that begins slack: curve, stress at elongation, laws."""
+    curves = first_loading_curves(
+        strain, tension, area=area, settings=settings.modulus, standstills=located.standstills
+    )
+    if curves is None or curves.strain_bin.size < 2:
+        return {}
+    rise = curves.branch_tension[:, 0]
+    levels = settings.modulus.stress_at_strain
+    parts: dict[str, Any] = {
+        "first_loading": curves,
+        "stress_at_strain": stress_at_strain(curves.strain_bin, rise, area=area, levels=levels),
+        "stress_at_strain_levels": levels,
+    }
+    if located.standstills.is_rest.any() or located.cycles is None:
+        earlier = np.full(area.size, np.nan) if history is None else history.earlier_maximum_strain
+        found = [
+            _elastomers(name, curves.strain_bin, rise[index] / area[index], float(earlier[index]))
+            for index, name in enumerate(located.record.specimens)
+        ]
+        parts["elastomers"] = tuple(fit for fits, _ in found for fit in fits)
+        parts["notes"] = [reason for _, reason in found if reason]
+    return parts

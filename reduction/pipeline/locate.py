@@ -1,0 +1,61 @@
+"""Where a test stands still and where it cycles, and which of its samples may be used."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.cycles.find import find_cycles
+from reduction.cycles.product import Cycles
+from reduction.errors import DataError
+from reduction.phases.standstill import Standstills, find_standstills
+from reduction.record import Floats, Quality, Record
+from reduction.settings import ReductionSettings
+
+__all__ = ["Located", "locate", "usable"]
+
+CYCLIC = ("cyclic", "fatigue")
+PULLED = ("quasi-static", "tensile")
+HELD = ("relaxation", "creep")
+_UNUSABLE = Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE
+
+
+@dataclass(frozen=True)
+class Located:
+    """A record with its standstills and, where the test has them, its cycles."""
+
+    record: Record
+    standstills: Standstills
+    cycles: Cycles | None
+
+
+def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located:
+    """Find the standstills and the cycles of a record; only cyclic kinds have cycles."""
+    if kind not in (*CYCLIC, *PULLED, *HELD):
+        raise DataError(
+            f"test '{record.test_id}' is of a kind that this version does not reduce",
+            found=kind,
+            needed="one of " + ", ".join((*CYCLIC, *PULLED, *HELD, "stepwise")),
+        )
+    standstills = find_standstills(
+        record.time, record.crosshead_position, record.tension, settings=settings.phases
+    )
+    if kind not in CYCLIC:
+        return Located(record, standstills, None)
+    cycles = find_cycles(
+        record.time,
+        record.crosshead_position,
+        record.tension,
+        standstills,
+        settings=settings.cycles,
+        cycle_counter=record.cycle_counter,
+    )
+    return Located(record, standstills, cycles)
+
+
+def usable(values: Floats, flags: NDArray[np.uint16]) -> Floats:
+    """A channel without the samples that no number may rest on, NaN there."""
+    flagged = (flags & _UNUSABLE) != 0
+    return np.where(flagged, np.nan, values) if flagged.any() else values

@@ -1,0 +1,208 @@
+"""The way of the data on one page: located record, strain, cycles, moduli, holds.
+
+`reduction.pipeline.locate` finds where the test stands still and where it cycles; the
+tension at the splice marks is measured there.  `reduce_test` does the rest once the marks
+of all tests of a specimen have been pooled.  `reduce_steps` is for tests read by a person.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from reduction.cycles.label import label_phases
+from reduction.errors import DataError
+from reduction.holds.reduce import reduce_holds
+from reduction.moduli.permanent_set import permanent_set
+from reduction.moduli.stepwise import reduce_stepwise
+from reduction.pipeline.cyclic import parts_of_cycles
+from reduction.pipeline.loading import parts_of_first_loading
+from reduction.pipeline.locate import Located, usable
+from reduction.product import History, ReducedTest, TestDescription
+from reduction.provenance import Source, Step
+from reduction.record import Floats, Quality, Record, Specimen, StepReadings
+from reduction.settings import ReductionSettings
+from reduction.strain.evaluate import extrapolated, free_length_strain_of
+from reduction.strain.model import StrainModel
+from reduction.strain.stress import check_constant_volume
+
+__all__ = ["reduce_steps", "reduce_test"]
+
+
+def reduce_test(
+    located: Located,
+    *,
+    description: TestDescription,
+    specimens: tuple[Specimen, ...],
+    models: Sequence[StrainModel],
+    history: History | None,
+    sources: tuple[Source, ...],
+    settings: ReductionSettings,
+    settings_json: str,
+) -> ReducedTest:
+    """Reduce one located test.
+
+    Parameters
+    ----------
+    located : Located
+        From `locate`.
+    description : TestDescription
+        What the laboratory kept.
+    specimens : tuple of Specimen, length n_specimens
+        In the order of the record.
+    models : sequence of StrainModel, length n_specimens
+        How position becomes strain.
+    history : History or None
+        What the specimens had seen before.
+    sources : tuple of Source
+        Raw files.
+    settings : ReductionSettings
+        In force.
+    settings_json : str
+        The same with everything else that was in force, for the product.
+
+    Returns
+    -------
+    test : ReducedTest
+        Ready for the archive.
+
+    Raises
+    ------
+    DataError
+        If the record cannot support a stage that its kind needs.
+    """
+    record, standstills, cycles = located.record, located.standstills, located.cycles
+    area = np.array([specimen.area for specimen in specimens])
+    tension = usable(record.tension, record.quality_flag)
+    strain = _strain(record, tension, models)
+    parts = parts_of_cycles(located, strain, tension, area, settings)
+    parts |= parts_of_first_loading(located, strain, tension, area, settings, history)
+    holds = reduce_holds(
+        record.time, record.crosshead_position, tension, strain, standstills,
+        specimens=record.specimens, settings=settings.holds,
+        kind="creep" if description.kind == "creep" else "relaxation",
+    )  # fmt: skip
+    left, left_uncertainty, remarks = permanent_set(
+        record.crosshead_position,
+        tension,
+        slack_tension=standstills.slack_tension,
+        relaxed_free_length=np.array(
+            [model.coefficients.get("relaxed_free_length", np.nan) for model in models]
+        ),
+    )
+    notes = [note for specimen in specimens for note in check_constant_volume(specimen)]
+    notes += parts.pop("notes", [])
+    notes += [
+        f"{name}, permanent set: {text}"
+        for name, text in zip(record.specimens, remarks, strict=True)
+        if text
+    ]
+    return ReducedTest(
+        description=description,
+        specimens=specimens,
+        record=_flag(located, models),
+        sources=sources,
+        steps=_steps(located, models),
+        settings_json=settings_json,
+        notes=tuple(dict.fromkeys(notes)),
+        history=history,
+        standstills=standstills,
+        phase=label_phases(record.n_samples, standstills=standstills, cycles=cycles),
+        strain=strain,
+        strain_models=tuple(models),
+        cycles=cycles,
+        holds=holds,
+        permanent_set=left,
+        permanent_set_standard_uncertainty=left_uncertainty,
+        **parts,
+    )
+
+
+def reduce_steps(
+    readings: StepReadings,
+    *,
+    description: TestDescription,
+    specimens: tuple[Specimen, ...],
+    sources: tuple[Source, ...],
+    settings_json: str,
+) -> ReducedTest:
+    """Reduce a stepwise test of one specimen; parameters as in `reduce_test`."""
+    if len(specimens) != 1:
+        raise DataError(
+            f"stepwise test '{description.test_id}' has several specimens",
+            found=str(len(specimens)),
+            needed="one",
+        )
+    specimen = specimens[0]
+    stepwise = reduce_stepwise(
+        readings, area=specimen.area, stated_gauge_length=specimen.gauge_length
+    )
+    return ReducedTest(
+        description=description,
+        specimens=specimens,
+        record=None,
+        sources=sources,
+        steps=(
+            Step("ingest", f"{readings.tension.size} readings"),
+            Step("moduli", "gauge length recovered, slopes between readings"),
+        ),
+        settings_json=settings_json,
+        notes=check_constant_volume(specimen),
+        stepwise=stepwise,
+    )
+
+
+def _flag(located: Located, models: Sequence[StrainModel]) -> Record:
+    """The record with the flags that only cycles and strain models can set."""
+    record, cycles = located.record, located.cycles
+    flags = record.quality_flag.copy()
+    of_position = record.crosshead_position_quality_flag
+    for index, model in enumerate(models):
+        outside = extrapolated(model, record.crosshead_position, record.tension[index])
+        flags[index][outside] |= np.uint16(Quality.EXTRAPOLATED)
+    if cycles is not None:
+        uneven = (cycles.cycle_number > 0) & ~cycles.is_constant_rate
+        flags[:, uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
+        of_position = of_position.copy()
+        of_position[uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
+    return replace(record, quality_flag=flags, crosshead_position_quality_flag=of_position)
+
+
+def _strain(record: Record, tension: Floats, models: Sequence[StrainModel]) -> Floats:
+    """Strain of each specimen; NaN where position, or a tension that it needs, is not usable."""
+    position = usable(record.crosshead_position, record.crosshead_position_quality_flag)
+    strain = np.empty_like(tension)
+    for index, model in enumerate(models):
+        strain[index] = free_length_strain_of(
+            model,
+            position=position,
+            tension=tension[index],
+            measured_strain=None
+            if record.measured_strain is None
+            else record.measured_strain[index],
+        )
+    return strain
+
+
+def _steps(located: Located, models: Sequence[StrainModel]) -> tuple[Step, ...]:
+    """One line a stage, with the numbers it found."""
+    record, standstills, cycles = located.record, located.standstills, located.cycles
+    steps = [
+        Step("ingest", f"{record.n_rows_read} rows read, {record.n_samples} kept"),
+        Step(
+            "phases",
+            f"{standstills.n_standstills} standstills within "
+            f"{standstills.position_tolerance:.4g} m, slack at {standstills.slack_tension:.4g} N",
+        ),
+    ]
+    for model in models:
+        numbers = ", ".join(f"{name} {value:.6g}" for name, value in model.coefficients.items())
+        steps.append(Step("strain", f"{model.specimen} by {model.method}: {numbers}"))
+    if cycles is not None:
+        steps.append(
+            Step("cycles", f"{cycles.n_cycles} by {cycles.counted_by}, band {cycles.band:.4g}")
+        )
+        steps.append(Step("moduli", "regression in a moving window on a strain grid, SI"))
+    return tuple(steps)
