@@ -114,7 +114,7 @@ def _render(
     faults = find_faults(tests, statuses, unreadable)
     comparisons = [
         make_part("All tests in one figure", draw_all_moduli(tests)),
-        make_part("One specimen over another", draw_ratios(tests)),
+        make_part("Ratios of moduli", draw_ratios(tests)),
         make_part("Mean strain and amplitude", draw_amplitude_pairs(tests)),
         make_part("Start against end", draw_parts(tests)),
         make_part("Static against dynamic", draw_static_dynamic(tests)),

@@ -95,7 +95,8 @@ def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
                     ),
                 ]
             figure = make_figure(
-                f"campaign-ratio-{len(found)}", f"{pair[0]} over {pair[1]}, {branch}",
+                f"campaign-ratio-{len(found)}",
+                f"{_only(tests, pair)}{pair[0]} over {pair[1]}, {branch}",
                 f"Tangent modulus of {pair[0]} over that of {pair[1]} at the same strain,"
                 f" {branch} branch, each test; band: 95 % interval. Where the band leaves out 1"
                 " the two differ.",
@@ -106,6 +107,12 @@ def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
             if figure.has_data:
                 found.append(figure)
     return found
+
+
+def _only(tests: Sequence[TestView], pair: tuple[str, str]) -> str:
+    """Name the test where only one compares the pair: there is no legend then."""
+    own = [view.id for view in tests if pair in _compared(view)]
+    return f"{own[0]}: " if len(own) == 1 and len(tests) > 1 else ""
 
 
 def _compared(view: TestView) -> list[tuple[str, str]]:
@@ -248,13 +255,19 @@ def _envelope(tests: Sequence[TestView], specimen: str, branch: str) -> Trace | 
 
 
 def _ratio_axis(data: Sequence[Trace]) -> dict[str, Any]:
-    """Return the axis, scaled to the ratios: where few cycles reach an interval may be huge."""
-    ratios = [y for trace in data if "fill" not in trace for y in trace["y"] if y is not None]
+    """Return the axis: all ratios, and four fifths of the interval ends.
+
+    Where few cycles reach, an interval may be so wide that it would hide the rest.
+    """
     title = "ratio of moduli [1]"
-    if not ratios:
+    lines = [y for trace in data if "fill" not in trace for y in trace["y"] if y is not None]
+    ends = [y for trace in data if "fill" in trace for y in trace["y"] if y is not None]
+    if not lines:
         return axis(title)
-    low, high = min(*ratios, 1.0), max(*ratios, 1.0)
-    return axis(title, range=[low - 0.15 * (high - low) - 0.01, high + 0.15 * (high - low) + 0.01])
+    usual = np.quantile(ends, [0.1, 0.9]) if ends else np.ones(2)
+    low, high = min(*lines, usual[0], 1.0), max(*lines, usual[1], 1.0)
+    room = 0.1 * (high - low) + 0.01
+    return axis(title, range=plain_numbers(np.array([low - room, high + room])))
 
 
 def _level(height: float) -> Trace:
