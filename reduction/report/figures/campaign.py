@@ -96,7 +96,7 @@ def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
                 ]
             figure = make_figure(
                 f"campaign-ratio-{len(found)}",
-                f"{_only(tests, pair)}{pair[0]} over {pair[1]}, {branch}",
+                f"{_only(tests, pair)}{branch}, {pair[0]} over {pair[1]}",
                 f"Tangent modulus of {pair[0]} over that of {pair[1]} at the same strain,"
                 f" {branch} branch, each test; band: 95 % interval. Where the band leaves out 1"
                 " the two differ.",
