@@ -51,12 +51,19 @@ class TestDescription:
 
 @dataclass(frozen=True)
 class History:
-    """What each specimen had seen before this test, shape (n_specimens,) each."""
+    """What each specimen had seen before this test, shape (n_specimens,) each.
+
+    ``permanent_set`` is how much longer it is when it first becomes taut than it was at the
+    start of its first test, over the free length: what is left of the earlier tests after
+    rest. NaN where one of the two records does not begin slack. [1]
+    """
 
     earlier_tests: tuple[tuple[str, ...], ...]
     earlier_maximum_strain: Floats
     earlier_maximum_tension: Floats
     earlier_cycles: Floats
+    permanent_set: Floats
+    permanent_set_standard_uncertainty: Floats
 
 
 @dataclass(frozen=True)
@@ -95,8 +102,8 @@ class ReducedTest:
     holds: tuple[HoldResult, ...] = ()
     stress_at_strain: Floats | None = None
     stress_at_strain_levels: tuple[float, ...] = ()
-    permanent_set: Floats | None = None
-    permanent_set_standard_uncertainty: Floats | None = None
+    slack_strain_at_unloading: Floats | None = None
+    slack_strain_at_unloading_standard_uncertainty: Floats | None = None
     stepwise: StepwiseResult | None = None
 
     def all_notes(self) -> tuple[tuple[str, str], ...]:

@@ -216,7 +216,12 @@ _ROWS = (
     Quantity("earlier_maximum_tension", "N", "greatest tension in the specimen's earlier tests"),
     Quantity("earlier_cycles", "1", "cycles in the specimen's earlier tests"),
     Quantity("earlier_tests", "", "the specimen's earlier tests, oldest first"),
-    Quantity("permanent_set", "1", "strain left at zero tension after the test"),
+    Quantity(
+        "permanent_set",
+        "1",
+        "growth of the slack free length since the specimen's first test, over it",
+    ),
+    Quantity("slack_strain_at_unloading", "1", "strain where the specimen goes slack on unloading"),
     # standstills
     Quantity("standstill_start_time", "s", "elapsed time at the start of the standstill"),
     Quantity("standstill_end_time", "s", "elapsed time at the end of the standstill"),

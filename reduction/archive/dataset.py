@@ -125,10 +125,9 @@ def _all_values(test: ReducedTest) -> Values:
         values |= hold_values(test.holds)
     if test.stress_at_strain is not None:
         values |= stress_at_strain_values(test.stress_at_strain, test.stress_at_strain_levels)
-    if test.permanent_set is not None:
-        values["permanent_set"] = test.permanent_set
-    if test.permanent_set_standard_uncertainty is not None:
-        values["permanent_set_standard_uncertainty"] = test.permanent_set_standard_uncertainty
+    for name in ("slack_strain_at_unloading", "slack_strain_at_unloading_standard_uncertainty"):
+        if getattr(test, name) is not None:
+            values[name] = getattr(test, name)
     return values
 
 

@@ -146,6 +146,7 @@ _ROWS = chain(
     stated("earlier_maximum_strain", _S, "bound: greatest value seen"),
     stated("earlier_maximum_tension", _S, "bound: greatest value seen"),
     stated("earlier_cycles", _S, "count"),
+    measured("permanent_set", _S),
     # samples
     measured(
         "crosshead_position",
@@ -259,7 +260,7 @@ _ROWS = chain(
     stated("segment_tension_high", _G, BOUND),
     label("segment_criterion"),
     stated("stress_at_strain", ("specimen", "strain_level"), NOT_EVALUATED),
-    measured("permanent_set", _S),
+    measured("slack_strain_at_unloading", _S),
     # the ratio of two specimens
     label("ratio_numerator", ("comparison",)),
     label("ratio_denominator", ("comparison",)),

@@ -48,6 +48,8 @@ def history_values(history: History) -> Values:
         "earlier_maximum_strain": history.earlier_maximum_strain,
         "earlier_maximum_tension": history.earlier_maximum_tension,
         "earlier_cycles": history.earlier_cycles,
+        "permanent_set": history.permanent_set,
+        "permanent_set_standard_uncertainty": history.permanent_set_standard_uncertainty,
     }
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from reduction.batch.survey import Survey
+from reduction.moduli.slack import slack_crossings
 from reduction.product import History
 from reduction.strain.fit import free_length_strain_of
 from reduction.strain.model import StrainModel
@@ -21,6 +22,31 @@ def _greatest_strain(survey: Survey, name: str, model: StrainModel) -> float:
         model, position=np.array([position]), tension=np.array([tension])
     )
     return float(strain[0])
+
+
+def _set_after_rest(
+    survey: Survey, earlier: Sequence[Survey], name: str, free_length: float
+) -> tuple[float, float]:
+    """Growth of the length at which the specimen becomes taut, since its first test. [1]."""
+    if not earlier:
+        return float("nan"), float("nan")
+    first = min(earlier, key=lambda entry: entry.plan.order or 0)
+    pair = (first, survey)
+    if any(name not in entry.first_rise for entry in pair):
+        return float("nan"), float("nan")
+    # one tension for both, so that the slope of the first rise does not enter
+    slack = max(entry.slack_tension for entry in pair)
+    lengths, spreads = [], []
+    for entry in pair:
+        position, tension = entry.first_rise[name]
+        crossing, crossing_spread, _ = slack_crossings(position, tension, slack_tension=slack)
+        lengths.append(crossing[0])
+        spreads.append(crossing_spread[0])
+    growth, spread = (lengths[1] - lengths[0]) / free_length, np.hypot(*spreads) / free_length
+    # a crossing through two samples alone has no residual, and so no uncertainty to give
+    if not np.isfinite(spread):
+        return float("nan"), float("nan")
+    return float(growth), float(spread)
 
 
 def history_of(
@@ -51,7 +77,7 @@ def history_of(
     if order is None:
         return None
     tests: list[tuple[str, ...]] = []
-    strain, tension, cycles = [], [], []
+    strain, tension, cycles, left = [], [], [], []
     for name in survey.plan.specimens:
         earlier = [
             entry
@@ -71,9 +97,14 @@ def history_of(
         strain.append(float(np.max(strains)) if strains else float("nan"))
         tension.append(max((entry.greatest[name][2] for entry in seen), default=float("nan")))
         cycles.append(float(sum(entry.n_cycles for entry in earlier)))
+        model = models.get((survey.plan.id, name))
+        free = float("nan") if model is None else model.coefficients.get("relaxed_free_length")
+        left.append(_set_after_rest(survey, seen, name, float("nan") if free is None else free))
     return History(
         earlier_tests=tuple(tests),
         earlier_maximum_strain=np.array(strain),
         earlier_maximum_tension=np.array(tension),
         earlier_cycles=np.array(cycles),
+        permanent_set=np.array([value for value, _ in left]),
+        permanent_set_standard_uncertainty=np.array([spread for _, spread in left]),
     )

@@ -107,6 +107,7 @@ def _settings_json(
             "earlier_maximum_strain": history.earlier_maximum_strain.tolist(),
             "earlier_maximum_tension": history.earlier_maximum_tension.tolist(),
             "earlier_cycles": history.earlier_cycles.tolist(),
+            "permanent_set": history.permanent_set.tolist(),
         },
     }
     return json.dumps(document, sort_keys=True, ensure_ascii=False)

@@ -24,6 +24,8 @@ __all__ = ["Survey", "located_again", "read_test", "survey_campaign"]
 
 # records larger than this together are read again rather than kept between the passes
 KEPT_SAMPLES = 10_000_000
+# share of the greatest tension up to which the first rise is kept, to tell where slack ends
+FIRST_RISE = 0.5
 
 
 @dataclass
@@ -32,7 +34,8 @@ class Survey:
 
     ``mark_tension`` holds, by specimen, one tension [N] for each pooled mark that was
     read in this test, in the order of the marks.  ``greatest`` holds, by specimen, position
-    [m] and tension [N] where the strain is greatest, and the greatest tension [N].
+    [m] and tension [N] where the strain is greatest, and the greatest tension [N];
+    ``first_rise`` position [m] and tension [N] of the samples up to half of its peak.
     """
 
     plan: TestPlan
@@ -46,6 +49,8 @@ class Survey:
     zero_strain_position: float | None = None
     has_extensometer: bool = False
     greatest: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    first_rise: dict[str, tuple[Floats, Floats]] = field(default_factory=dict)
+    slack_tension: float = float("nan")
     error: ReductionError | None = None
 
 
@@ -162,6 +167,11 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
     survey.has_extensometer = record.measured_strain is not None
     survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
     survey.greatest = _greatest(located)
+    survey.slack_tension = located.standstills.slack_tension
+    for name, tension in zip(record.specimens, record.tension, strict=True):
+        taut = tension > FIRST_RISE * np.nanmax(tension, initial=0.0)
+        stop = int(np.argmax(taut)) + 1 if taut.any() else 0
+        survey.first_rise[name] = (record.crosshead_position[:stop].copy(), tension[:stop].copy())
     return survey
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from reduction.cycles.label import label_phases
 from reduction.errors import DataError
 from reduction.holds.reduce import reduce_holds
-from reduction.moduli.permanent_set import permanent_set
+from reduction.moduli.slack import slack_strain_at_unloading
 from reduction.moduli.stepwise import reduce_stepwise
 from reduction.pipeline.cyclic import parts_of_cycles
 from reduction.pipeline.loading import parts_of_first_loading
@@ -84,7 +84,7 @@ def reduce_test(
         specimens=record.specimens, settings=settings.holds,
         kind="creep" if description.kind == "creep" else "relaxation",
     )  # fmt: skip
-    left, left_uncertainty, remarks = permanent_set(
+    slack, slack_uncertainty, remarks = slack_strain_at_unloading(
         record.crosshead_position,
         tension,
         slack_tension=standstills.slack_tension,
@@ -95,9 +95,7 @@ def reduce_test(
     notes = [note for specimen in specimens for note in check_constant_volume(specimen)]
     notes += parts.pop("notes", [])
     notes += [
-        f"{name}, permanent set: {text}"
-        for name, text in zip(record.specimens, remarks, strict=True)
-        if text
+        f"{name}: {text}" for name, text in zip(record.specimens, remarks, strict=True) if text
     ]
     return ReducedTest(
         description=description,
@@ -114,8 +112,8 @@ def reduce_test(
         strain_models=tuple(models),
         cycles=cycles,
         holds=holds,
-        permanent_set=left,
-        permanent_set_standard_uncertainty=left_uncertainty,
+        slack_strain_at_unloading=slack,
+        slack_strain_at_unloading_standard_uncertainty=slack_uncertainty,
         **parts,
     )
 

@@ -83,12 +83,13 @@ def history_table(view: TestView) -> Table | None:
             count(_value(view, "earlier_cycles", place)),
             number(_value(view, "earlier_maximum_strain", place), percent),
             number(_value(view, "earlier_maximum_tension", place), force),
+            number(_value(view, "permanent_set", place), percent),
         ]
         for place, name in enumerate(view.specimens)
     ]
     columns = (
         "specimen", "earlier tests", "earlier cycles [1]", percent.label("greatest strain seen"),
-        force.label("greatest tension seen"),
+        force.label("greatest tension seen"), percent.label("permanent set"),
     )  # fmt: skip
     return make_table(
         "What each specimen had seen before this test.", columns, rows, synthetic=view.is_synthetic

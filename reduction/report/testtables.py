@@ -92,7 +92,11 @@ def summary_table(view: TestView) -> Table | None:
             percent.label("change of peak tension, first to last cycle"),
         ),
         ("creep_per_cycle", force, force.label("drift of peak tension per cycle")),
-        ("permanent_set", percent, percent.label("permanent set")),
+        (
+            "slack_strain_at_unloading",
+            percent,
+            percent.label("strain where it goes slack, unloading"),
+        ),
     )
     given = [row for row in quantities if row[0] in view.data]
     if not given:

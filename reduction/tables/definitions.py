@@ -166,7 +166,13 @@ TABLES = (
     Table(
         "history",
         ("specimen",),
-        ("earlier_tests", "earlier_maximum_strain", "earlier_maximum_tension", "earlier_cycles"),
+        (
+            "earlier_tests",
+            "earlier_maximum_strain",
+            "earlier_maximum_tension",
+            "earlier_cycles",
+            "permanent_set",
+        ),
         ("earlier_tests",),
     ),
     Table(
@@ -199,7 +205,12 @@ TABLES = (
         ("stress_at_strain",),
         ("stress_at_strain",),
     ),
-    Table("permanent_set", ("specimen",), ("permanent_set",), ("permanent_set",)),
+    Table(
+        "slack_strain_at_unloading",
+        ("specimen",),
+        ("slack_strain_at_unloading",),
+        ("slack_strain_at_unloading",),
+    ),
     Table(
         "comparison",
         ("comparison", "branch_name", "ratio_strain_bin"),

@@ -127,6 +127,10 @@ def test_first_tests_have_no_history_and_later_ones_the_sum_of_it(synthetic):
     # the bursts are parts of the extended test: its cycles are not counted twice
     assert float(rows["T-4-extended-end", "new"]["earlier_cycles [1]"]) == 60
     assert float(rows["overnight-hold", "used"]["earlier_cycles [1]"]) == 3060
+    assert rows["T-1", "new"]["permanent_set [1]"] == ""
+    # the log of T-4-extended-start is slack up to 15.4 ft where that of T-1 is taut from 12.26 ft
+    left = float(rows["T-4-extended-start", "new"]["permanent_set [1]"])
+    assert left == pytest.approx((15.4 - 12.26) / 8.37, abs=0.02)
     strain = float(rows["T-4-extended", "new"]["earlier_maximum_strain [1]"])
     true = np.genfromtxt(TRUTH / "marks.csv", delimiter=",", names=True, dtype=None, encoding=None)
     top = true[(true["test"] == "T-6") & (true["specimen"] == "new") & (true["hold"] == "max")]

@@ -11,7 +11,7 @@ from reduction.holds.relaxation import rate_per_decade, relaxation_drop
 from reduction.holds.series import prony_tension, ramp_factor
 from reduction.moduli.elastomer import fit_elastomers
 from reduction.moduli.hyperelastic import hyperelastic_stress, small_strain_modulus
-from reduction.moduli.permanent_set import slack_position
+from reduction.moduli.slack import slack_position
 from reduction.moduli.steps import find_steps
 from reduction.moduli.stepscan import ramp_of
 from reduction.moduli.trend import slope_per_decade

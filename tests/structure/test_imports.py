@@ -111,7 +111,9 @@ def test_imports_stand_at_the_top_but_in_the_command_line(path):
     for function in ast.walk(tree):
         if isinstance(function, (ast.FunctionDef, ast.AsyncFunctionDef)):
             inner = [
-                node for node in ast.walk(function) if isinstance(node, (ast.Import, ast.ImportFrom))
+                node
+                for node in ast.walk(function)
+                if isinstance(node, (ast.Import, ast.ImportFrom))
             ]
             assert not inner, f"{path}:{inner[0].lineno}: import inside {function.name}"
 

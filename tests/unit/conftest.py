@@ -275,6 +275,8 @@ def rich_test():
             np.array([1.2, np.nan]),
             np.array([400.0, np.nan]),
             np.array([20.0, 0.0]),
+            np.array([0.02, np.nan]),
+            np.array([0.001, np.nan]),
         ),
         standstills=Standstills(
             first=np.array([0, 30]),
@@ -313,8 +315,8 @@ def rich_test():
         ),
         stress_at_strain=array(rng, 2, 2),
         stress_at_strain_levels=(1.0, 0.5),
-        permanent_set=np.array([0.02, np.nan]),
-        permanent_set_standard_uncertainty=np.array([0.001, np.nan]),
+        slack_strain_at_unloading=np.array([0.02, np.nan]),
+        slack_strain_at_unloading_standard_uncertainty=np.array([0.001, np.nan]),
     )
 
 

@@ -198,9 +198,10 @@ def test_a_coefficient_without_a_name_is_refused(rich_test):
 
 def test_an_array_that_does_not_fit_is_refused(rich_test):
     with pytest.raises(
-        ArchiveError, match=r"permanent_set does not fit its dimensions; found shape \(3,\)"
+        ArchiveError,
+        match=r"slack_strain_at_unloading does not fit its dimensions; found shape \(3,\)",
     ):
-        build(replace(rich_test, permanent_set=np.zeros(3)))
+        build(replace(rich_test, slack_strain_at_unloading=np.zeros(3)))
 
 
 def test_an_uncertainty_of_nothing_known_is_refused(rich_test):

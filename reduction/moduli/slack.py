@@ -16,7 +16,7 @@ from reduction.checks import as_positive, as_same_shape
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["permanent_set", "slack_crossings", "slack_position"]
+__all__ = ["slack_crossings", "slack_position", "slack_strain_at_unloading"]
 
 FEWEST_SAMPLES = 3
 REACH = 4.0
@@ -151,14 +151,14 @@ def slack_crossings(
     return crossing, uncertainty, "; ".join(reasons)
 
 
-def permanent_set(
+def slack_strain_at_unloading(
     position: ArrayLike,
     tension: ArrayLike,
     *,
     slack_tension: float,
     relaxed_free_length: ArrayLike,
 ) -> tuple[Floats, Floats, tuple[str, ...]]:
-    r"""Strain left at slack when a test unloads, from the record alone.
+    r"""Strain at which a specimen goes slack when a test unloads.
 
     .. math:: s = (x_{last} - x_{first}) / \ell_0
 
@@ -178,12 +178,12 @@ def permanent_set(
 
     Returns
     -------
-    permanent_set : ndarray, shape (n_specimens,)
+    slack_strain : ndarray, shape (n_specimens,)
         NaN where the record does not begin or does not end slack. [1]
-    permanent_set_standard_uncertainty : ndarray, shape (n_specimens,)
+    slack_strain_standard_uncertainty : ndarray, shape (n_specimens,)
         Type A. [1]
     remarks : tuple of str, length n_specimens
-        What the number holds, or why it is missing. [text]
+        Why the number is missing; empty where it is there. [text]
 
     Raises
     ------
@@ -194,17 +194,19 @@ def permanent_set(
     Notes
     -----
     [1]_, sec. 2.3.4, reports "a permanent elongation of 2-3%" after deployment at 200 %.
-    The number here is what is left at the moment of unloading: it holds the delayed
-    elasticity that a rest would give back, and any length let out by a slipped splice, so
-    it is an upper bound of the set.  What is left after a rest is the difference of the
-    first crossings of two tests (`slack_crossings`).
+    The number here is no permanent set: at the moment of unloading it holds the delayed
+    elasticity that a rest gives back, and any length let out by a slipped splice.  The set
+    that is left after a rest is the difference of the first crossings of two tests
+    (`slack_crossings`), and stands in the history of the later one.
 
     Examples
     --------
     >>> up, down = np.linspace(0, 2, 201), np.linspace(2, 0, 201)
     >>> x = np.concatenate([up, down])
     >>> load = 100 * np.clip(np.concatenate([up - 0.2, down - 0.25]), 0, None)
-    >>> left, _, _ = permanent_set(x, [load], slack_tension=5.0, relaxed_free_length=[2.0])
+    >>> left, _, _ = slack_strain_at_unloading(
+    ...     x, [load], slack_tension=5.0, relaxed_free_length=[2.0]
+    ... )
     >>> print(left.round(4))
     [0.025]
     """
@@ -224,10 +226,5 @@ def permanent_set(
             reason = "the relaxed free length is not known"
         found[row] = (crossing[1] - crossing[0]) / length
         uncertainty[row] = np.hypot(spread[0], spread[1]) / length
-        remarks.append(
-            f"permanent set not given: {reason}"
-            if reason
-            else "permanent set is what is left at the moment of unloading: an upper bound, for "
-            "a rest gives back delayed elasticity"
-        )
+        remarks.append(f"slack strain at unloading not given: {reason}" if reason else "")
     return found, uncertainty, tuple(remarks)

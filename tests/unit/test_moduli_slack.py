@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError
-from reduction.moduli.permanent_set import permanent_set, slack_crossings, slack_position
+from reduction.moduli.slack import slack_crossings, slack_position, slack_strain_at_unloading
 
 UP, DOWN = np.linspace(0, 2, 401), np.linspace(2, 0, 401)
 POSITION = np.concatenate([UP, DOWN])
@@ -16,28 +16,28 @@ def pull(start, end):
 
 
 def test_set_is_the_shift_of_the_crossing_over_the_free_length():
-    found, _, remarks = permanent_set(
+    found, _, remarks = slack_strain_at_unloading(
         POSITION,
         [pull(0.2, 0.25), pull(0.3, 0.3)],
         slack_tension=SLACK,
         relaxed_free_length=[2.5, 2.5],
     )
     np.testing.assert_allclose(found, [0.02, 0], atol=1e-9)
-    assert all("an upper bound" in remark for remark in remarks)
+    assert remarks == ("", "")
 
 
 def test_set_does_not_depend_on_the_datum_of_position():
     load = [pull(0.2, 0.25)]
     kwargs = {"slack_tension": SLACK, "relaxed_free_length": [2.5]}
-    here, _, _ = permanent_set(POSITION, load, **kwargs)
-    there, _, _ = permanent_set(POSITION + 7, load, **kwargs)
+    here, _, _ = slack_strain_at_unloading(POSITION, load, **kwargs)
+    there, _, _ = slack_strain_at_unloading(POSITION + 7, load, **kwargs)
     np.testing.assert_allclose(here, there, atol=1e-9)
 
 
 def test_the_stated_uncertainty_is_the_scatter_of_repeated_records():
     rng = np.random.default_rng(0)
     runs = [
-        permanent_set(
+        slack_strain_at_unloading(
             POSITION,
             [pull(0.2, 0.25) + 0.3 * rng.standard_normal(POSITION.size)],
             slack_tension=SLACK,
@@ -54,7 +54,9 @@ def test_the_stated_uncertainty_is_the_scatter_of_repeated_records():
 def test_missing_samples_are_left_out():
     load = pull(0.2, 0.25)
     load[::7] = np.nan
-    found, _, _ = permanent_set(POSITION, [load], slack_tension=SLACK, relaxed_free_length=[2.5])
+    found, _, _ = slack_strain_at_unloading(
+        POSITION, [load], slack_tension=SLACK, relaxed_free_length=[2.5]
+    )
     assert found[0] == pytest.approx(0.02, abs=1e-9)
 
 
@@ -68,15 +70,15 @@ def test_missing_samples_are_left_out():
     ],
 )
 def test_a_record_that_does_not_show_it_gives_a_reason(rows, reason):
-    found, _, remarks = permanent_set(
+    found, _, remarks = slack_strain_at_unloading(
         POSITION[rows], [pull(0.2, 0.25)[rows]], slack_tension=SLACK, relaxed_free_length=[2.5]
     )
     assert np.isnan(found[0])
-    assert remarks == (f"permanent set not given: {reason}",)
+    assert remarks == (f"slack strain at unloading not given: {reason}",)
 
 
 def test_without_a_free_length_there_is_no_strain():
-    found, _, remarks = permanent_set(
+    found, _, remarks = slack_strain_at_unloading(
         POSITION, [pull(0.2, 0.25)], slack_tension=SLACK, relaxed_free_length=[np.nan]
     )
     assert np.isnan(found[0])
@@ -102,14 +104,20 @@ def test_three_samples_give_a_crossing_without_uncertainty():
 
 def test_a_slack_tension_of_zero_is_refused():
     with pytest.raises(DataError, match="slack_tension are not positive"):
-        permanent_set(POSITION, [pull(0.2, 0.2)], slack_tension=0.0, relaxed_free_length=[1.0])
+        slack_strain_at_unloading(
+            POSITION, [pull(0.2, 0.2)], slack_tension=0.0, relaxed_free_length=[1.0]
+        )
 
 
 def test_lengths_that_do_not_fit_are_refused():
     with pytest.raises(DataError, match="relaxed free lengths do not fit the record"):
-        permanent_set(POSITION, [pull(0.2, 0.2)], slack_tension=1.0, relaxed_free_length=[1, 2])
+        slack_strain_at_unloading(
+            POSITION, [pull(0.2, 0.2)], slack_tension=1.0, relaxed_free_length=[1, 2]
+        )
 
 
 def test_series_that_do_not_pair_up_are_refused():
     with pytest.raises(DataError, match="series do not pair up"):
-        permanent_set(POSITION[:-1], [pull(0.2, 0.2)], slack_tension=1.0, relaxed_free_length=[1])
+        slack_strain_at_unloading(
+            POSITION[:-1], [pull(0.2, 0.2)], slack_tension=1.0, relaxed_free_length=[1]
+        )
