@@ -39,8 +39,8 @@ DIMENSIONS: dict[Dimension, str] = {
     "force_rate": "N s-1",
 }
 _PINT_SI = {"m2": "m**2", "m s-1": "m/s", "N s-1": "N/s", "1": "dimensionless"}
-_US = {"m": "ft", "N": "lbf", "Pa": "psi", "m2": "in2", "J m-1": "lbf", "m s-1": "ft s-1"}
-_US_PINT = {"in2": "in**2", "ft s-1": "ft/s"}
+_US = {"m": "ft", "N": "lbf", "Pa": "psi", "m2": "in2", "J m-1": "ft lbf / ft", "m s-1": "ft s-1"}
+_US_PINT = {"in2": "in**2", "ft s-1": "ft/s", "ft lbf / ft": "lbf"}
 # as test machines write them, where pint has no such name
 _SPELLINGS = {"Sec": "s", "SEC": "s", "Secs": "s", "lb": "pound", "IN": "in", "KN": "kN"}
 # what pint lets out when a text is no unit expression

@@ -61,7 +61,7 @@ def test_synthetic_data_are_called_so_inside_the_figure():
 def test_every_kind_of_quantity_is_shown_with_a_unit_in_both_systems():
     kinds = ("time", "length", "small length", "tension", "strain", "stress", "energy", "area")
     assert [shown(kind, "us").unit for kind in kinds] == [
-        "s", "ft", "in", "lbf", "%", "psi", "lbf", "in²",
+        "s", "ft", "in", "lbf", "%", "psi", "ft lbf / ft", "in²",
     ]  # fmt: skip
     # 1 in is 25.4 mm, 1 psi is 6894.757 Pa
     assert shown("small length", "us").factor == 1 / 0.0254

@@ -72,7 +72,13 @@ def test_share_of_break_strength_needs_a_break_strength():
 
 @pytest.mark.parametrize(
     ("unit", "shown", "factor"),
-    [("Pa", "psi", 0.0254**2 / POUND_FORCE), ("m", "ft", 1 / 0.3048), ("s", "s", 1.0)],
+    [
+        ("Pa", "psi", 0.0254**2 / POUND_FORCE),
+        ("m", "ft", 1 / 0.3048),
+        ("s", "s", 1.0),
+        # an energy over a length: the feet cancel in the number, not in the words
+        ("J m-1", "ft lbf / ft", 1 / POUND_FORCE),
+    ],
 )
 def test_us_display_is_the_inverse_of_the_factor(unit, shown, factor):
     assert display_unit(unit, "us") == (shown, pytest.approx(factor, rel=1e-14))
