@@ -101,6 +101,7 @@ class ReducedTest:
     elastomers: tuple[ElastomerFit, ...] = ()
     holds: tuple[HoldResult, ...] = ()
     stress_at_strain: Floats | None = None
+    stress_at_strain_standard_uncertainty: Floats | None = None
     stress_at_strain_levels: tuple[float, ...] = ()
     slack_strain_at_unloading: Floats | None = None
     slack_strain_at_unloading_standard_uncertainty: Floats | None = None

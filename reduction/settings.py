@@ -95,6 +95,8 @@ class ModulusSettings:
     """Fewest samples in a window that give a slope. [1]"""
     maximum_segments: int = 5
     """Largest number of piecewise-linear segments tried. [1]"""
+    segment_tolerance: float = 0.01
+    """Rms distance of the segments from the branch, as a share of its tension range. [1]"""
     stress_at_strain: tuple[float, ...] = (0.5, 1.0, 2.0)
     """Elongations at which stress is reported (M50, M100, M200). [1]"""
     selected_cycles: int = 24

@@ -87,12 +87,13 @@ def ratio_values(ratios: Sequence[Ratio]) -> Values:
     }
 
 
-def stress_at_strain_values(stress: Floats, levels: Sequence[float]) -> Values:
+def stress_at_strain_values(stress: Floats, uncertainty: Floats, levels: Sequence[float]) -> Values:
     """Return the stress at stated elongations, in rising order of elongation."""
     order = np.argsort(np.asarray(levels, dtype=np.float64), kind="stable")
     return {
         "strain_level": np.asarray(levels, dtype=np.float64)[order],
         "stress_at_strain": stress[..., order],
+        "stress_at_strain_standard_uncertainty": uncertainty[..., order],
     }
 
 

@@ -123,8 +123,9 @@ def _all_values(test: ReducedTest) -> Values:
         values |= elastomer_values(test.elastomers)
     if test.holds:
         values |= hold_values(test.holds)
-    if test.stress_at_strain is not None:
-        values |= stress_at_strain_values(test.stress_at_strain, test.stress_at_strain_levels)
+    stress, spread = test.stress_at_strain, test.stress_at_strain_standard_uncertainty
+    if stress is not None and spread is not None:
+        values |= stress_at_strain_values(stress, spread, test.stress_at_strain_levels)
     for name in ("slack_strain_at_unloading", "slack_strain_at_unloading_standard_uncertainty"):
         if getattr(test, name) is not None:
             values[name] = getattr(test, name)

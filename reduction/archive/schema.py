@@ -259,7 +259,7 @@ _ROWS = chain(
     stated("segment_tension_low", _G, BOUND),
     stated("segment_tension_high", _G, BOUND),
     label("segment_criterion"),
-    stated("stress_at_strain", ("specimen", "strain_level"), NOT_EVALUATED),
+    measured("stress_at_strain", ("specimen", "strain_level")),
     measured("slack_strain_at_unloading", _S),
     # the ratio of two specimens
     label("ratio_numerator", ("comparison",)),

@@ -16,12 +16,9 @@ __all__ = ["history_of"]
 
 
 def _greatest_strain(survey: Survey, name: str, model: StrainModel) -> float:
-    """Strain where the position was greatest; the extremes of both coincide in a pull."""
+    """Greatest strain, which stands at one of the samples at the greatest position."""
     position, tension, _ = survey.greatest[name]
-    strain = free_length_strain_of(
-        model, position=np.array([position]), tension=np.array([tension])
-    )
-    return float(strain[0])
+    return float(np.nanmax(free_length_strain_of(model, position=position, tension=tension)))
 
 
 def _set_after_rest(

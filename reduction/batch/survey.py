@@ -34,7 +34,7 @@ class Survey:
 
     ``mark_tension`` holds, by specimen, one tension [N] for each pooled mark that was
     read in this test, in the order of the marks.  ``greatest`` holds, by specimen, position
-    [m] and tension [N] where the strain is greatest, and the greatest tension [N];
+    [m] and tension [N] of the samples at the greatest position, and the greatest tension [N];
     ``first_rise`` position [m] and tension [N] of the samples up to half of its peak.
     """
 
@@ -48,7 +48,7 @@ class Survey:
     mark_tension_at_start: dict[str, Floats] = field(default_factory=dict)
     zero_strain_position: float | None = None
     has_extensometer: bool = False
-    greatest: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    greatest: dict[str, tuple[Floats, Floats, float]] = field(default_factory=dict)
     first_rise: dict[str, tuple[Floats, Floats]] = field(default_factory=dict)
     slack_tension: float = float("nan")
     error: ReductionError | None = None
@@ -175,11 +175,11 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
     return survey
 
 
-def _greatest(located: Located) -> dict[str, tuple[float, float, float]]:
-    """Where the position is greatest: position, least tension there, and greatest tension.
+def _greatest(located: Located) -> dict[str, tuple[Floats, Floats, float]]:
+    """Position and tension of the samples at the greatest position, and the greatest tension.
 
     At a held length the rubber goes on stretching as its splices relax, so the greatest
-    strain stands where tension is least among the samples at the greatest position.
+    strain is at one of these samples, which the strain model tells.
     """
     record = located.record
     position = record.crosshead_position
@@ -191,8 +191,8 @@ def _greatest(located: Located) -> dict[str, tuple[float, float, float]]:
     for name, tension in zip(record.specimens, record.tension, strict=True):
         if np.isfinite(tension[at_top]).any():
             found[name] = (
-                float(np.nanmedian(position[at_top])),
-                float(np.nanmin(tension[at_top])),
+                position[at_top],
+                tension[at_top],
                 float(np.nanmax(tension)),
             )
     return found

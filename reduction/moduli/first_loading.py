@@ -33,6 +33,7 @@ _BAND = 0.01  # of the rise: a sample this far below the greatest strain so far 
 _NEIGHBOURS = 25  # on each side, to tell the usual step from a spike
 _SPIKE_STEPS = 6  # usual steps above both neighbours
 _CACHED = 16_384  # samples worked on at a time, so that they stay in the cache
+_WIDEST = 0.25  # of the rise: a log so slow that its window is wider gives no curve
 _BINS = 200  # of the rise, the finest grid
 
 
@@ -115,6 +116,8 @@ def _grid_of_rise(
     wanted = 3 * settings.minimum_count * spacing
     width = settings.strain_bin_width or round_number(max((high - low) / _BINS, wanted / 5))
     window = settings.window or max(5 * width, wanted)
+    if window > _WIDEST * (high - low):
+        return None  # the curve would be the window, not the rubber
     return StrainGrid.spanning(
         low, high, width=width, half_window=bins_each_side(window, width), cycles_pooled=1
     )
@@ -168,7 +171,7 @@ def first_loading_curves(
     -------
     curves : ModulusCurves or None
         The ascending branch (index 0); the descending one is NaN. None where the
-        record does not rise. [SI]
+        record does not rise, or is so slow that the window is a quarter of the rise. [SI]
 
     Raises
     ------
@@ -206,10 +209,8 @@ def first_loading_curves(
     [10. nan]
     """
     strains, tensions, areas = pair_specimens(strain, tension, area)
-    is_still = np.zeros(strains.shape[1], dtype=bool)
-    if standstills is not None:
-        for first, last in zip(standstills.first, standstills.last, strict=True):
-            is_still[first : last + 1] = True
+    n_samples = strains.shape[1]
+    is_still = np.zeros(n_samples, bool) if standstills is None else standstills.covers(n_samples)
     pieces = [
         _rising_pieces(row, load, is_still) for row, load in zip(strains, tensions, strict=True)
     ]

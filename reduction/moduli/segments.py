@@ -16,20 +16,19 @@ from reduction.checks import as_positive
 from reduction.errors import DataError
 from reduction.moduli.piecewise import PiecewiseLine, fit_piecewise_lines
 from reduction.moduli.product import ModulusCurves, Segments
-from reduction.record import Floats
+from reduction.record import Bools, Floats
 from reduction.settings import ModulusSettings
 
 __all__ = ["find_segments"]
 
-_BAND = 2  # standard deviations of single cycles
-_LEAST_SCATTER = 1e-3  # of the branch's tension: finer than a load cell tells
+_REACHED = 0.9  # of the cycles: a bin that fewer reach has the mean tension of those few
 _FEWEST_BINS = 6  # two shortest segments
 
 
 def _choose(lines: tuple[PiecewiseLine, ...], n_points: int) -> PiecewiseLine:
-    """Fewest segments whose rms residual is within the band of single cycles; else the most."""
+    """Fewest segments whose rms distance is within the tolerance they were weighted with."""
     for line in lines:
-        if line.chi_square <= _BAND**2 * n_points:
+        if line.chi_square <= n_points:
             return line
     return lines[-1]
 
@@ -63,17 +62,21 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     Printed source: Tables 5 and 6 of [1]_, where neighbouring segments meet and
     E is the chord of each; how [1]_ chose their limits it does not say.
 
-    The line is the best continuous one (`fit_piecewise_lines`). *Number of segments:*
-    the fewest whose root-mean-square distance from the mean branch is within twice the
-    scatter of single cycles about it (scatter at least 0.1 % of the branch's range of
-    tension): a line in the band that holds 95 % of the cycles. A smooth curve has no
-    true breakpoints: they say where straight lines stand in for it best.
+    The line is the best continuous one (`fit_piecewise_lines`), all bins alike, and E the
+    chord of the line. *Number of segments:* the fewest whose root-mean-square distance from
+    the mean branch is within ``segment_tolerance`` of the branch's range of tension (1 %),
+    and the branch's own roughness from bin to bin (root sum of squares). A smooth curve has no true
+    breakpoints: they say where straight lines stand in for it best.
+
+    Bins that fewer than nine tenths of the cycles reach are left out: at the ends of the
+    grid the mean of a few cycles stands beside the mean of all, and a line would follow
+    the step between them.
 
     The uncertainty is type A: that of the tangent modulus, root mean square over the
-    segment, over the root of the windows that fit in it. It is that of the mean modulus
-    of the segment, and says nothing about the curvature inside.
+    segment, over the root of the windows that fit in it; and how far the branch is
+    from the line, as the uncertainty of the tension at each end of the segment.
 
-    NaN for a branch with fewer than six bins; bins without tension are left out.
+    NaN for a branch with fewer than six bins.
 
     Examples
     --------
@@ -84,7 +87,8 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     >>> load = np.broadcast_to(np.interp(x, [0.0, 1.2, 2.0], [0.0, 120.0, 360.0]), (1, 2, 20))
     >>> blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((1, 2, 20)))
     >>> curves = ModulusCurves(
-    ...     **blank | {"strain_bin": x, "branch_tension": load, "window": 0.3}
+    ...     **blank | {"strain_bin": x, "branch_tension": load, "window": 0.3,
+    ...     "tangent_modulus_count": np.full((1, 2, 20), 10)}
     ... )
     >>> segments = find_segments(curves, area=[1e-4], settings=ModulusSettings())
     >>> print((segments.segment_modulus[0, 0] / 1e6).round(6))
@@ -100,9 +104,9 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
         )
     table = np.full((6, n_specimens, 2, settings.maximum_segments), np.nan)
     for at in np.ndindex(n_specimens, 2):
-        if np.count_nonzero(np.isfinite(curves.branch_tension[at])) < _FEWEST_BINS:
+        if np.count_nonzero(_reached(curves, at)) < _FEWEST_BINS:
             continue
-        columns = _segment_columns(curves, at, float(areas[at[0]]), settings.maximum_segments)
+        columns = _segment_columns(curves, at, float(areas[at[0]]), settings)
         table[:, at[0], at[1], : columns.shape[1]] = columns
     n_used = int(np.isfinite(table[0]).any(axis=(0, 1)).sum())
     table = table[..., : max(n_used, 1)].copy()
@@ -114,38 +118,48 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
         segment_tension_low=table[4],
         segment_tension_high=table[5],
         criterion="fewest contiguous segments, best breakpoints, whose rms distance from the "
-        f"mean branch is within {_BAND} times the scatter of single cycles (scatter at least "
-        f"{_LEAST_SCATTER:g} of the tension range), at most {settings.maximum_segments}",
+        f"mean branch is within {100 * settings.segment_tolerance:g} % of its range of tension and "
+        f"its roughness, at most {settings.maximum_segments}",
     )
+
+
+def _reached(curves: ModulusCurves, at: tuple[int, ...]) -> Bools:
+    """Bins of a branch that nearly all of its cycles reach, shape (n_bins,)."""
+    count = curves.tangent_modulus_count[at]
+    reached: Bools = np.isfinite(curves.branch_tension[at]) & (count >= _REACHED * count.max())
+    return reached
 
 
 def _segment_columns(
-    curves: ModulusCurves, at: tuple[int, ...], area: float, maximum_segments: int
+    curves: ModulusCurves, at: tuple[int, ...], area: float, settings: ModulusSettings
 ) -> Floats:
     """Modulus, its uncertainty, strain and tension limits of one branch, (6, n_segments)."""
-    known = np.isfinite(curves.branch_tension[at])
-    strain, tension = curves.strain_bin[known], curves.branch_tension[at][known]
-    scatter = curves.branch_tension_standard_uncertainty[at] * np.sqrt(
-        curves.tangent_modulus_count[at]
-    )
-    # NaN scatter (one cycle without a degree of freedom) leaves the least
-    least = _LEAST_SCATTER * (float(np.ptp(tension)) or 1.0)
+    used = _reached(curves, at)
+    strain, tension = curves.strain_bin[used], curves.branch_tension[at][used]
+    # roughness from bin to bin: a drift of the whole branch from cycle to cycle bends no line
+    rough = float(np.sqrt(np.mean(np.diff(tension, n=2) ** 2) / 6))
+    tolerance = settings.segment_tolerance * (float(np.ptp(tension)) or 1.0)
     lines = fit_piecewise_lines(
         strain,
         tension,
-        standard_uncertainty=np.fmax(scatter[known], least),
-        maximum_segments=maximum_segments,
+        standard_uncertainty=np.full(strain.size, np.hypot(tolerance, rough)),
+        maximum_segments=settings.maximum_segments,
     )
     line = _choose(lines, strain.size)
     low, high = line.knot[:-1], line.knot[1:]
     modulus = np.diff(line.ordinate) / (area * (high - low))
-    variance = curves.tangent_modulus_standard_uncertainty[at] ** 2
+    distance = tension - np.interp(strain, line.knot, line.ordinate)
+    variance = curves.tangent_modulus_standard_uncertainty[at][used] ** 2
     uncertainty = []
     for start, stop in zip(low, high, strict=True):
-        inside = variance[(curves.strain_bin >= start) & (curves.strain_bin <= stop)]
-        inside = inside[np.isfinite(inside)]
+        inside = (strain >= start) & (strain <= stop)
+        regression = variance[inside & np.isfinite(variance)]
+        if regression.size == 0:
+            uncertainty.append(np.nan)
+            continue
         windows = max((stop - start) / curves.window, 1.0)
-        uncertainty.append(np.sqrt(inside.mean() / windows) if inside.size else np.nan)
+        ends = 2 * np.mean(distance[inside] ** 2) / (area * (stop - start)) ** 2
+        uncertainty.append(np.sqrt(regression.mean() / windows + ends))
     return np.stack(
         [modulus, np.array(uncertainty), low, high, line.ordinate[:-1], line.ordinate[1:]]
     )

@@ -1,9 +1,12 @@
-"""Stress at a stated elongation: what the rubber trade calls M100, and is not a modulus.
+"""Nominal stress at a stated elongation on a first loading: M100 and the like.
+
+The rubber trade calls this stress "modulus" (M100, M300).  It is a stress, never mixed
+with a modulus here: on a curve through the origin it is the secant modulus times the strain.
 
 References
 ----------
-.. [1] ASTM D412, "Standard test methods for vulcanized rubber and thermoplastic
-   elastomers - tension" ("tensile stress at given elongation").
+.. [1] ASTM D412 usage: tensile stress at given elongation, on a first loading.
+.. [2] WHOI-2005-10, sec. 2.3.2: a tether carries about 85 lb at 100 % stretch.
 """
 
 from __future__ import annotations
@@ -13,68 +16,93 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.checks import as_positive
-from reduction.errors import DataError
-from reduction.record import Floats
+from reduction.checks import as_positive, as_same_shape
+from reduction.record import Bools, Floats
 
 __all__ = ["stress_at_strain"]
 
+# samples before the level that make the line, and the strain that it may span
+_SAMPLES = 12
+_SPAN = 0.1
+_FEWEST = 4
+
 
 def stress_at_strain(
-    strain_bin: ArrayLike,
-    branch_tension: ArrayLike,
+    strain: ArrayLike,
+    tension: ArrayLike,
     *,
-    area: ArrayLike,
+    area: float,
     levels: Sequence[float],
-) -> Floats:
-    r"""Nominal stress at stated elongations on the curves of a branch.
+    is_still: Bools | None = None,
+) -> tuple[Floats, Floats, tuple[str, ...]]:
+    r"""Nominal stress where a record first passes stated elongations.
+
+    .. math:: \sigma_L = F(\varepsilon = L) / A
 
     Parameters
     ----------
-    strain_bin : array_like, shape (n_bins,)
-        Bin centres. [1]
-    branch_tension : array_like, shape (n_specimens, ..., n_bins)
-        Tension at them, of a first loading or of a branch over the cycles. [N]
-    area : array_like, shape (n_specimens,)
+    strain : array_like, shape (n_samples,)
+        Of one specimen; NaN where missing. [1]
+    tension : array_like, shape (n_samples,)
+        NaN where missing. [N]
+    area : float
         Cross-sectional area at zero tension. [m2]
     levels : sequence of float
         Elongations; 1.0 is 100 %. [1]
+    is_still : ndarray of bool, shape (n_samples,), optional
+        Samples in a hold or rest, whose tension relaxes; they are left out. [1]
 
     Returns
     -------
-    stress : ndarray, shape (n_specimens, ..., n_levels)
-        Nominal stress. [Pa]
+    stress, stress_standard_uncertainty : ndarray, shape (n_levels,)
+        NaN where a level is not reached, or not measured. [Pa]
+    reasons : tuple of str, length n_levels
+        Why a level within the range of the record has no number; empty elsewhere. [text]
 
     Raises
     ------
     DataError
-        If an area is not positive or the arrays do not pair up.
+        If the area is not positive or the series do not pair up.
 
     Notes
     -----
-    [1]_ takes it on the first loading; on later cycles it is lower, and a descending
-    branch gives less than an ascending one: a value without its branch says little.
-
-    Straight lines between neighbouring bins. NaN at a level that is not between two
-    neighbouring bins with tension: nothing is extrapolated or carried over a gap.
+    A line through the samples just before the level, twelve at most and within 10 % of
+    strain, read at the level: what comes after (a hold, the turn) does not enter.  The
+    uncertainty is that of the line there (type A).
 
     Examples
     --------
-    >>> print(stress_at_strain([0.9, 1.1], [[90.0, 110.0]], area=[1e-4], levels=(1.0, 2.0)))
-    [[1000000.      nan]]
+    >>> x = np.linspace(0, 2, 401)
+    >>> stress, _, _ = stress_at_strain(x, 100 * x, area=1e-4, levels=(1.0, 3.0))
+    >>> print(stress.round(3))
+    [1000000.      nan]
     """
-    areas = np.atleast_1d(as_positive("area", area))
-    strain = np.asarray(strain_bin, dtype=np.float64)
-    tension = np.asarray(branch_tension, dtype=np.float64)
-    if tension.shape[-1:] != strain.shape or tension.shape[:1] != areas.shape or strain.size < 2:
-        raise DataError(
-            "strain, tension and area do not pair up",
-            found=f"strain {strain.shape}, tension {tension.shape}, area {areas.shape}",
-            needed="(n_bins,), (n_specimens, ..., n_bins), (n_specimens,), 2 bins or more",
-        )
-    level = np.asarray(levels, dtype=np.float64)
-    below = np.clip(np.searchsorted(strain, level, side="right") - 1, 0, strain.size - 2)
-    share = (level - strain[below]) / (strain[below + 1] - strain[below])
-    share = np.where((share >= 0) & (share <= 1), share, np.nan)
-    at_level = tension[..., below] * (1 - share) + tension[..., below + 1] * share
-    return np.asarray(at_level / areas.reshape(-1, *[1] * (tension.ndim - 1)))
+    section = float(as_positive("area", area))
+    stretch, load = as_same_shape(strain=strain, tension=tension)
+    known = np.isfinite(stretch) & np.isfinite(load)
+    if is_still is not None:
+        known &= ~is_still
+    moving = np.flatnonzero(known)
+    stretch, load = stretch[moving], load[moving]
+    stress, uncertainty = np.full((2, len(levels)), np.nan)
+    reasons = [""] * len(levels)
+    for index, level in enumerate(levels):
+        reached = stretch >= level
+        if not reached.any() or reached[0]:
+            continue
+        at = int(np.argmax(reached)) + 1
+        used = slice(max(at - _SAMPLES, 0), at)
+        near = stretch[used] >= level - _SPAN
+        # a gap in the samples ends the line: a hold, or a reading that was left out
+        joined = np.concatenate([np.cumsum(np.diff(moving[used])[::-1] > 1)[::-1] == 0, [True]])
+        x, y = stretch[used][near & joined] - level, load[used][near & joined]
+        if x.size < _FEWEST:
+            reasons[index] = f"{x.size} samples within 10 % before it; needed {_FEWEST}"
+            continue
+        mean, square = x.mean(), float(np.sum((x - x.mean()) ** 2))
+        slope = float(np.sum((x - mean) * y)) / square
+        left = y - y.mean() - slope * (x - mean)
+        variance = float(left @ left) / (x.size - 2)
+        stress[index] = (y.mean() - slope * mean) / section
+        uncertainty[index] = np.sqrt(variance * (1 / x.size + mean**2 / square)) / section
+    return stress, uncertainty, tuple(reasons)

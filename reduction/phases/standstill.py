@@ -70,6 +70,13 @@ class Standstills:
         """Number of intervals."""
         return int(self.first.shape[0])
 
+    def covers(self, n_samples: int) -> Bools:
+        """Samples of a record that lie inside a standstill, shape (n_samples,)."""
+        is_still = np.zeros(n_samples, dtype=bool)
+        for first, last in zip(self.first, self.last, strict=True):
+            is_still[first : last + 1] = True
+        return is_still
+
 
 def _reach(position: Floats, edge: Integers, centre: Floats, half: float, step: int) -> Integers:
     """Samples beyond each edge, at most ``abs(step)``, that stay near the centre."""

@@ -47,24 +47,40 @@ def parts_of_first_loading(
     history: History | None,
 ) -> dict[str, Any]:
     """The first rise of a record that begins slack: curve, stress at elongation, laws."""
+    begins = [force[np.isfinite(force)][:1] for force in tension]
+    if not any(np.all(start <= located.standstills.slack_tension) for start in begins):
+        return {}
     curves = first_loading_curves(
         strain, tension, area=area, settings=settings.modulus, standstills=located.standstills
     )
     if curves is None or curves.strain_bin.size < 2:
         return {}
     rise = curves.branch_tension[:, 0]
+    names = located.record.specimens
     levels = settings.modulus.stress_at_strain
+    is_still = located.standstills.covers(located.record.n_samples)
+    stresses = [
+        stress_at_strain(stretch, force, area=section, levels=levels, is_still=is_still)
+        for stretch, force, section in zip(strain, tension, area, strict=True)
+    ]
+    notes = [
+        f"{name}: stress at {100 * level:g} % not given: {reason}"
+        for name, (_, _, reasons) in zip(names, stresses, strict=True)
+        for level, reason in zip(levels, reasons, strict=True)
+        if reason
+    ]
     parts: dict[str, Any] = {
         "first_loading": curves,
-        "stress_at_strain": stress_at_strain(curves.strain_bin, rise, area=area, levels=levels),
+        "stress_at_strain": np.array([stress for stress, _, _ in stresses]),
+        "stress_at_strain_standard_uncertainty": np.array([spread for _, spread, _ in stresses]),
         "stress_at_strain_levels": levels,
+        "notes": notes,
     }
-    if located.standstills.is_rest.any() or located.cycles is None:
-        earlier = np.full(area.size, np.nan) if history is None else history.earlier_maximum_strain
-        found = [
-            _elastomers(name, curves.strain_bin, rise[index] / area[index], float(earlier[index]))
-            for index, name in enumerate(located.record.specimens)
-        ]
-        parts["elastomers"] = tuple(fit for fits, _ in found for fit in fits)
-        parts["notes"] = [reason for _, reason in found if reason]
+    earlier = np.full(area.size, np.nan) if history is None else history.earlier_maximum_strain
+    found = [
+        _elastomers(name, curves.strain_bin, rise[index] / area[index], float(earlier[index]))
+        for index, name in enumerate(names)
+    ]
+    parts["elastomers"] = tuple(fit for fits, _ in found for fit in fits)
+    notes += [reason for _, reason in found if reason]
     return parts

@@ -314,6 +314,7 @@ def rich_test():
             make_hold(rng, "new", "creep"),
         ),
         stress_at_strain=array(rng, 2, 2),
+        stress_at_strain_standard_uncertainty=array(rng, 2, 2),
         stress_at_strain_levels=(1.0, 0.5),
         slack_strain_at_unloading=np.array([0.02, np.nan]),
         slack_strain_at_unloading_standard_uncertainty=np.array([0.001, np.nan]),

@@ -1,5 +1,7 @@
 """Segments of branches: their number by the criterion, their limits contiguous."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -56,13 +58,48 @@ def test_segments_are_contiguous_and_their_modulus_is_the_chord():
     assert segments.segment_strain_high[0, 0, -1] == X[-1]
 
 
-def test_scatter_of_the_cycles_decides_how_many_segments():
+@pytest.mark.parametrize(("tolerance", "n_segments"), [(0.1, 1), (0.02, 1), (0.01, 2), (0.002, 3)])
+def test_the_tolerance_decides_how_many_segments(tolerance, n_segments):
+    # one line through exp(x) on this range is off by 1.7 % rms of the range of tension,
+    # n contiguous ones by about 1/n^2 of that
     tension = 100 * np.exp(X)
-    counts = [
-        np.isfinite(segments_of(curves_of(tension, uncertainty=u)).segment_modulus[0, 0]).sum()
-        for u in (0.01, 0.3, 3.0)
-    ]
-    assert counts[0] > counts[1] > counts[2] == 1
+    line = np.polynomial.Polynomial.fit(X, tension, 1)
+    share = np.sqrt(np.mean((tension - line(X)) ** 2)) / np.ptp(tension)
+    assert share == pytest.approx(0.017, abs=0.001)
+    segments = segments_of(curves_of(tension, uncertainty=1e-6), segment_tolerance=tolerance)
+    assert np.isfinite(segments.segment_modulus[0, 0]).sum() == n_segments
+
+
+def test_noise_of_the_branch_asks_for_no_further_segments():
+    noise = np.random.default_rng(4).normal(0, 5.0, X.size)
+    segments = segments_of(curves_of(100 * np.exp(X) + noise))
+    assert np.isfinite(segments.segment_modulus[0, 0]).sum() == 1
+
+
+def test_bins_that_few_cycles_reach_do_not_bend_the_line():
+    tension = np.broadcast_to(300 * X, (1, 2, X.size)).copy()
+    tension[..., -3:] -= 20
+    count = np.full(tension.shape, 10)
+    count[..., -3:] = 2
+    curves = replace(curves_of(tension), tangent_modulus_count=count)
+    segments = segments_of(curves)
+    assert segments.segment_modulus[0, 0] * AREA == pytest.approx([300])
+    assert segments.segment_strain_high[0, 0, 0] == X[-4]
+
+
+def test_the_distance_of_the_branch_from_the_line_is_in_the_uncertainty():
+    curves = curves_of(100 * np.exp(X), uncertainty=1e-6, modulus_uncertainty=1e-6)
+    segments = segments_of(curves, maximum_segments=1)
+    line = np.interp(
+        X,
+        [X[0], X[-1]],
+        [segments.segment_tension_low[0, 0, 0], segments.segment_tension_high[0, 0, 0]],
+    )
+    rms = np.sqrt(np.mean((100 * np.exp(X) - line) ** 2))
+    expected = np.sqrt(2) * rms / (AREA * (X[-1] - X[0]))
+    assert segments.segment_modulus_standard_uncertainty[0, 0, 0] == pytest.approx(
+        expected, rel=1e-3
+    )
 
 
 def test_number_of_segments_stays_within_the_setting():
