@@ -37,7 +37,8 @@ from reduction.units import UnitSystem
 __all__ = ["write_report"]
 
 _LAST = 10**9
-Place = tuple[int, bool, str, tuple[tuple[int, int, str], ...]]
+Name = tuple[tuple[int, int, str], ...]
+Place = tuple[int, str, Name, bool, str, float, Name]
 
 
 def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Path:
@@ -75,20 +76,18 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     tests: list[TestView] = []
     sections: list[Section] = []
     unreadable: dict[str, str] = {}
+    starts: dict[str, float] = {}
     for index, path in enumerate(paths):
         try:
             with open_archive(path) as data:
                 view = TestView(f"test-{index}", data, units, by_test.get(data.attrs["test"]))
                 sections.append(make_section(view))
+                starts[view.key] = view.start_time
                 tests.append(view.without_samples())
         except ArchiveError as error:
             unreadable[path.name] = str(error)
-    orders = {
-        view.id: int(view.attribute("test_order"))
-        for view in tests
-        if view.attribute("test_order").isdigit()
-    }
-    order = sorted(range(len(tests)), key=lambda place: _place(tests[place], orders))
+    by_id = {view.id: view for view in tests}
+    order = sorted(range(len(tests)), key=lambda place: _place(tests[place], by_id, starts))
     tests = [tests[place] for place in order]
     html = _render(
         tests, [sections[place] for place in order], statuses, unreadable, units, processed.name
@@ -156,12 +155,17 @@ def _read_statuses(path: Path) -> list[Status]:
     return [Status(**{name: row.get(name) or "" for name in names}) for row in rows]
 
 
-def _place(view: TestView, orders: Mapping[str, int]) -> Place:
-    """Return where a test stands: by its order, a part of a test right behind the whole."""
-    whole = view.attribute("part_of")
+def _place(view: TestView, by_id: Mapping[str, TestView], starts: Mapping[str, float]) -> Place:
+    """Return where a test stands: by its order, the parts of a test behind it as they began."""
+    name = view.attribute("part_of")
+    whole = by_id.get(name or view.id)
+    order = "" if whole is None else whole.attribute("test_order")
     return (
-        orders.get(whole or view.id, _LAST),
-        bool(whole),
+        int(order) if order.isdigit() else _LAST,
+        "" if whole is None else whole.attribute("date"),
+        natural_order(name or view.id),
+        bool(name),
         view.attribute("date"),
+        starts[view.key],
         natural_order(view.id),
     )

@@ -80,6 +80,13 @@ class TestView:
         """Number of whole cycles."""
         return int(self.data.sizes.get("cycle", 0))
 
+    @property
+    def start_time(self) -> float:
+        """First time of the record in seconds; infinite where there is none."""
+        time = self.array("time")
+        known = np.zeros(0) if time is None else time[np.isfinite(time)]
+        return float(known[0]) if known.size else float("inf")
+
     def attribute(self, name: str) -> str:
         """Global attribute as text; empty where there is none."""
         return str(self.data.attrs.get(name, ""))

@@ -227,6 +227,30 @@ def test_tests_stand_in_their_order_and_parts_behind_the_whole(report, rich_test
     assert [row[0][1] for row in rows[1:]] == ["T-2", "A-end", "T-10"]
 
 
+def test_parts_of_a_test_stand_in_the_order_in_which_they_began(report, rich_test):
+    record = rich_test.record
+    late = replace(record, time=record.time + 59000.0)
+    page = report(
+        replace(renamed(rich_test, "A-end", part_of="T-2"), record=late),
+        renamed(rich_test, "B-start", part_of="T-2"),
+        renamed(rich_test, "T-2"),
+        replace(renamed(rich_test, "T-3"), record=late),
+    )
+    rows = page.rows("Tests in the order")
+    assert [row[0][1] for row in rows[1:]] == ["T-2", "B-start", "A-end", "T-3"]
+
+
+def test_a_part_whose_whole_has_no_order_stands_behind_it_all_the_same(report, rich_test):
+    tests = (
+        renamed(rich_test, "T-1"),
+        renamed(rich_test, "T-2"),
+        renamed(rich_test, "part", part_of="T-1"),
+    )
+    unordered = [replace(one, description=replace(one.description, order=None)) for one in tests]
+    rows = report(*unordered).rows("Tests in the order")
+    assert [row[0][1] for row in rows[1:]] == ["T-1", "part", "T-2"]
+
+
 def test_failures_come_first_and_a_kept_archive_is_called_old(report, rich_test):
     status = STATUS + (
         "T-1,failed,3,T-1.csv:7 [load]: load is not a number,,0.1\r\n"
