@@ -6,19 +6,18 @@ with positions rounded to 8 or 9 digits; the stop log holds the last seconds, wi
 digits and every cycle in them.
 """
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
+from measured_logs import LOGS, needs_measured_logs
 
 from reduction.cycles.find import find_cycles
 from reduction.cycles.reversals import find_reversals, first_pass
 from reduction.phases.standstill import find_standstills
 from reduction.settings import CycleSettings, PhaseSettings
 
-FOLDER = Path(__file__).parents[2].parent / "shared" / "data" / "instron-elastomer"
-pytestmark = pytest.mark.skipif(not FOLDER.exists(), reason="measured logs are kept apart")
+FOLDER = LOGS / "instron-elastomer"
+pytestmark = needs_measured_logs
 TESTS = {"latex_glove": ("Test6", 12, 2.5), "silicone_10a": ("Test7", 15, 5.0)}
 HALF_DIGIT = 0.5e-8  # tracking logs round to 8 decimals of a millimetre
 

@@ -19,8 +19,7 @@ from reduction.moduli.tangent import tangent_curves
 from reduction.phases.standstill import find_standstills
 from reduction.settings import CycleSettings, ModulusSettings, PhaseSettings
 
-SHARED = Path(__file__).parents[2].parent / "shared"
-DATA = SHARED / "data" / "tmt-synthetic"
+DATA = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 FOOT, INCH, LBF = 0.3048, 0.0254, 4.4482216152605
 PSI = LBF / INCH**2
 AREA = np.pi / 4 * (np.array([1.04, 0.94]) * INCH) ** 2
@@ -64,7 +63,6 @@ def reduced(test):
     return curves, PSI * expected.mean(axis=0), identity
 
 
-@pytest.mark.skipif(not DATA.exists(), reason="needs the generated truth")
 @pytest.mark.parametrize("test", [f"T-{i}" for i in range(1, 7)])
 def test_modulus_of_a_synthetic_test_is_that_of_its_law(test):
     curves, expected, identity = reduced(test)

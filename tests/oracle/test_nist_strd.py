@@ -4,16 +4,14 @@ Source: NIST/ITL Statistical Reference Datasets, Nonlinear Regression (public do
 The certified values are typed from the files; the data are read from them where present.
 """
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from measured_logs import LOGS, needs_measured_logs
 
 from reduction.moduli.separable import fit_separable
 
-SHARED = Path(__file__).parents[2].parent / "shared"
-DATA = SHARED / "data" / "nist-strd"
-pytestmark = pytest.mark.skipif(not DATA.exists(), reason="NIST files are not at hand")
+DATA = LOGS / "nist-strd"
+pytestmark = needs_measured_logs
 
 
 def read(name):

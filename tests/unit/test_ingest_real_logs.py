@@ -4,11 +4,9 @@ Counts and peaks are those of the README beside the logs, or were taken from the
 awk; none is from this package.
 """
 
-import csv
-from pathlib import Path
-
 import numpy as np
 import pytest
+from measured_logs import LOGS, needs_measured_logs
 
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
@@ -17,9 +15,7 @@ from reduction.ingest.record_of_test import read_record
 from reduction.record import Quality
 from reduction.settings import QualitySettings
 
-SHARED = Path(__file__).parents[2].parent / "shared"
-DATA = SHARED / "data"
-pytestmark = pytest.mark.skipif(not SHARED.exists(), reason="the measured logs are not here")
+pytestmark = needs_measured_logs
 FOOT, POUND, INCH = 0.3048, 4.4482216152605, 0.0254
 
 
@@ -32,13 +28,13 @@ def layout(*, position, tension, time=None, more=None, **settings):
 
 def read(path, one, *, specimens=("one",), length_needed=False):
     record, (source,) = read_record(
-        [(DATA / path, one, path)],
+        [(LOGS / path, one, path)],
         test_id="test",
         specimens=specimens,
         quality=QualitySettings(),
         length_needed=length_needed,
     )
-    assert source.name == path and source.size == (DATA / path).stat().st_size
+    assert source.name == path and source.size == (LOGS / path).stat().st_size
     assert record.n_rows_read == record.n_samples
     return record
 
@@ -116,7 +112,7 @@ def test_a_zwick_export_in_latin1_with_a_german_preamble():
 def test_a_zwick_export_in_the_wrong_encoding_names_its_row():
     wrong = ZWICK.model_copy(update={"encoding": "utf-8"})
     with pytest.raises(LogError, match=r"example\.csv:2: the file is not in the declared encoding"):
-        read_log(DATA / "machine-exports/example.csv", wrong, name="x")
+        read_log(LOGS / "machine-exports/example.csv", wrong, name="x")
 
 
 def test_a_zwick_export_in_the_wrong_unit_is_refused():
@@ -125,7 +121,7 @@ def test_a_zwick_export_in_the_wrong_unit_is_refused():
     }
     wrong = ZWICK.model_copy(update={"channels": channels})
     with pytest.raises(LogError, match=r"example\.csv:18 \[Standardkraft\]: the unit in the file"):
-        read_log(DATA / "machine-exports/example.csv", wrong, name="x")
+        read_log(LOGS / "machine-exports/example.csv", wrong, name="x")
 
 
 INSTRON_8852 = layout(
@@ -145,7 +141,7 @@ def test_an_instron_8852_log_and_the_sheet_that_comes_with_it():
     assert record.tension.max() == pytest.approx(23371.8)
     assert record.time[-1] == pytest.approx(146.39)
     with pytest.raises(LogError, match="column 'Zeit .s.' is not in the file"):
-        read_log(DATA / "machine-exports/example3.csv", INSTRON_8852, name="x")
+        read_log(LOGS / "machine-exports/example3.csv", INSTRON_8852, name="x")
 
 
 def test_an_mts_file_with_two_kinds_of_blocks():
@@ -172,7 +168,7 @@ def test_an_mts_file_with_two_kinds_of_blocks():
         block_marker="Datenerfassung",
         channels={"crosshead_position": position},
     )
-    log = read_log(DATA / "machine-exports/example4.csv", second, name="x")
+    log = read_log(LOGS / "machine-exports/example4.csv", second, name="x")
     assert log.columns["crosshead_position"].tolist() == [2.0349319, 2.0347652]
     assert log.row.tolist() == [951, 952]
 
@@ -282,65 +278,3 @@ def test_friction_damper_matrices_with_unit_strings(name, n_rows, inches, kips):
     assert record.crosshead_position.max() == pytest.approx(inches * INCH)
     assert record.tension[0].max() == pytest.approx(kips * 1000 * POUND)
     assert record.metadata["sampling freq"] == "1024"
-
-
-LOGGER = Layout(
-    format="delimited",
-    comment="#",
-    channels={
-        "time": {"column": "time_s", "unit": "s"},
-        "crosshead_position": {"column": "crosshead_ft", "unit": "ft", "datum": "pin-to-pin"},
-        "tension.1": {"column": "load_new_lb", "unit": "lbf"},
-        "tension.2": {"column": "load_used_lb", "unit": "lbf"},
-    },
-)
-SYNTHETIC = [
-    ("T-1", 7_632, 141.357, 123.047),
-    ("T-2", 8_679, 177.246, 151.123),
-    ("T-3", 7_822, 209.473, 182.129),
-    ("T-4", 8_869, 259.033, 227.051),
-    ("T-4_extended", 60_026, 155.762, 152.832),
-    ("T-4_extended_start_5Hz", 2_121, 152.588, 145.264),
-    ("T-4_extended_end_5Hz", 2_005, 151.611, 153.32),
-    ("T-5", 8_012, 298.096, 271.729),
-    ("T-6", 8_202, 411.865, 407.471),
-    ("overnight_hold", 1_440, 68.604, 74.463),
-]
-
-
-@pytest.mark.parametrize(("name", "n_rows", "new", "used"), SYNTHETIC)
-def test_synthetic_tether_logs_are_read_without_a_flag(name, n_rows, new, used):
-    record = read(
-        f"tmt-synthetic/{name}.csv", LOGGER, specimens=("new", "used"), length_needed=True
-    )
-    assert record.n_samples == n_rows
-    assert record.tension[:, :].max(axis=1) == pytest.approx([new * POUND, used * POUND])
-    assert not record.quality_flag.any() and not record.crosshead_position_quality_flag.any()
-    assert record.notes == () and record.metadata
-
-
-def test_every_value_of_a_log_is_the_one_a_plain_reader_finds():
-    record = read("tmt-synthetic/T-6.csv", LOGGER, specimens=("new", "used"))
-    with (DATA / "tmt-synthetic/T-6.csv").open() as stream:
-        rows = [row for row in csv.reader(stream) if row[0][:1].isdigit()]
-    plain = np.array(rows, dtype=float)
-    np.testing.assert_array_equal(record.time, plain[:, 0])
-    np.testing.assert_allclose(record.crosshead_position, plain[:, 1] * FOOT, rtol=1e-15)
-    np.testing.assert_allclose(record.tension, plain[:, 2:].T * POUND, rtol=1e-15)
-
-
-def test_the_printed_stepwise_test_keeps_its_clock():
-    table = Layout(
-        format="delimited",
-        channels={
-            "time": {"column": "time_est", "unit": "clock"},
-            "tension.1": {"column": "weight_lb", "unit": "lbf"},
-            "gauge_length": {"column": "tether_length_in", "unit": "inch"},
-            "strain.1": {"column": "elongation_pct", "unit": "%"},
-        },
-    )
-    log = read_log(SHARED / "reference/tether/table4_static.csv", table, name="table4_static.csv")
-    assert log.n_rows_read == 15
-    assert (log.text["time"][0], log.text["time"][-1]) == ("0945", "1330")
-    assert log.columns["time"][[0, 1, -1]].tolist() == [0.0, 600.0, 13_500.0]
-    assert log.columns["gauge_length"][13] == 16.38

@@ -9,6 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 import scipy.io
+from measured_logs import LOGS, needs_measured_logs
 from nptdms import ChannelObject, TdmsWriter
 from pydantic import ValidationError
 
@@ -17,9 +18,7 @@ from reduction.ingest.layout import Layout
 from reduction.ingest.read import read_log
 from reduction.ingest.sniff import format_of, sniff_layout
 
-SHARED = Path(__file__).parents[2].parent / "shared"
-DATA = SHARED / "data"
-needs_logs = pytest.mark.skipif(not SHARED.exists(), reason="the reference logs are not there")
+RAW = Path(__file__).parents[2] / "raw"
 
 
 def proposed(path, **kwargs):
@@ -52,18 +51,18 @@ def write(tmp_path, text, name="log.csv", encoding="utf-8"):
     return tmp_path / name
 
 
+TETHER_LOG = (
+    "tmt-synthetic/T-1.csv",
+    {"delimiter": ",", "decimal": ".", "comment": "#", "has_unit_row": False},
+    {
+        "time": ("time_s", "s"),
+        "crosshead_position": ("crosshead_ft", "ft"),
+        "tension.1": ("load_new_lb", "lbf"),
+        "tension.2": ("load_used_lb", "lbf"),
+    },
+    7632,
+)
 TEXT_LOGS = [
-    (
-        "tmt-synthetic/T-1.csv",
-        {"delimiter": ",", "decimal": ".", "comment": "#", "has_unit_row": False},
-        {
-            "time": ("time_s", "s"),
-            "crosshead_position": ("crosshead_ft", "ft"),
-            "tension.1": ("load_new_lb", "lbf"),
-            "tension.2": ("load_used_lb", "lbf"),
-        },
-        7632,
-    ),
     (
         "machine-exports/example.csv",
         {"delimiter": "\t", "decimal": ".", "encoding": "latin-1", "preamble_rows": 16, "has_unit_row": True},
@@ -137,31 +136,44 @@ TEXT_LOGS = [
 ]  # fmt: skip
 
 
-@needs_logs
-@pytest.mark.parametrize(("name", "settings", "channels", "n_rows"), TEXT_LOGS)
-def test_the_proposal_for_a_text_log_reads_it(name, settings, channels, n_rows):
-    found = proposed(DATA / name)
+@pytest.mark.parametrize(
+    ("folder", "name", "settings", "channels", "n_rows"),
+    [
+        (RAW, *TETHER_LOG),
+        *(pytest.param(LOGS, *log, marks=needs_measured_logs) for log in TEXT_LOGS),
+    ],
+)
+def test_the_proposal_for_a_text_log_reads_it(folder, name, settings, channels, n_rows):
+    found = proposed(folder / name)
     assert settings.items() <= found.items()
     assert columns(found) == channels
     assert "preamble_rows" in settings or "preamble_rows" not in found
-    log = read_log(DATA / name, filled(found), name=name)
+    log = read_log(folder / name, filled(found), name=name)
     assert abs(log.n_rows_read - n_rows) <= 1  # the last line may lack its end
 
 
-@needs_logs
 @pytest.mark.parametrize(
     "name", [f"T-{n}" for n in range(1, 7)] + ["T-4_extended", "overnight_hold"]
 )
 def test_logs_of_one_logger_have_one_proposal(name):
-    first = sniff_layout(DATA / "tmt-synthetic" / "T-1.csv").settings
-    assert sniff_layout(DATA / "tmt-synthetic" / f"{name}.csv").settings == first
+    first = sniff_layout(RAW / "tmt-synthetic" / "T-1.csv").settings
+    assert sniff_layout(RAW / "tmt-synthetic" / f"{name}.csv").settings == first
 
 
-@needs_logs
+@needs_measured_logs
 @pytest.mark.parametrize(
-    "path", sorted((DATA / "soft-silicones").glob("*.csv")), ids=lambda p: p.stem
+    "name",
+    [
+        "Dragon Skin 20",
+        "Dragon Skin 30",
+        "Ecoflex 00-35 FAST",
+        "Mold Star 20T",
+        "PlatSil Gel 10",
+        "WAGNERSIL 20 NF",
+    ],
 )
-def test_a_log_with_stresses_has_no_load(path):
+def test_a_log_with_stresses_has_no_load(name):
+    path = LOGS / "soft-silicones" / f"{name}.csv"
     found = proposed(path)
     assert {"delimiter": ";", "decimal": ".", "preamble_rows": 17}.items() <= found.items()
     assert columns(found) == {"time": ("Time (s)", "s"), "strain.1": ("Engineering Strain", "?")}
@@ -170,9 +182,9 @@ def test_a_log_with_stresses_has_no_load(path):
     assert log.n_rows_read > 250
 
 
-@needs_logs
+@needs_measured_logs
 def test_columns_without_names_are_listed_by_number():
-    path = DATA / "damper-hysteresis" / "ganey_damper" / "xyTestData.csv"
+    path = LOGS / "damper-hysteresis" / "ganey_damper" / "xyTestData.csv"
     sniffed = sniff_layout(path)
     found = proposed(path)
     assert found["has_name_row"] is False
@@ -183,9 +195,9 @@ def test_columns_without_names_are_listed_by_number():
     assert log.n_rows_read == 308
 
 
-@needs_logs
+@needs_measured_logs
 def test_the_proposal_for_json_names_the_matrix_and_the_units():
-    path = DATA / "friction-damper" / "0.5Hz30lbtension1.5amplitude.json"
+    path = LOGS / "friction-damper" / "0.5Hz30lbtension1.5amplitude.json"
     found = proposed(path)
     assert (found["format"], found["matrix"]) == ("json", "data")
     assert columns(found)["time"] == (1, "s")
@@ -195,9 +207,9 @@ def test_the_proposal_for_json_names_the_matrix_and_the_units():
     assert read_log(path, made, name="x").n_rows_read == 14 * 1024 + 1
 
 
-@needs_logs
+@needs_measured_logs
 def test_the_proposal_for_a_workbook_names_the_sheet_and_the_others():
-    path = DATA / "knit-yarn" / "compressionTests.xls"
+    path = LOGS / "knit-yarn" / "compressionTests.xls"
     found = proposed(path)
     assert {"sheet": "cotton-1", "preamble_rows": 1, "has_unit_row": True}.items() <= found.items()
     assert columns(found) == {
@@ -212,11 +224,11 @@ def test_the_proposal_for_a_workbook_names_the_sheet_and_the_others():
         sniff_layout(path, sheet="cotton-9")
 
 
-@needs_logs
+@needs_measured_logs
 @pytest.mark.parametrize("name", ["machine-exports/example3.csv", "instron-elastomer/LICENSE"])
 def test_a_file_without_a_table_is_refused(name):
     with pytest.raises(LogError, match="no table of numbers stands at the start of the file"):
-        sniff_layout(DATA / name)
+        sniff_layout(LOGS / name)
 
 
 def test_a_proposal_with_question_marks_does_not_load(tmp_path):

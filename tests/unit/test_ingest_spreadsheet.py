@@ -9,13 +9,13 @@ from xml.sax.saxutils import escape
 import numpy as np
 import pytest
 import python_calamine
+from measured_logs import LOGS, needs_measured_logs
 
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
 from reduction.ingest.spreadsheet import read_spreadsheet
 
-SHARED = Path(__file__).parents[2].parent / "shared"
-DATA = SHARED / "data"
+RAW = Path(__file__).parents[2] / "raw"
 TIME = {"column": "time", "unit": "s"}
 LOAD = {"column": "load", "unit": "kN"}
 
@@ -338,14 +338,14 @@ def test_open_document_sheets_are_read(tmp_path):
     np.testing.assert_array_equal(log.columns["tension.1"], [1.25, 2.5, 3.75])
 
 
-@pytest.mark.skipif(not SHARED.exists(), reason="the reference logs are not there")
+@needs_measured_logs
 def test_the_zwick_workbook_is_read_sheet_by_sheet():
     channels = {
         "time": {"column": "Test time", "unit": "s"},
         "crosshead_position": {"column": "Tool separation", "unit": "mm", "datum": "pin-to-pin"},
         "tension": {"1": {"column": "Standard force", "unit": "mN"}},
     }
-    path = DATA / "knit-yarn" / "compressionTests.xls"
+    path = LOGS / "knit-yarn" / "compressionTests.xls"
     last = {}
     for number, rows in enumerate((872, 484, 398, 347, 645, 598, 822), start=2):
         made = layout(sheet=number, preamble_rows=1, has_unit_row=True, channels=channels)
@@ -358,25 +358,22 @@ def test_the_zwick_workbook_is_read_sheet_by_sheet():
     assert next(iter(last)) == "cotton-1"
 
 
-@pytest.mark.skipif(not SHARED.exists(), reason="the reference logs are not there")
+@needs_measured_logs
 def test_the_zwick_unit_row_is_checked():
     channels = {"tension": {"1": {"column": "Standard force", "unit": "N"}}}
     made = layout(sheet="cotton-1", preamble_rows=1, has_unit_row=True, channels=channels)
     with pytest.raises(LogError, match=r"xls:3 \[Standard force\].*'mN'"):
-        read_spreadsheet(DATA / "knit-yarn" / "compressionTests.xls", made, name="x")
+        read_spreadsheet(LOGS / "knit-yarn" / "compressionTests.xls", made, name="x")
 
 
-@pytest.mark.skipif(not SHARED.exists(), reason="the reference logs are not there")
-@pytest.mark.parametrize("test", ["T-1", "T-6"])
-def test_a_workbook_and_the_text_of_one_test_agree(test):
+def test_a_workbook_and_the_text_of_one_test_agree(tmp_path):
     channels = {
         "time": {"column": "time_s", "unit": "s"},
         "tension": {"1": {"column": "load_new_lb", "unit": "lbf"}},
     }
-    folder = DATA / "tmt-synthetic"
-    log = read_spreadsheet(
-        folder / "TMT_synthetic.xlsx", layout(sheet=test, channels=channels), name="x"
-    )
-    text = np.loadtxt(folder / f"{test}.csv", delimiter=",", skiprows=3)
+    text = np.loadtxt(RAW / "tmt-synthetic" / "T-6.csv", delimiter=",", skiprows=3)
+    names = ["time_s", "crosshead_ft", "load_new_lb", "load_used_lb"]
+    path = write_xlsx(tmp_path / "logs.xlsx", {"empty": [], "T-6": [names, *text.tolist()]})
+    log = read_spreadsheet(path, layout(sheet="T-6", channels=channels), name="logs.xlsx")
     np.testing.assert_array_equal(log.columns["time"], text[:, 0])
     np.testing.assert_array_equal(log.columns["tension.1"], text[:, 2])
