@@ -29,7 +29,7 @@ from reduction.report.figures.campaign import (
 from reduction.report.section import Section, make_part, make_section
 from reduction.report.specimentables import specimen_notes, specimen_table
 from reduction.report.steptables import interval_table
-from reduction.report.summary import find_faults, test_table, tiles
+from reduction.report.summary import find_faults, summary_sentence, test_table, tiles
 from reduction.report.testtables import segment_table
 from reduction.report.view import Status, TestView, any_synthetic, natural_order
 from reduction.units import UnitSystem
@@ -123,7 +123,7 @@ def _render(
     return template.render(
         title=(first.attribute("title") if first else "") or f"Campaign {folder}",
         campaign=first.attribute("campaign") if first else folder,
-        summary=first.attribute("summary") if first else "",
+        summary=summary_sentence(tests),
         institution=first.attribute("institution").rstrip(".") if first else "",
         references=first.attribute("references") if first else "",
         synthetic=any_synthetic(tests),

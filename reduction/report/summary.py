@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -10,14 +11,20 @@ from typing import Literal
 import numpy as np
 
 from reduction.report.htmltable import Cell, Table, count, make_table, span, words
-from reduction.report.style import shown
-from reduction.report.view import Status, TestView, any_synthetic
+from reduction.report.style import shorten, shown
+from reduction.report.view import Status, TestView, all_specimens, any_synthetic
 
-__all__ = ["Finding", "Severity", "Tile", "all_notes", "find_faults", "test_table", "tiles"]
+__all__ = [
+    "Finding", "Severity", "Tile", "all_notes", "find_faults", "summary_sentence", "test_table",
+    "tiles",
+]  # fmt: skip
 
 Severity = Literal["failure", "warning", "note", "refusal"]
 _ORDER: tuple[Severity, ...] = ("failure", "warning", "note", "refusal")
 _NOT_SHOWN = "no archive"
+_STATUS_WORDS = {"unchanged": "reduced earlier, unchanged"}
+_MOST_NAMES = 200
+"""Characters of the list of specimens under the title."""
 # words of a note after which a reader may have to put a number aside; the rest is background
 _WARNING = re.compile(
     r"contradict|disagree|inconsisten|extrapolat|outside|saturat|stuck|spike|backward|repeated"
@@ -81,6 +88,28 @@ def all_notes(view: TestView) -> list[str]:
         is_said = text.startswith((f"{stage}:", f"{room}:", f"{room},"))
         notes.append(text if is_said else f"{stage}: {text}")
     return notes
+
+
+def summary_sentence(tests: Sequence[TestView]) -> str:
+    """Return what the campaign says of itself; else how many tests of what it holds.
+
+    An archive of a campaign without a summary has one of its own test, which would
+    read as if the page held no other.
+    """
+    if not tests:
+        return ""
+    summaries = {view.attribute("summary") for view in tests}
+    own = f"Reduced {tests[0].kind} test {tests[0].id} of specimen "
+    if len(summaries) == 1 and not tests[0].attribute("summary").startswith(own):
+        return summaries.pop()
+    kinds = Counter(view.kind for view in tests)
+    of_kinds = ", ".join(f"{number} {kind}" for kind, number in kinds.items())
+    names = all_specimens(tests)
+    return (
+        f"{len(tests)} {'test' if len(tests) == 1 else 'tests'} ({of_kinds}) of"
+        f" {len(names)} {'specimen' if len(names) == 1 else 'specimens'}:"
+        f" {shorten(', '.join(names), _MOST_NAMES)}."
+    )
 
 
 def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> Table:
@@ -202,4 +231,4 @@ def _target(view: TestView) -> str:
 
 
 def _words(status: str) -> str:
-    return status.replace("_", " ")
+    return _STATUS_WORDS.get(status, status.replace("_", " "))

@@ -251,6 +251,30 @@ def test_a_part_whose_whole_has_no_order_stands_behind_it_all_the_same(report, r
     assert [row[0][1] for row in rows[1:]] == ["T-1", "part", "T-2"]
 
 
+def test_a_campaign_without_a_summary_is_described_by_what_it_holds(
+    report, rich_test, stepwise_test
+):
+    page = report(rich_test, renamed(rich_test, "T-2"), stepwise_test)
+    sentence = "3 tests (1 stepwise, 2 cyclic) of 3 specimens: tether, new, used."
+    assert sentence in "".join(page.text)
+
+
+def test_a_campaign_of_one_test_is_not_described_by_the_summary_of_its_archive(report, rich_test):
+    assert "1 test (1 cyclic) of 2 specimens: new, used." in "".join(report(rich_test).text)
+
+
+def test_the_summary_of_a_campaign_is_shown_as_it_stands(report, rich_test):
+    page = report(renamed(rich_test, "T-1", summary="What we pulled and why."))
+    leads = [a for _, a in page.elements if a.get("class") == "lead"]
+    assert leads and "What we pulled and why." in "".join(page.text)
+    assert "1 test (1 cyclic)" not in "".join(page.text)
+
+
+def test_a_test_that_was_not_redone_is_said_to_be_reduced(report, rich_test):
+    page = report(rich_test, status=STATUS + "T-1,unchanged,0,,,0.1\r\n")
+    assert page.rows("Tests in the order")[1][-1][1] == "reduced earlier, unchanged"
+
+
 def test_failures_come_first_and_a_kept_archive_is_called_old(report, rich_test):
     status = STATUS + (
         "T-1,failed,3,T-1.csv:7 [load]: load is not a number,,0.1\r\n"
