@@ -7,7 +7,7 @@ is beside it in ``data-value`` for a program that reads the page.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import floor, isfinite, log10
 
 from reduction.report.style import Shown
@@ -27,6 +27,8 @@ __all__ = [
 
 NOT_GIVEN = "\N{EN DASH}"
 _MOST_DECIMALS = 12
+_NOISE = 1e-12
+"""A sum of numbers of order one that ought to vanish ends at 1e-16 or so, in percent at 1e-14."""
 
 
 @dataclass(frozen=True)
@@ -63,9 +65,21 @@ def make_table(
     synthetic: bool,
     is_tall: bool = False,
 ) -> Table:
-    """Return a table; the caption says where the data are synthetic."""
+    """Return a table; the caption says where the data are synthetic.
+
+    A mark for what is missing stands flush right among numbers, whoever made its cell.
+    """
     text = f"{caption} SYNTHETIC DATA." if synthetic else caption
-    return Table(text, tuple(columns), tuple(tuple(row) for row in rows), is_tall)
+    plain = Table(text, tuple(columns), tuple(tuple(row) for row in rows), is_tall)
+    missing = Cell(NOT_GIVEN, is_number=True)
+    aligned = tuple(
+        tuple(
+            missing if is_number and cell.text == NOT_GIVEN else cell
+            for cell, is_number in zip(row, plain.number_columns, strict=True)
+        )
+        for row in plain.rows
+    )
+    return replace(plain, rows=aligned)
 
 
 def words(text: str) -> Cell:
@@ -95,7 +109,9 @@ def number_text(value: float, digits: int = 4) -> str:
     """
     if not isfinite(value):
         return NOT_GIVEN
-    if value != 0 and not 1e-4 <= abs(value) < 1e9:
+    if abs(value) < _NOISE:
+        return "0"
+    if not 1e-4 <= abs(value) < 1e9:
         return f"{value:.{digits - 1}e}"
     return f"{value:,.{_decimals(value, digits)}f}"
 
@@ -114,10 +130,13 @@ def measured(value: float, uncertainty: float, unit: Shown | None = None) -> Cel
     if not isfinite(uncertainty) or uncertainty <= 0:
         return number(value, unit)
     half = uncertainty * scale
+    if max(abs(value * scale), half) < _NOISE:
+        return number(value, unit)
     if not 1e-10 <= half < 1e9:
         return Cell(f"{value * scale:.4g} ± {half:.2g}", _exact(value), is_number=True)
     places = _decimals(half, 2)
-    return Cell(f"{value * scale:,.{places}f} ± {half:,.{places}f}", _exact(value), is_number=True)
+    shown = f"{_fixed(value * scale, places)} ± {_fixed(half, places)}"
+    return Cell(shown, _exact(value), is_number=True)
 
 
 def span(low: float, high: float, unit: Shown, *, places: int) -> Cell:
@@ -125,8 +144,13 @@ def span(low: float, high: float, unit: Shown, *, places: int) -> Cell:
     if not (isfinite(low) and isfinite(high)):
         return Cell(NOT_GIVEN, "", is_number=True)
     ends = (low * unit.factor, high * unit.factor)
-    text = " to ".join(f"{end:,.{places}f}" for end in ends)
+    text = " to ".join(_fixed(end, places) for end in ends)
     return Cell(text, f"{_exact(low)} {_exact(high)}", is_number=True)
+
+
+def _fixed(value: float, places: int) -> str:
+    """Return a number to so many places; what rounds to zero has no sign."""
+    return f"{round(value, places) + 0.0:,.{places}f}"
 
 
 def _decimals(value: float, digits: int) -> int:

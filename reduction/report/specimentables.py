@@ -190,7 +190,7 @@ def _coefficients(view: TestView, place: int) -> Iterator[tuple[str, Cell]]:
 
 
 def _signed(residual: float) -> str:
-    return f"{100 * residual:+.2f}" if np.isfinite(residual) else NOT_GIVEN
+    return f"{round(100 * residual, 2) + 0.0:+.2f}" if np.isfinite(residual) else NOT_GIVEN
 
 
 def _value(view: TestView, name: str, place: int) -> float:

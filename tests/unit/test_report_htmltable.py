@@ -20,6 +20,9 @@ MPA = Shown("MPa", 1e-6)
         (float("nan"), 1.0, NOT_GIVEN),
         (-3.0e5, 2.0e3, "-0.3000 ± 0.0020"),
         (1.0e6, 1e-6, "1 ± 1e-12"),
+        (-1.0e2, 5.0e4, "0.000 ± 0.050"),
+        (2.6e-11, 3.0e-11, "0"),
+        (1.5e-7, 2.5e-6, "1.5e-13 ± 2.5e-12"),
     ],
 )
 def test_a_value_ends_where_its_uncertainty_does(value, uncertainty, text):
@@ -33,7 +36,15 @@ def test_the_value_of_the_archive_stands_beside_what_is_shown():
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(0.0, "0"), (12.0, "12.00"), (123456.0, "123,456"), (1e-7, "1.000e-07"), (2e12, "2.000e+12")],
+    [
+        (0.0, "0"),
+        (12.0, "12.00"),
+        (123456.0, "123,456"),
+        (1e-7, "1.000e-07"),
+        (2e12, "2.000e+12"),
+        (2.6e-17, "0"),
+        (-2.2e-14, "0"),
+    ],
 )
 def test_numbers_are_written_out_where_they_can_be_read(value, text):
     assert number(value).text == text
@@ -46,6 +57,7 @@ def test_counts_have_no_decimals():
 
 def test_a_range_has_both_ends_to_the_same_place():
     assert span(0.806, 0.9437, Shown("%", 100.0), places=1).text == "80.6 to 94.4"
+    assert span(-1e-9, 0.5, Shown("%", 100.0), places=1).text == "0.0 to 50.0"
     assert span(np.nan, 1.0, MPA, places=1).text == NOT_GIVEN
 
 
@@ -56,3 +68,10 @@ def test_the_caption_says_where_data_are_synthetic():
     )
     assert make_table("Caption.", ("a", "b"), rows, synthetic=False).number_columns == (False, True)
     assert words("").text == NOT_GIVEN
+
+
+def test_what_is_missing_stands_flush_right_in_a_column_of_numbers():
+    rows = [[words("a"), number(1.0), words("")], [words(""), words(""), words("b")]]
+    table = make_table("Caption.", ("name", "value", "remark"), rows, synthetic=False)
+    assert [cell.is_number for cell in table.rows[1]] == [False, True, False]
+    assert not table.rows[0][2].is_number
