@@ -111,7 +111,11 @@ _ROWS = (
     Quantity("test_hysteresis_energy", "J m-1", "hysteresis energy of a cycle, mean over the test"),
     Quantity("peak_tension_per_decade", "N", "change of peak tension per decade of cycles"),
     Quantity("dynamic_modulus_per_decade", "Pa", "change of dynamic modulus per decade of cycles"),
-    Quantity("peak_tension_change", "1", "peak tension of the last cycle over the first, minus 1"),
+    Quantity(
+        "peak_tension_change",
+        "1",
+        "mean peak tension of the last tenth of the cycles over the first, minus 1",
+    ),
     # per strain bin
     Quantity("strain_bin", "1", "centre of the strain bin"),
     Quantity("strain_bin_bounds", "1", "edges of the strain bin"),
@@ -268,8 +272,8 @@ _ROWS = (
     Quantity("slip_cycle_high", "1", "last cycle in which the step may lie"),
     Quantity("n_slips", "1", "number of steps found"),
     Quantity("creep_per_cycle", "N", "steady drift of peak tension per cycle, steps taken out"),
-    Quantity("slip_tension_step", "N", "step of peak tension"),
-    Quantity("slip_length", "m", "splice length let out by the step"),
+    Quantity("slip_tension_step", "N", "step of the tension level at the top of the loop"),
+    Quantity("slip_length", "m", "splice length let out by the step, a lower bound"),
     # what is known about the record
     Quantity("note", "", "quality note"),
     Quantity("note_stage", "", "stage that gave the note"),

@@ -12,7 +12,7 @@ from reduction.product import History
 from reduction.strain.fit import free_length_strain_of
 from reduction.strain.model import StrainModel
 
-__all__ = ["history_of"]
+__all__ = ["history_of", "history_remarks"]
 
 
 def _greatest_strain(survey: Survey, name: str, model: StrainModel) -> float:
@@ -105,3 +105,37 @@ def history_of(
         permanent_set=np.array([value for value, _ in left]),
         permanent_set_standard_uncertainty=np.array([spread for _, spread in left]),
     )
+
+
+def history_remarks(survey: Survey, surveys: Sequence[Survey]) -> tuple[str, ...]:
+    """What the campaign leaves open about the place of a test in its specimens' history.
+
+    Parameters
+    ----------
+    survey : Survey
+        The test.
+    surveys : sequence of Survey
+        All tests of the campaign.
+
+    Returns
+    -------
+    remarks : tuple of str
+        Sentences for a reader of the product; empty where nothing is open.
+    """
+    plan = survey.plan
+    if plan.part_of is not None:
+        return (
+            f"a part of {plan.part_of}: its history is that of the whole; cycles of the whole "
+            "before this part are not counted",
+        )
+    shared = [
+        name
+        for name in plan.specimens
+        if any(name in other.plan.specimens for other in surveys if other is not survey)
+    ]
+    if plan.order is None and shared:
+        return (
+            f"no place in the order of tests is given for {', '.join(shared)}: what earlier tests "
+            "did to the rubber is not known here; set order",
+        )
+    return ()

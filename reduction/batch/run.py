@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,8 @@ from reduction import __version__
 from reduction.archive.dataset import to_dataset
 from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive, write_whole
-from reduction.batch.history import history_of
+from reduction.batch.describe import describe, settings_json
+from reduction.batch.history import history_of, history_remarks
 from reduction.batch.models import fit_strain_models
 from reduction.batch.status import Status, TestStatus, status_csv
 from reduction.batch.survey import Survey, located_again, survey_campaign
@@ -20,7 +20,7 @@ from reduction.campaign.plan import Campaign
 from reduction.errors import ArchiveError, ReductionError, SettingsError
 from reduction.ingest.quality import account_rows
 from reduction.pipeline.reduce import reduce_steps, reduce_test
-from reduction.product import History, ReducedTest, TestDescription
+from reduction.product import History, ReducedTest
 from reduction.report.page import write_report
 from reduction.strain.model import StrainModel
 from reduction.tables.write import write_tables
@@ -66,85 +66,38 @@ def _selected(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
     ]
 
 
-def _settings_json(
-    campaign: Campaign, survey: Survey, models: Sequence[StrainModel], history: History | None
-) -> str:
-    """Every setting that was in force, so that a product says how it can be made again."""
-    plan = survey.plan
-    document: dict[str, Any] = {
-        "kind": plan.kind,
-        "control": plan.control,
-        "waveform": plan.waveform,
-        "target_strain": plan.target_strain,
-        "part_of": plan.part_of,
-        "reduction": asdict(plan.settings),
-        "layouts": {
-            layout: campaign.layouts[layout].model_dump(exclude_defaults=True)
-            for _, layout in plan.files
-        },
-        "specimens": {name: asdict(campaign.specimens[name]) for name in plan.specimens},
-        "strain": {
-            model.specimen: {
-                "method": model.method,
-                "coefficients": model.coefficients,
-                "marks": [
-                    list(row)
-                    for row in zip(
-                        model.mark_test,
-                        model.mark_hold,
-                        model.mark_position.tolist(),
-                        model.mark_tension.tolist(),
-                        strict=True,
-                    )
-                ],
-            }
-            for model in models
-        },
-        "history": None
-        if history is None
-        else {
-            "earlier_tests": history.earlier_tests,
-            "earlier_maximum_strain": history.earlier_maximum_strain.tolist(),
-            "earlier_maximum_tension": history.earlier_maximum_tension.tolist(),
-            "earlier_cycles": history.earlier_cycles.tolist(),
-            "permanent_set": history.permanent_set.tolist(),
-        },
-    }
-    return json.dumps(document, sort_keys=True, ensure_ascii=False)
+def _standing_notes(path: Path, survey: Survey, settings: str) -> list[tuple[str, str]] | None:
+    """Notes of a product that stands as it is; None where it has to be made.
 
-
-def _description(campaign: Campaign, survey: Survey) -> TestDescription:
-    plan = survey.plan
-    attributes = campaign.attributes | plan.attributes
-    if plan.part_of is not None:
-        attributes["part_of"] = plan.part_of
-    if plan.target_strain:
-        attributes["target_strain"] = " to ".join(f"{value:g}" for value in plan.target_strain)
-    return TestDescription(
-        campaign_id=campaign.id,
-        test_id=plan.id,
-        kind=plan.kind,
-        control=plan.control,
-        waveform=plan.waveform,
-        order=plan.order,
-        attributes=attributes,
-    )
-
-
-def _is_unchanged(path: Path, survey: Survey, settings: str) -> bool:
-    """Same raw hash, same settings, same version: the product stands as it is."""
+    It stands where raw hash, settings and version are the same.
+    """
     if not path.exists():
-        return False
+        return None
     try:
         with open_archive(path) as archive:
-            return bool(
+            sums = "\n".join(source.sha256 for source in survey.sources)
+            same = (
                 archive.attrs.get("settings") == settings
                 and archive.attrs.get("software_version") == __version__
-                and archive.attrs.get("raw_file_sha256")
-                == "\n".join(source.sha256 for source in survey.sources)
+                and archive.attrs.get("raw_file_sha256") == sums
             )
+            if not same:
+                return None
+            if "note" not in archive:
+                return []
+            stages, notes = archive["note_stage"].values, archive["note"].values
+            return [(str(stage), str(text)) for stage, text in zip(stages, notes, strict=True)]
     except ArchiveError:
-        return False  # an archive that cannot be read is made again
+        return None  # an archive that cannot be read is made again
+
+
+def _message(notes: Sequence[tuple[str, str]]) -> str:
+    """How many notes there are, and the first that is about the test and not the specimen."""
+    texts = list(dict.fromkeys(text for _, text in notes))
+    if not texts:
+        return ""
+    about = [text for stage, text in notes if not stage.startswith("specimen")] or texts
+    return f"{len(texts)} note{'s' if len(texts) > 1 else ''}; first: {about[0]}"
 
 
 def _found(survey: Survey) -> dict[str, Any]:
@@ -219,7 +172,7 @@ def _reduce(
     history: History | None,
     settings: str,
 ) -> ReducedTest:
-    description = _description(campaign, survey)
+    description = describe(campaign, survey)
     specimens = tuple(campaign.specimens[name] for name in survey.plan.specimens)
     if survey.steps is not None:
         return reduce_steps(
@@ -306,12 +259,16 @@ def run_campaign(
             models[name, entry] for entry in survey.plan.specimens if (name, entry) in models
         ]
         history = history_of(survey, surveys, models)
-        settings = _settings_json(campaign, survey, of_test, history)
-        if not force and _is_unchanged(path, survey, settings):
-            statuses.append(_status(survey, "unchanged", seconds=clock() - start))
+        settings = settings_json(campaign, survey, of_test, history)
+        standing = None if force else _standing_notes(path, survey, settings)
+        if standing is not None:
+            message = _message(standing)
+            statuses.append(_status(survey, "unchanged", message=message, seconds=clock() - start))
             continue
         try:
             product = _reduce(campaign, survey, of_test, history, settings)
+            remarks = history_remarks(survey, surveys)
+            product = replace(product, notes=(*product.notes, *remarks))
             write_archive(to_dataset(product, version=__version__, command=command), path)
         except Exception as failure:
             # a campaign goes on after a failed test, even where the failure is a defect here
@@ -322,13 +279,12 @@ def run_campaign(
             statuses.append(_status(survey, "failed", error=failure, seconds=clock() - start))
             continue
         survey.located = None  # its record is in the archive now
-        notes = list(dict.fromkeys(text for _, text in product.all_notes()))
-        more = f" (and {len(notes) - 1} more notes)" if len(notes) > 1 else ""
+        notes = product.all_notes()
         statuses.append(
             _status(
                 survey,
                 "reduced_with_notes" if notes else "reduced",
-                message=notes[0] + more if notes else "",
+                message=_message(notes),
                 seconds=clock() - start,
             )
         )

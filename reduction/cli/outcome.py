@@ -30,6 +30,7 @@ class Outcome:
     quiet: bool = False
     units: str = "si"
     status: int = 0
+    answered: bool = False
 
     def say(self, text: str) -> None:
         """One line of text on standard output, unless JSON or nothing was asked for."""
@@ -40,6 +41,7 @@ class Outcome:
         """The JSON object of ``--json``; the only thing on standard output then."""
         if self.json:
             typer.echo(json_module.dumps(document, indent=2, allow_nan=False))
+            self.answered = True
 
     def error(self, text: str) -> None:
         """One error on standard error."""
@@ -62,6 +64,8 @@ def guarded(outcome: Outcome) -> Iterator[Outcome]:
     except ReductionError as error:
         outcome.error(str(error))
         outcome.raise_status(error.exit_status)
+        if not outcome.answered:
+            outcome.answer({"error": str(error), "exit_status": error.exit_status})
     except KeyboardInterrupt:
         outcome.error("interrupted; products that were finished are kept")
         outcome.status = INTERRUPTED

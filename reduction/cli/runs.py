@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -53,7 +54,9 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
     for test in tests:
         # a message is text from files of strangers: no markup is read in it
         message = test.message.replace("[", r"\[")
-        table.add_row(test.test, test.status, str(test.n_rows), str(test.n_cycles), message)
+        # nothing is reduced in a check: what can be read and located is ready for a run
+        status = "ready" if test.status == "no_work" else test.status
+        table.add_row(test.test, status, str(test.n_rows), str(test.n_cycles), message)
     return table
 
 
@@ -75,9 +78,8 @@ def _model_lines(
     for (test, specimen), model in models.items():
         if test in shown:
             low, high = factor * model.position_low, factor * model.position_high
-            table.add_row(
-                test, specimen, model.method, model.marks_from, f"{low:.3f} to {high:.3f}"
-            )
+            marked = "-" if math.isnan(low) else f"{low:.3f} to {high:.3f}"
+            table.add_row(test, specimen, model.method, model.marks_from, marked)
     return table
 
 

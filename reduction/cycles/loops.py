@@ -146,9 +146,9 @@ def _derive(
         both = np.hypot(noise, apparent * strain_noise)
         u_part = np.sqrt(2 / n_samples) * both / np.sqrt(square)
         u_energy = row["strain_step_norm"] * both
-        u_extreme = np.where(np.isnan(peak), np.nan, noise)
+        u_extreme = np.hypot(noise, _missed_turn(amplitude, n_samples))
         u_half = u_extreme / np.sqrt(2)
-        u_strain = np.where(np.isnan(peak), np.nan, strain_noise / np.sqrt(2))
+        u_strain = np.hypot(strain_noise, _missed_turn(strain_amplitude, n_samples)) / np.sqrt(2)
         values = {
             "mean_tension": (peak + valley) / 2,
             "tension_amplitude": amplitude,
@@ -170,8 +170,10 @@ def _derive(
             "strain_amplitude": u_strain,
             "peak_tension": u_extreme,
             "valley_tension": u_extreme,
+            # a missed turn takes the same share off both amplitudes; only noise is left
             "apparent_spring_constant": apparent
-            * np.hypot(u_half / amplitude, u_strain / strain_amplitude),
+            * np.hypot(noise / amplitude, strain_noise / strain_amplitude)
+            / np.sqrt(2),
             "hysteresis_energy": u_energy,
             "storage_spring_constant": u_part,
             "loss_spring_constant": u_part,
@@ -180,6 +182,17 @@ def _derive(
             * np.hypot(u_part / np.abs(loss), u_energy / np.abs(energy)),
         }
     return values, uncertainty
+
+
+def _missed_turn(amplitude: Floats, n_samples: Floats) -> Floats:
+    """How far the logged extreme may lie below the turn between two samples.
+
+    A branch at constant rate rises by four amplitudes over N per sample; the turn lies
+    within half a sample of the logged extreme, evenly spread, so the loss is spread evenly
+    over half a step: the root of its mean square is the step over the root of 12.
+    """
+    missed: Floats = 4 * amplitude / n_samples / np.sqrt(12)
+    return missed
 
 
 def close_loops(
@@ -221,12 +234,13 @@ def close_loops(
     Notes
     -----
     Extremes are the logged ones: noise makes a peak read high by about one to two
-    standard deviations of a reading, and a slow log may miss the turn.  Uncertainties
-    are of type A and of one cycle: the noise of a reading (`reading_noise`) carried
-    through, nothing systematic.  K_ap by amplitudes is one of three readings of "slope of
-    the loop"; for an ellipse it is hypot(K', K''), and K' itself is the slope of the
-    regression of tension on strain.  A cycle that lacks up to a tenth of its readings has
-    them bridged by straight lines; one that lacks more is NaN throughout.
+    standard deviations of a reading, and a slow log misses the turn by up to half a
+    sample.  Uncertainties are of one cycle: the noise of a reading (`reading_noise`)
+    carried through and, for extremes, the turn between two samples; nothing else.  K_ap
+    by amplitudes is one of three readings of "slope of the loop"; for an ellipse it is
+    hypot(K', K''), and K' itself is the slope of the regression of tension on strain.  A
+    cycle that lacks up to a tenth of its readings has them bridged by straight lines; one
+    that lacks more is NaN throughout.
 
     Examples
     --------

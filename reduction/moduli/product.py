@@ -140,7 +140,8 @@ class PeakTrend:
     """Peak tension and modulus against the logarithm of cycle number, shape (n_specimens,).
 
     ``peak_tension_per_decade`` [N] and ``dynamic_modulus_per_decade`` [Pa] are
-    slopes against log10(cycle number); ``peak_tension_change`` [1] is last over first - 1.
+    slopes against log10(cycle number); ``peak_tension_change`` [1] is the
+    mean of the last tenth of the cycles over that of the first, minus 1.
     """
 
     peak_tension_per_decade: Floats

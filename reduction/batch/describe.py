@@ -1,0 +1,85 @@
+"""What goes with a product: the laboratory's words, and every setting that was in force."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from reduction.batch.survey import Survey
+from reduction.campaign.plan import Campaign
+from reduction.product import History, TestDescription
+from reduction.record import Floats
+from reduction.strain.model import StrainModel
+
+__all__ = ["describe", "settings_json"]
+
+
+def describe(campaign: Campaign, survey: Survey) -> TestDescription:
+    """What the laboratory kept about a test."""
+    plan = survey.plan
+    attributes = campaign.attributes | plan.attributes
+    if plan.part_of is not None:
+        attributes["part_of"] = plan.part_of
+    if plan.target_strain:
+        attributes["target_strain"] = " to ".join(f"{value:g}" for value in plan.target_strain)
+    return TestDescription(
+        campaign_id=campaign.id,
+        test_id=plan.id,
+        kind=plan.kind,
+        control=plan.control,
+        waveform=plan.waveform,
+        order=plan.order,
+        attributes=attributes,
+    )
+
+
+def _plain(values: Floats) -> list[float | None]:
+    """Numbers as JSON has them: a missing one is null."""
+    return [None if math.isnan(value) else value for value in values.tolist()]
+
+
+def settings_json(
+    campaign: Campaign, survey: Survey, models: Sequence[StrainModel], history: History | None
+) -> str:
+    """Every setting that was in force, so that a product says how it can be made again."""
+    plan = survey.plan
+    document: dict[str, Any] = {
+        "description": asdict(describe(campaign, survey)),
+        "target_strain": plan.target_strain,
+        "reduction": asdict(plan.settings),
+        "layouts": {
+            layout: campaign.layouts[layout].model_dump(exclude_defaults=True)
+            for _, layout in plan.files
+        },
+        "specimens": {name: asdict(campaign.specimens[name]) for name in plan.specimens},
+        "strain": {
+            model.specimen: {
+                "method": model.method,
+                "coefficients": model.coefficients,
+                "marks": [
+                    [test, hold, position, tension]
+                    for test, hold, position, tension in zip(
+                        model.mark_test,
+                        model.mark_hold,
+                        _plain(model.mark_position),
+                        _plain(model.mark_tension),
+                        strict=True,
+                    )
+                ],
+            }
+            for model in models
+        },
+        "history": None
+        if history is None
+        else {
+            "earlier_tests": history.earlier_tests,
+            "earlier_maximum_strain": _plain(history.earlier_maximum_strain),
+            "earlier_maximum_tension": _plain(history.earlier_maximum_tension),
+            "earlier_cycles": _plain(history.earlier_cycles),
+            "permanent_set": _plain(history.permanent_set),
+        },
+    }
+    return json.dumps(document, sort_keys=True, ensure_ascii=False, allow_nan=False)
