@@ -2,8 +2,9 @@
 
 Colours are those of Okabe and Ito [1]_, which readers with any common colour vision tell
 apart; yellow and black are left out because one fades on white and the other on a dark
-page.  A specimen or a test keeps its colour through a figure; an ascending branch is
-solid and a descending one dashed, so that print in grey loses nothing.
+page.  A test keeps its colour and its marker through the figures of a campaign, where the
+filling of the marker is the specimen's; an ascending branch is solid and a descending one
+dashed, so that print in grey loses nothing.
 
 References
 ----------
@@ -13,19 +14,21 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from reduction.units import UnitSystem, display_unit
 
 __all__ = [
     "COLOURS",
     "DASHES",
+    "FILLINGS",
     "PHASE_FILLS",
     "SYMBOLS",
     "Kind",
     "Shown",
     "colour",
     "faded",
+    "marker",
     "plot_text",
     "shorten",
     "shown",
@@ -35,6 +38,7 @@ __all__ = [
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C8C8C")
 DASHES = {"ascending": "solid", "descending": "dash"}
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "x", "star", "triangle-down")
+FILLINGS = ("", "-open", "-dot", "-open-dot")
 PHASE_FILLS = {
     "rest": "rgba(140,140,140,0.20)",
     "approach": "rgba(230,159,0,0.16)",
@@ -102,7 +106,10 @@ def shown(kind: Kind, system: UnitSystem) -> Shown:
 
 
 def colour(index: int) -> str:
-    """Return the colour of the specimen or test with this index; they repeat after seven."""
+    """Return the colour of the specimen or test with this index.
+
+    They repeat after seven; what may be more goes by `marker` too.
+    """
     return COLOURS[index % len(COLOURS)]
 
 
@@ -113,6 +120,18 @@ def symbol(index: int) -> str:
     only after fifty-six.
     """
     return SYMBOLS[index % len(SYMBOLS)]
+
+
+def marker(index: int, *, variant: int = 0, size: int = 6) -> dict[str, Any]:
+    """Return the marker of a test: colour and symbol by its index, filling by its specimen.
+
+    Examples
+    --------
+    >>> marker(8, variant=1)
+    {'color': '#D55E00', 'symbol': 'circle-open', 'size': 6}
+    """
+    filling = FILLINGS[variant % len(FILLINGS)]
+    return {"color": colour(index), "symbol": symbol(index) + filling, "size": size}
 
 
 def faded(hex_colour: str, alpha: float) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from reduction.record import Floats
 from reduction.report.figure import Figure, Trace, axis, make_figure, plain_numbers
-from reduction.report.style import Kind, colour, plot_text, shown, symbol
+from reduction.report.style import Kind, marker, plot_text, shown
 from reduction.report.view import TestView, all_specimens, any_synthetic
 
 __all__ = ["draw_amplitude_pairs"]
@@ -22,21 +22,29 @@ def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
         ("test_hysteresis_energy", "hysteresis energy", "energy"),
     )
     found = []
+    names = all_specimens(tests)
     for name, words, kind in panels:
         data: list[Trace] = []
         units = tests[0].units if tests else "si"
         unit = shown(kind, units)
-        for order, specimen in enumerate(all_specimens(tests)):
-            for index, view in enumerate(tests):
+        in_legend: set[str] = set()
+        drawn: dict[str, int] = {}
+        for index, view in enumerate(tests):
+            for order, specimen in enumerate(names):
                 row = _summary(view, specimen, name)
-                if row is not None:
+                if row is not None and np.isfinite(row[2]):
                     data.append(_point(view.id, specimen, (index, order), row, unit.factor))
+                    data[-1]["showlegend"] = view.id not in in_legend
+                    in_legend.add(view.id)
+                    drawn[specimen] = order
+        if len(drawn) > 1:
+            data += [_entry(specimen, order) for specimen, order in drawn.items()]
         figure = make_figure(
             f"campaign-{name}", f"{words.capitalize()} of each test",
             f"{words.capitalize()}, mean over the cycles of a test, against mean strain. The"
             " level bar is the strain range of the cycles: tests at one mean strain and two"
-            " amplitudes stand above each other. Upright bar: ± 1 standard uncertainty. Markers: "
-            + ", ".join(f"{symbol(k)} {name}" for k, name in enumerate(all_specimens(tests))) + ".",
+            " amplitudes stand above each other. Upright bar: ± 1 standard uncertainty. Colour and"
+            " shape of a marker are the test's, its filling the specimen's (grey in the legend).",
             data, synthetic=any_synthetic(tests), height=400,
             xaxis=axis("mean strain [%]"), yaxis=axis(unit.label(words)),
         )  # fmt: skip
@@ -57,19 +65,29 @@ def _summary(view: TestView, specimen: str, name: str) -> Floats | None:
 
 
 def _point(test: str, specimen: str, places: tuple[int, int], row: Floats, factor: float) -> Trace:
-    """Return one test and specimen: the colour is the test's, the marker the specimen's."""
-    tint = colour(places[0])
-    bars = {"type": "data", "color": tint, "thickness": 1, "width": 3}
+    """Return one test and specimen; the legend has one entry for all specimens of a test."""
+    look = marker(places[0], variant=places[1], size=9)
+    bars = {"type": "data", "color": look["color"], "thickness": 1, "width": 3}
     mean, amplitude = 100.0 * row[:1], 100.0 * row[1:2]
     return {
         "type": "scatter",
         "mode": "markers",
-        "name": plot_text(test if places[1] == 0 else f"{test}, {specimen}"),
+        "name": plot_text(test),
         "legendgroup": plot_text(test),
-        "showlegend": places[1] == 0,
+        "text": plot_text(f"{test}, {specimen}", 80),
         "x": plain_numbers(mean),
         "y": plain_numbers(factor * row[2:3]),
         "error_x": {**bars, "array": plain_numbers(amplitude)},
         "error_y": {**bars, "array": plain_numbers(factor * row[3:4])},
-        "marker": {"color": tint, "symbol": symbol(places[1]), "size": 9},
+        "marker": look,
     }
+
+
+def _entry(specimen: str, order: int) -> Trace:
+    """Return an entry of the legend that says which filling is the specimen's."""
+    look = {**marker(0, variant=order, size=9), "color": "#8C8C8C"}
+    name = plot_text(specimen)
+    return {
+        "type": "scatter", "mode": "markers", "name": name, "x": [None], "y": [None],
+        "marker": look,
+    }  # fmt: skip

@@ -10,7 +10,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ from reduction.report.figure import (
     make_figure,
     plain_numbers,
 )
-from reduction.report.style import DASHES, colour, plot_text, shown, symbol
+from reduction.report.style import DASHES, colour, marker, plot_text, shown
 from reduction.report.view import TestView, all_specimens, any_synthetic
 from reduction.units import UnitSystem
 from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
@@ -48,7 +48,7 @@ def draw_all_moduli(tests: Sequence[TestView]) -> list[Figure]:
             if envelope is not None:
                 data.append(envelope)
         for index, view in enumerate(tests):
-            data += list(_curves(view, specimen, colour(index), index))
+            data += _curves(view, specimen, index)
         if not data:
             continue
         units = tests[0].units
@@ -91,9 +91,10 @@ def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
                         alpha=0.2,
                     ),
                     line(
-                        x, ratio[at, place], name=view.id, colour=colour(index), dash=DASHES[branch]
+                        x, ratio[at, place], name=view.id, colour=colour(index),
+                        dash=DASHES[branch], **_marked(index),
                     ),
-                ]
+                ]  # fmt: skip
             figure = make_figure(
                 f"campaign-ratio-{len(found)}",
                 f"{_only(tests, pair)}{branch}, {pair[0]} over {pair[1]}",
@@ -122,18 +123,15 @@ def _compared(view: TestView) -> list[tuple[str, str]]:
 
 def draw_parts(tests: Sequence[TestView]) -> list[Figure]:
     """Draw the logs that repeat parts of one long test together, one figure a specimen."""
-    groups: dict[str, list[TestView]] = {}
-    for view in tests:
+    groups: dict[str, list[tuple[int, TestView]]] = {}
+    for index, view in enumerate(tests):
         if view.attribute("part_of"):
-            groups.setdefault(view.attribute("part_of"), []).append(view)
+            groups.setdefault(view.attribute("part_of"), []).append((index, view))
     found: list[Figure] = []
-    for whole, parts in groups.items():
+    for whole, members in groups.items():
+        parts = [view for _, view in members]
         for specimen in all_specimens(parts):
-            data = [
-                trace
-                for index, view in enumerate(parts)
-                for trace in _curves(view, specimen, colour(index), index)
-            ]
+            data = [trace for index, view in members for trace in _curves(view, specimen, index)]
             if data and len(parts) > 1:
                 found.append(
                     make_figure(
@@ -153,16 +151,18 @@ def draw_parts(tests: Sequence[TestView]) -> list[Figure]:
 
 def draw_static_dynamic(tests: Sequence[TestView]) -> list[Figure]:
     """Draw interval moduli of stepwise tests over the curves of the cyclic ones."""
-    stepwise = [view for view in tests if view.array("interval_modulus") is not None]
-    dynamic = [view for view in tests if view.array("tangent_modulus") is not None]
+    places = list(enumerate(tests))
+    stepwise = [(k, view) for k, view in places if view.array("interval_modulus") is not None]
+    dynamic = [(k, view) for k, view in places if view.array("tangent_modulus") is not None]
     if not stepwise or not dynamic:
         return []
     units = tests[0].units
     in_stress, in_strain = shown("stress", units), shown("strain", units)
+    names = all_specimens(tests)
     found = []
     for place, branch in enumerate(BRANCH_NAMES):
         data: list[Trace] = []
-        for index, view in enumerate(dynamic):
+        for index, view in dynamic:
             strain, modulus = view.array("strain_bin"), view.array("tangent_modulus")
             if strain is None or modulus is None:
                 continue
@@ -171,10 +171,10 @@ def draw_static_dynamic(tests: Sequence[TestView]) -> list[Figure]:
                     line(
                         strain * in_strain.factor, modulus[order, place] * in_stress.factor,
                         name=f"{view.id}, {specimen}", colour=colour(index), dash=DASHES[branch],
-                        width=1.4,
+                        width=1.4, **_marked(index, names.index(specimen)),
                     )
                 )  # fmt: skip
-        for index, view in enumerate(stepwise):
+        for index, view in stepwise:
             data.append(_static(view, branch, index, in_stress.factor))
         found.append(
             make_figure(
@@ -206,25 +206,34 @@ def _static(view: TestView, branch: str, index: int, factor: float) -> Trace:
         "name": plot_text(f"{view.id} (static)"),
         "x": plain_numbers(100.0 * strain[chosen]),
         "y": plain_numbers(modulus[chosen] * factor),
-        "marker": {"symbol": symbol(index), "size": 10, "color": "#8C8C8C", "line": {"width": 1}},
+        "marker": {**marker(index, size=11), "line": {"width": 1, "color": "#8C8C8C"}},
     }
 
 
-def _curves(view: TestView, specimen: str, tint: str, index: int) -> Iterator[Trace]:
+def _curves(view: TestView, specimen: str, index: int) -> list[Trace]:
     strain, modulus = view.array("strain_bin"), view.array("tangent_modulus")
     if strain is None or modulus is None or specimen not in view.specimens:
-        return
+        return []
     unit = shown("stress", view.units)
     row = view.specimens.index(specimen)
-    for place, branch in enumerate(BRANCH_NAMES):
-        if np.isfinite(modulus[row, place]).any():
-            yield line(
-                100.0 * strain, modulus[row, place] * unit.factor,
-                name=view.id if place == 0 else f"{view.id}, {branch}", colour=tint,
-                dash=DASHES[branch], legendgroup=plot_text(view.id), showlegend=place == 0,
-                mode="lines+markers",
-                marker={"symbol": symbol(index), "size": 6, "color": tint, "maxdisplayed": 6},
-            )  # fmt: skip
+    given = [place for place in range(2) if np.isfinite(modulus[row, place]).any()]
+    return [
+        line(
+            100.0 * strain, modulus[row, place] * unit.factor,
+            name=view.id if place == given[0] else f"{view.id}, {BRANCH_NAMES[place]}",
+            colour=colour(index), dash=DASHES[BRANCH_NAMES[place]],
+            legendgroup=plot_text(view.id), showlegend=place == given[0], **_marked(index),
+        )
+        for place in given
+    ]  # fmt: skip
+
+
+def _marked(index: int, variant: int = 0) -> dict[str, Any]:
+    """Return what puts a few markers of a test on its line: colours alone are seven."""
+    return {
+        "mode": "lines+markers",
+        "marker": {**marker(index, variant=variant), "maxdisplayed": 6},
+    }
 
 
 def _envelope(tests: Sequence[TestView], specimen: str, branch: str) -> Trace | None:
