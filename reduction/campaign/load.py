@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from reduction.campaign.faults import faults_of, listed, open_questions
 from reduction.campaign.marks import read_marks
 from reduction.campaign.model import (
     CampaignFile,
@@ -50,19 +51,20 @@ def _parse(path: Path) -> CampaignFile:
         ) from error  # fmt: skip
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise _in_toml(path, "the campaign is not TOML", found=str(error)) from error
+    places = open_questions(path.parent, table)
+    if places:
+        count = f"{len(places)} values are" if len(places) > 1 else "1 value is"
+        raise _in_toml(path, listed(f"{count} still '?', first {places[0]}", places))
     try:
         return CampaignFile.model_validate(table)
     except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"])
-        found = "" if first["type"] == "missing" else repr(first["input"])[:200]
-        raise _in_toml(
-            path,
-            f"{error.error_count()} setting(s) cannot be used, first '{place}'",
-            found=found or None,
-            needed=first["msg"],
-            hint="`reduction schema` prints every key that is known.",
-        ) from error
+        faults = faults_of(error, table)
+        count = f"{len(faults)} settings" if len(faults) > 1 else "1 setting"
+        headline = (
+            f"{count} cannot be used, first '{faults[0].place}' "
+            "(`reduction schema` prints every key that is known)"
+        )
+        raise _in_toml(path, listed(headline, faults)) from error
 
 
 def _length(text: str, where: str, path: Path) -> float:
@@ -239,7 +241,8 @@ def load_campaign(path: Path) -> Campaign:
     Raises
     ------
     SettingsError
-        If a key, a value or a unit cannot be used, with its place.
+        If a value is still ``?``, or a key, a value or a unit cannot be used: up to ten
+        places, one a line.
     LogError
         If a file that it names is missing or cannot be read.
     """

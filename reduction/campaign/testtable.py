@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from reduction.campaign.faults import faults_of
 from reduction.campaign.model import Identifier, TestSection
 from reduction.errors import LogError
 
@@ -84,14 +85,15 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
         name = cells["id"].strip()
         if name in tests:
             raise LogError(path, "a test stands twice", row=number, channel="id", found=repr(name))
+        filled = _cells(path, number, cells)
         try:
             identifier.validate_python(name)
-            tests[name] = TestSection.model_validate(_cells(path, number, cells))
+            tests[name] = TestSection.model_validate(filled)
         except ValidationError as error:
-            first = error.errors()[0]
-            place = ".".join(str(part) for part in first["loc"]) or "id"
+            first, *others = faults_of(error, filled)
             raise LogError(
-                path, "a row of tests cannot be used", row=number, channel=place,
-                found=repr(first["input"])[:200], needed=first["msg"],
+                path, "a row of tests cannot be used", row=number, channel=first.place or "id",
+                found=first.found or None, needed=first.needed.removeprefix("Input should be "),
+                hint=f"Also {', '.join(map(str, others))}." if others else None,
             ) from error  # fmt: skip
     return tests

@@ -111,8 +111,8 @@ def test_a_test_in_both_places_is_refused(folder):
     ("text", "message"),
     [
         ("campaign = [", "the campaign is not TOML"),
-        ("[campaign]\nid = 'c'\n", r"setting\(s\) cannot be used, first 'campaign.title'"),
-        (BASE + TEST + "colour = 'red'\n", r"first 'tests.+colour'; found 'red'"),
+        ("[campaign]\nid = 'c'\n", r"\n  campaign.title: is required\n  specimens: is required$"),
+        (BASE + TEST + "colour = 'red'\n", r"\n  tests.T.colour: is not a known key; found 'red'$"),
         (BASE, "the campaign has no tests"),
         (BASE + '[tests."a/b"]\nfile = "T.csv"\n', "cannot be used"),
         (BASE + TEST + "layout = 'm'\n", "test 'T' has no layout; found 'm'; needed one of"),
@@ -142,6 +142,109 @@ def test_a_test_in_both_places_is_refused(folder):
 def test_a_campaign_that_cannot_be_used_says_where_and_why(folder, text, message):
     with pytest.raises((SettingsError, LogError), match=message):
         load(folder, text)
+
+
+def faults(folder, text):
+    """First line, and the lines below it, of what is said about a campaign."""
+    with pytest.raises(SettingsError) as raised:
+        load(folder, text)
+    assert raised.value.exit_status == 2
+    first, *below = str(raised.value).splitlines()
+    return first, [line.strip() for line in below]
+
+
+def test_all_faults_are_told_one_a_line(folder):
+    first, below = faults(
+        folder,
+        BASE.replace('"rubber tether"', '"rubber"')
+        .replace('unit = "lbf"', 'unit = "lbf", factor = -1')
+        .replace(', datum = "pin-to-pin"', "")
+        + TEST
+        + "n_cycles = 0\nfile_name = 'T.csv'\n"
+        + f"[tests.U]\nfile = 3\ncontrol = '{'x' * 200}'\n",
+    )
+    assert "campaign.toml: 6 settings cannot be used, first 'specimens.a.kind' (" in first
+    kinds = "'rubber tether', 'stretch hose', 'rope', 'wire' or 'elastomer'"
+    assert below[0] == f"specimens.a.kind: Input should be {kinds}; found 'rubber'"
+    assert below[1:4] == [
+        "layouts.l.channels.tension.1.factor: Input should be greater than 0; found -1",
+        "tests.T.n_cycles: Input should be greater than or equal to 1; found 0",
+        "tests.T.file_name: is not a known key; found 'T.csv'",
+    ]
+    assert sorted(below[4:]) == [
+        f"tests.U.control: Input should be 'position' or 'load'; found '{55 * 'x'}...'",
+        "tests.U.file: Input should be a valid string or a valid tuple; found 3",
+    ]
+
+
+def test_more_than_ten_faults_are_counted(folder):
+    first, below = faults(folder, BASE + TEST + "".join(f"k{n} = {n}\n" for n in range(13)))
+    assert "13 settings cannot be used" in first
+    assert len(below) == 11 and below[9:] == [
+        "tests.T.k9: is not a known key; found 9",
+        "and 3 more",
+    ]
+
+
+def test_a_long_value_is_cut_and_a_rule_speaks_for_itself(folder):
+    _, below = faults(folder, BASE + TEST + f"medium = {list(range(1000))}\n")
+    assert below[0].endswith("; found [0, 1, 2, 3, 4, 5, ...]")
+    _, below = faults(folder, BASE.replace(', datum = "pin-to-pin"', "") + TEST)
+    assert below[0].startswith("layouts.l: the position channel has no datum; found crosshead")
+
+
+def test_all_faults_of_a_row_of_tests_are_told(folder):
+    (folder / "tests.csv").write_text("id,file,colour,n_cycles\nT,T.csv,red,0\n")
+    words = (
+        r"tests.csv:2 \[n_cycles\]: a row .* needed greater than or equal to 1. "
+        "Also colour: is not a known key; found 'red'.$"
+    )
+    with pytest.raises(LogError, match=words):
+        load(folder, 'tests = "tests.csv"\n' + BASE)
+
+
+def test_open_questions_are_named_wherever_they_stand(folder):
+    (folder / "tests.csv").write_text("id,file,specimens,marks\nT,T.csv,?;?,m.csv\nU,T.csv,a,\n")
+    (folder / "m.csv").write_text(MARKS.replace("12", " ? ") + "?,a,max,2,10,12\n")
+    text = BASE.replace('title = "t"', 'title = "?"\nsource = "why?"')
+    text = text.replace("[specimens.a]", '[specimens."?"]').replace('"1 inch", "1.2 inch"', '"?"')
+    text = text.replace('unit = "s"', 'unit = "?"').replace(
+        "[layouts.l.ch", 'missing = ["?"]\n[layouts.l.ch'
+    )
+    first, below = faults(folder, 'tests = "tests.csv"\n' + text)
+    assert first.endswith("campaign.toml: 7 values are still '?', first campaign.title")
+    assert below == [
+        "campaign.title",
+        "specimens.?",
+        "specimens.?.diameter",
+        "layouts.l.channels.time.unit",
+        "tests.csv:2 [specimens]",
+        "m.csv:2 [far_thimble_ft]",
+        "m.csv:3 [test]",
+    ]
+
+
+def test_one_open_question_is_told_before_other_faults(folder):
+    text = BASE.replace('title = "t"', 'title = "?"') + "colour = 1\n" + TEST
+    assert faults(folder, text) == (
+        f"{folder / 'campaign.toml'}: 1 value is still '?', first campaign.title",
+        ["campaign.title"],
+    )
+
+
+def test_more_than_ten_open_questions_are_counted(folder):
+    steps = "".join(f"[[tests.T.steps]]\nname='s{n}'\nfrom=1\nto='?'\n" for n in range(12))
+    first, below = faults(folder, BASE + TEST + steps)
+    assert "12 values are still '?', first tests.T.steps.0.to" in first
+    assert below[9:] == ["tests.T.steps.9.to", "and 2 more"]
+
+
+def test_tables_that_cannot_be_read_are_left_to_their_readers(folder):
+    (folder / "tests.csv").write_bytes(b"id,file\n\xff,?\n")
+    with pytest.raises(LogError, match="the table of tests is not UTF-8 text"):
+        load(folder, 'tests = "tests.csv"\n' + BASE)
+    with pytest.raises(SettingsError, match="lies outside the campaign folder"):
+        load(folder, 'tests = "../tests.csv"\n' + BASE)
 
 
 def test_a_missing_campaign_says_how_to_start(tmp_path):
