@@ -18,11 +18,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reduction.errors import DataError
+from reduction.moduli.cells import sums_by_cell
 from reduction.moduli.grid import StrainGrid
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, Integers, freeze_arrays
 
 __all__ = ["BranchMoments", "LocalFits", "accumulate_moments", "fit_windows"]
 
@@ -70,6 +70,11 @@ class BranchMoments:
         """Moments of the curves from start to stop, stop not included."""
         return BranchMoments(self.sums[:, start:stop], self.grid, self.tension_reference)
 
+    def followed_by(self, other: BranchMoments) -> BranchMoments:
+        """Curves of both, one after the other, of one grid and reference."""
+        both = np.concatenate([self.sums, other.sums], axis=1)
+        return BranchMoments(both, self.grid, self.tension_reference)
+
 
 @dataclass(frozen=True)
 class LocalFits:
@@ -93,7 +98,7 @@ def accumulate_moments(
     strain: Floats,
     tension: Floats,
     *,
-    curve: NDArray[np.int64],
+    curve: Integers,
     n_curves: int,
     grid: StrainGrid,
     tension_reference: float,
@@ -145,40 +150,49 @@ def accumulate_moments(
     """
     position = (strain - grid.low) * (1 / grid.width)
     y = tension - tension_reference
-    known = (curve >= 0) & np.isfinite(position) & np.isfinite(y)
-    inside = known & (position >= 0) & (position < grid.n_bins)
-    n_inside = int(np.count_nonzero(inside))
-    n_outside = int(np.count_nonzero(known)) - n_inside
-    if n_inside < inside.size:
+    # comparisons with NaN are false
+    inside = (position >= 0) & (position < grid.n_bins) & np.isfinite(y) & (curve >= 0)
+    n_outside = 0
+    if not inside.all():
+        known = (curve >= 0) & np.isfinite(position) & np.isfinite(y)
+        n_outside = int(np.count_nonzero(known) - np.count_nonzero(inside))
         position, y, curve = position[inside], y[inside], curve[inside]
 
     n_padded = grid.n_bins + 2 * grid.half_window
     n_cells = n_curves * n_padded
-    cell = curve * n_padded + position.astype(np.int64) + grid.half_window
+    cell = curve * n_padded + position.astype(np.int32) + grid.half_window
+    adds = sums_by_cell(cell, n_cells)
     x = position - grid.n_bins / 2
     x2, xy = x * x, x * y
     sums = np.empty((_N_SUMS, n_cells))
-    sums[0] = np.bincount(cell, minlength=n_cells)
-    for row, weight in enumerate((x, x2, x2 * x, x2 * x2, y, xy, x * xy, y * y), start=1):
-        sums[row] = np.bincount(cell, weights=weight, minlength=n_cells)
+    for row, value in enumerate((np.ones_like(x), x, x2, x2 * x, x2 * x2, y, xy, x * xy, y * y)):
+        sums[row] = adds @ value
     return BranchMoments(
         sums.reshape(_N_SUMS, n_curves, n_padded), grid, tension_reference
     ), n_outside
 
 
-def _window_sums(sums: Floats, n_window: int) -> Floats:
-    """Sums over every run of ``n_window`` neighbours, by doubling: few adds, no cancellation."""
-    n_out = sums.shape[-1] - n_window + 1
-    total, start, step = np.zeros((*sums.shape[:-1], n_out)), 0, 1
-    while n_window:
-        if n_window & 1:
-            total += sums[..., start : start + n_out]
-            start += step
-        n_window >>= 1
-        if n_window:
-            sums = sums[..., :-step] + sums[..., step:]
-            step *= 2
+def _plus_later(row: Floats, later: Floats, by: int) -> Floats:
+    """Each value and the one ``by`` places on in the other row, nothing beyond its end."""
+    total = row.copy()
+    total[:-by] += later[by:]
     return total
+
+
+def _window_sums(sums: Floats, n_window: int) -> Floats:
+    """Sums over every run of an odd number of neighbours, by doubling: no cancellation."""
+    n_out = sums.shape[-1] - n_window + 1
+    windows = np.empty((*sums.shape[:-1], n_out))
+    for of_curves, window in zip(sums, windows, strict=True):
+        # curves end to end are one long row; windows over the end of a curve are left out below
+        total = run = of_curves.ravel()
+        covered = width = 1
+        while covered < n_window:
+            run, width = _plus_later(run, run, width), 2 * width
+            if n_window & width:
+                total, covered = _plus_later(total, run, covered), covered + width
+        window[:] = total.reshape(of_curves.shape)[:, :n_out]
+    return windows
 
 
 def fit_windows(moments: BranchMoments, *, minimum_count: int) -> LocalFits:
@@ -253,24 +267,26 @@ def fit_windows(moments: BranchMoments, *, minimum_count: int) -> LocalFits:
     n, sx, sxx, sxxx, sxxxx, sy, sxy, sxxy, syy = _window_sums(moments.sums, n_window)
     centre = np.arange(grid.n_bins) + 0.5 - grid.n_bins / 2
     with np.errstate(divide="ignore", invalid="ignore"):
+        per_n = 1 / n
         mean, level = sx / n, sy / n
         s2 = sxx - mean * sx
         s3 = sxxx - mean * (3 * sxx - 2 * mean * sx)
         s4 = sxxxx - mean * (4 * sxxx - mean * (6 * sxx - 3 * mean * sx))
         suy = sxy - mean * sy
-        skew = s3 / s2
-        bend_moment = s4 - s2 * s2 / n - skew * s3
+        per_s2 = 1 / s2
+        skew = s3 * per_s2
+        bend_moment = s4 - s2 * s2 * per_n - skew * s3
         bend_tension = sxxy - mean * (2 * sxy - mean * sy) - s2 * level - skew * suy
-        has_bend = bend_moment > _LEAST_BEND * n * n_window**4 / 180
-        bend_moment = np.where(has_bend, bend_moment, np.inf)
-        bend = bend_tension / bend_moment
-        straight = suy / s2
+        has_bend = bend_moment > (_LEAST_BEND * n_window**4 / 180) * n
+        per_bend = np.where(has_bend, 1 / bend_moment, 0.0)
+        bend = bend_tension * per_bend
+        straight = suy * per_s2
         offset = centre - mean
         tilt = 2 * offset - skew
-        arc = offset * offset - s2 / n - skew * offset
+        arc = offset * offset - s2 * per_n - skew * offset
         supported = (
             (n >= minimum_count)
-            & (s2 >= _LEAST_SPREAD * n * n_window**2 / 12)
+            & (s2 >= (_LEAST_SPREAD * n_window**2 / 12) * n)
             & (np.abs(offset) <= _FURTHEST_CENTRE * n_window)
         )
         squares = np.where(supported, syy - level * sy - straight * suy - bend * bend_tension, 0.0)
@@ -279,12 +295,12 @@ def fit_windows(moments: BranchMoments, *, minimum_count: int) -> LocalFits:
         variance = np.maximum(squares.sum(axis=-1, keepdims=True), 0.0) / total_freedom
         variance = np.where(total_freedom > 0, variance, np.nan)
         slope = straight + bend * tilt
-        slope_variance = variance * (1 / s2 + tilt * tilt / bend_moment)
+        slope_variance = variance * (per_s2 + tilt * tilt * per_bend)
         tension = level + straight * offset + bend * arc + moments.tension_reference
-        tension_variance = variance * (1 / n + offset * offset / s2 + arc * arc / bend_moment)
+        tension_variance = variance * (per_n + offset * offset * per_s2 + arc * arc * per_bend)
     return LocalFits(
-        slope=np.where(supported, slope / grid.width, np.nan),
-        slope_variance=np.where(supported, slope_variance / grid.width**2, np.nan),
+        slope=np.where(supported, slope * (1 / grid.width), np.nan),
+        slope_variance=np.where(supported, slope_variance * grid.width**-2, np.nan),
         tension=np.where(supported, tension, np.nan),
         tension_variance=np.where(supported, tension_variance, np.nan),
     )

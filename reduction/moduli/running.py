@@ -52,7 +52,7 @@ class RunningStatistics:
         n_curves = known.sum(axis=0).astype(np.float64)
         mean = np.where(known, values, 0.0).sum(axis=0) / np.maximum(n_curves, 1)
         return cls(
-            count=np.tensordot(weight, known, axes=1),
+            count=np.where(known, weight.reshape(-1, *[1] * (values.ndim - 1)), 0.0).sum(axis=0),
             n_curves=n_curves,
             mean=mean,
             squares=(np.where(known, values - mean, 0.0) ** 2).sum(axis=0),

@@ -11,10 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.blocks import run_blocks
 from reduction.checks import as_positive, as_same_shape
 from reduction.cycles.product import Cycles
 from reduction.errors import DataError
@@ -24,7 +27,7 @@ from reduction.moduli.groups import CycleGroups, select_cycles
 from reduction.moduli.moments import accumulate_moments, fit_windows
 from reduction.moduli.product import ModulusCurves
 from reduction.moduli.running import RunningStatistics
-from reduction.record import Floats, Integers
+from reduction.record import Bools, Floats, Integers
 from reduction.settings import ModulusSettings
 
 __all__ = ["tangent_curves"]
@@ -47,7 +50,7 @@ def pair_specimens(
 
 @dataclass(frozen=True)
 class _SpecimenCurves:
-    """What one specimen gives: statistics (2, n_bins) [N] and selected curves."""
+    """What one specimen gives in a block: statistics (2, n_bins) [N] and selected curves."""
 
     trimmed: RunningStatistics
     untrimmed: RunningStatistics
@@ -56,8 +59,83 @@ class _SpecimenCurves:
     selected_variance: Floats
     n_outside: int
 
+    def __add__(self, later: _SpecimenCurves) -> _SpecimenCurves:
+        """Both blocks together, in the order of the record."""
+        return _SpecimenCurves(
+            self.trimmed + later.trimmed,
+            self.untrimmed + later.untrimmed,
+            self.tension + later.tension,
+            np.concatenate([self.selected, later.selected]),
+            np.concatenate([self.selected_variance, later.selected_variance]),
+            self.n_outside + later.n_outside,
+        )
 
-def _reduce_specimen(
+
+def _tension_reference(tension: Floats, cycles: Cycles) -> float:
+    ends = tension[cycles.branch_first]
+    return float(np.nanmean(ends)) if np.isfinite(ends).any() else 0.0
+
+
+def _curve_of_sample(
+    cycles: Cycles, groups: CycleGroups, start: int, stop: int, samples: slice
+) -> Integers:
+    """Curve of each sample of a block: trimmed parts first, then the ends; -1 for none."""
+    number, branch = cycles.cycle_number[samples], cycles.branch[samples]
+    group = groups.of_cycle[number] - start
+    curve = 2 * group + branch - 1
+    curve[~cycles.is_constant_rate[samples]] += 2 * (stop - start)
+    outside = (group < 0) | (group >= stop - start) | (branch == 0)
+    if outside.any():
+        curve[outside] = -1
+    return curve
+
+
+def _reduce_block(
+    strain: Floats,
+    tension: Floats,
+    *,
+    curve: Integers,
+    reference: float,
+    grid: StrainGrid,
+    minimum_count: int,
+    weight: Floats,
+    later: Bools,
+    chosen: Integers,
+) -> _SpecimenCurves:
+    """Curves of one block and specimen; ``later`` are the groups after break-in."""
+    n_groups = weight.size
+    moments, n_outside = accumulate_moments(
+        strain,
+        tension,
+        curve=curve,
+        n_curves=4 * n_groups,
+        grid=grid,
+        tension_reference=reference,
+    )
+    shape = (2, n_groups, 2, grid.n_bins)
+    trimmed = moments.curves(0, 2 * n_groups)
+    whole = trimmed + moments.curves(2 * n_groups, 4 * n_groups)
+    fits = fit_windows(trimmed.followed_by(whole), minimum_count=minimum_count)
+    slope, slope_variance = fits.slope.reshape(shape), fits.slope_variance.reshape(shape)
+
+    def statistics(values: Floats, variance: Floats, which: int) -> RunningStatistics:
+        return RunningStatistics.of(
+            values.reshape(shape)[which, later],
+            variance.reshape(shape)[which, later],
+            weight=weight[later],
+        )
+
+    return _SpecimenCurves(
+        trimmed=statistics(slope, slope_variance, 0),
+        untrimmed=statistics(slope, slope_variance, 1),
+        tension=statistics(fits.tension, fits.tension_variance, 0),
+        selected=slope[0, chosen],
+        selected_variance=slope_variance[0, chosen],
+        n_outside=n_outside,
+    )
+
+
+def _reduce_specimens(
     strain: Floats,
     tension: Floats,
     *,
@@ -66,57 +144,30 @@ def _reduce_specimen(
     grid: StrainGrid,
     minimum_count: int,
     selected: Integers,
-) -> _SpecimenCurves:
-    ends = tension[cycles.branch_first]
-    reference = float(np.nanmean(ends)) if np.isfinite(ends).any() else 0.0
+) -> list[_SpecimenCurves]:
+    references = [_tension_reference(row, cycles) for row in tension]
     sizes = np.diff(np.append(groups.first, cycles.n_cycles)).astype(np.float64)
-    quantities = ("trimmed", "untrimmed", "tension")
-    statistics: dict[str, RunningStatistics] = {}
-    kept, kept_variance, n_outside = [], [], 0
-    for start, stop, samples in groups.blocks(cycles, grid.n_bins):
-        n_groups = stop - start
-        group = groups.of_cycle[cycles.cycle_number[samples]] - start
-        branch = cycles.branch[samples]
-        # trimmed parts first, then the ends, so that each half is one slice
-        curve = 2 * group + branch - 1
-        curve[~cycles.is_constant_rate[samples]] += 2 * n_groups
-        curve[(group < 0) | (group >= n_groups) | (branch == 0)] = -1
-        moments, outside = accumulate_moments(
-            strain[samples],
-            tension[samples],
-            curve=curve,
-            n_curves=4 * n_groups,
-            grid=grid,
-            tension_reference=reference,
-        )
-        n_outside += outside
-        shape = (n_groups, 2, grid.n_bins)
-        trimmed = moments.curves(0, 2 * n_groups)
-        whole = trimmed + moments.curves(2 * n_groups, 4 * n_groups)
-        fits = fit_windows(trimmed, minimum_count=minimum_count)
-        whole_fits = fit_windows(whole, minimum_count=minimum_count)
 
-        slope, slope_variance = fits.slope.reshape(shape), fits.slope_variance.reshape(shape)
-        values = (
-            (slope, slope_variance),
-            (whole_fits.slope.reshape(shape), whole_fits.slope_variance.reshape(shape)),
-            (fits.tension.reshape(shape), fits.tension_variance.reshape(shape)),
-        )
-        later = ~groups.is_break_in[start:stop]
-        for name, (value, variance) in zip(quantities, values, strict=True):
-            block = RunningStatistics.of(
-                value[later], variance[later], weight=sizes[start:stop][later]
+    def reduce_block(block: tuple[int, int, slice]) -> list[_SpecimenCurves]:
+        start, stop, samples = block
+        curve = _curve_of_sample(cycles, groups, start, stop, samples)
+        return [
+            _reduce_block(
+                strain[row, samples],
+                tension[row, samples],
+                curve=curve,
+                reference=reference,
+                grid=grid,
+                minimum_count=minimum_count,
+                weight=sizes[start:stop],
+                later=~groups.is_break_in[start:stop],
+                chosen=selected[(selected >= start) & (selected < stop)] - start,
             )
-            statistics[name] = statistics[name] + block if name in statistics else block
-        chosen = selected[(selected >= start) & (selected < stop)] - start
-        kept.append(slope[chosen])
-        kept_variance.append(slope_variance[chosen])
-    return _SpecimenCurves(
-        **statistics,
-        selected=np.concatenate(kept),
-        selected_variance=np.concatenate(kept_variance),
-        n_outside=n_outside,
-    )
+            for row, reference in enumerate(references)
+        ]
+
+    blocks = run_blocks(reduce_block, groups.blocks(cycles, grid.n_bins))
+    return [reduce(add, of_specimen) for of_specimen in zip(*blocks, strict=True)]
 
 
 def tangent_curves(
@@ -224,18 +275,15 @@ def tangent_curves(
     groups = CycleGroups.of(n_cycles, break_in_cycles, grid.cycles_pooled)
     numbers = select_cycles(n_cycles, longest=settings.selected_cycles)
     selected = np.unique(groups.of_cycle[numbers])
-    specimens = [
-        _reduce_specimen(
-            strain[row],
-            tension[row],
-            cycles=cycles,
-            groups=groups,
-            grid=grid,
-            minimum_count=settings.minimum_count,
-            selected=selected,
-        )
-        for row in range(areas.size)
-    ]
+    specimens = _reduce_specimens(
+        strain,
+        tension,
+        cycles=cycles,
+        groups=groups,
+        grid=grid,
+        minimum_count=settings.minimum_count,
+        selected=selected,
+    )
     per_area = 1 / areas[:, None, None]
     trimmed = [one.trimmed for one in specimens]
     untrimmed = [one.untrimmed for one in specimens]

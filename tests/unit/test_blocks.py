@@ -1,0 +1,72 @@
+"""Blocks side by side: order, errors, and one answer on any number of processors."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+
+from reduction import blocks
+from reduction.blocks import run_blocks
+from reduction.cycles.product import Cycles
+from reduction.moduli.tangent import tangent_curves
+from reduction.settings import ModulusSettings
+
+
+def test_results_come_in_the_order_of_the_items() -> None:
+    assert run_blocks(lambda item: item**2, range(100)) == [item**2 for item in range(100)]
+
+
+def test_no_items_give_no_results() -> None:
+    assert run_blocks(str, []) == []
+
+
+@pytest.mark.parametrize("n_processors", [1, 4])
+def test_the_error_of_the_first_item_that_fails_is_raised(
+    n_processors: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(blocks, "_n_processors", lambda: n_processors)
+    with pytest.raises(KeyError, match="2"):
+        run_blocks({0: 0, 1: 1}.__getitem__, [0, 1, 2, 3])
+
+
+def test_processors_are_counted_where_there_is_no_affinity(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(os, "cpu_count", lambda: None)
+    assert run_blocks(str, [1, 2]) == ["1", "2"]
+
+
+def test_the_moduli_have_the_same_bytes_on_any_number_of_processors(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two blocks and more: 500,000 samples of 2,500 noisy cycles."""
+    n_cycles, half = 2500, 100
+    rng = np.random.default_rng(3)
+    ramp = np.linspace(0.75, 1.25, half)
+    strain = np.tile(np.concatenate([ramp, ramp[::-1]]), n_cycles)
+    strain = strain + rng.normal(0, 1e-3, strain.size)
+    tension = 100 * strain**3 + rng.normal(0, 0.1, strain.size)
+    start = 2 * half * np.arange(n_cycles)
+    up_down = np.column_stack([start, start + half])
+    cycles = Cycles(
+        first=start,
+        last=start + 2 * half - 1,
+        branch_first=up_down,
+        branch_last=up_down + half - 1,
+        plateau_rate=np.ones((n_cycles, 2)),
+        cycle_number=np.repeat(np.arange(1, n_cycles + 1, dtype=np.int32), 2 * half),
+        branch=np.tile(np.repeat(np.array([1, 2], dtype=np.int8), half), n_cycles),
+        is_constant_rate=rng.random(strain.size) > 0.1,
+        band=0.0,
+    )
+    found = []
+    for n_processors in (1, 3):
+        monkeypatch.setattr(blocks, "_n_processors", lambda count=n_processors: count)
+        curves = tangent_curves(
+            strain[None], tension[None], area=[1e-4], cycles=cycles, settings=ModulusSettings()
+        )
+        found.append((curves.tangent_modulus.tobytes(), curves.tangent_modulus_scatter.tobytes()))
+    assert found[0] == found[1]
