@@ -12,7 +12,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.blocks import run_blocks
 from reduction.cycles.product import Cycles
+from reduction.moduli.cells import sums_by_cell
 from reduction.moduli.product import CycleIdentity
 from reduction.moduli.tangent import pair_specimens
 from reduction.record import Floats
@@ -23,7 +25,7 @@ _MOST_PIECES = 4  # of a stroke: more follow its curvature better, with more noi
 _PIECE_SAMPLES = 6
 _FEWEST_SAMPLES = 3  # in a piece
 _LEAST_SPREAD = 0.5  # of the variance that samples spread evenly over a piece have
-_BLOCK_SAMPLES = 1 << 16  # a block's temporaries stay in the processor's cache
+_BLOCK_SAMPLES = 1 << 17  # near the cache, yet long enough for threads to pay
 
 
 def _tension_change(
@@ -36,28 +38,30 @@ def _tension_change(
     first_tension = tension[cycles.branch_first]
     known = np.isfinite(first_tension)
     reference = float(first_tension[known].mean()) if known.any() else 0.0
-    sums = np.zeros((5, cycles.n_cycles * 2 * n_pieces))
     first, stop = int(cycles.first[0]), int(cycles.last[-1]) + 1
-    for block in range(first, stop, _BLOCK_SAMPLES):
+
+    def sum_block(block: int) -> tuple[int, Floats]:
+        """First cell of a block, and five sums in it and those after it."""
         samples = slice(block, min(block + _BLOCK_SAMPLES, stop))
-        branch = 2 * cycles.cycle_number[samples].astype(np.int64) + cycles.branch[samples] - 3
-        branch[(cycles.cycle_number[samples] == 0) | (cycles.branch[samples] == 0)] = -1
+        number, side = cycles.cycle_number[samples], cycles.branch[samples]
+        branch = 2 * number + side - 3
         y = tension[samples] - reference
         u = (strain[samples] - begin[branch]) * per_stroke[branch]
-        used = (branch >= 0) & np.isfinite(u) & np.isfinite(y)
+        used = (number > 0) & (side > 0) & np.isfinite(u) & np.isfinite(y)
         if not used.all():
             branch, u, y = branch[used], u[used], y[used]
         if branch.size == 0:
-            continue
+            return 0, np.zeros((5, 0))
         # noise carries samples past the reversals: they belong to the end pieces
-        piece = np.clip((n_pieces * u).astype(np.int64), 0, n_pieces - 1)
+        piece = np.clip((n_pieces * u).astype(np.int32), 0, n_pieces - 1)
         offset = int(branch.min()) * n_pieces
         cell = branch * n_pieces + piece - offset
-        n_cells = int(cell.max()) + 1
-        rows = sums[:, offset : offset + n_cells]
-        rows[0] += np.bincount(cell, minlength=n_cells)
-        for row, weight in zip(rows[1:], (u, y, u * u, u * y), strict=True):
-            row += np.bincount(cell, weights=weight, minlength=n_cells)
+        adds = sums_by_cell(cell, int(cell.max()) + 1)
+        return offset, np.stack([adds @ value for value in (np.ones_like(u), u, y, u * u, u * y)])
+
+    sums = np.zeros((5, cycles.n_cycles * 2 * n_pieces))
+    for offset, of_block in run_blocks(sum_block, range(first, stop, _BLOCK_SAMPLES)):
+        sums[:, offset : offset + of_block.shape[1]] += of_block
     by_branch = sums.reshape(5, -1, n_pieces)
     own = np.arange(2 * cycles.n_cycles).reshape(-1, 2)
     for reversal, u_there, piece_there in (
