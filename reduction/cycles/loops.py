@@ -12,6 +12,7 @@ from typing import Literal
 
 import numpy as np
 
+from reduction.blocks import run_blocks
 from reduction.cycles.energy import loop_energy, sums_over_cycles
 from reduction.cycles.harmonic import CycleBasis, cycle_basis, fundamental, mean_drift
 from reduction.cycles.product import Cycles, Loops
@@ -24,8 +25,8 @@ Waveform = Literal["triangular", "sinusoidal", "other"]
 # a cycle that lacks a larger share of its readings gives no numbers
 _MISSING_SHARE = 0.1
 _NOISE_SAMPLES = 65_536
-# samples reduced at a time: what the arrays of one block need stays in the cache
-_BLOCK = 32_768
+# samples reduced at a time: near the cache, yet long enough for threads to pay
+_BLOCK = 1 << 17
 # samples beside a block that its differences of strain reach
 _REACH = 4
 _MEASURED = (
@@ -263,7 +264,8 @@ def close_loops(
     """
     period = time[cycles.last] - time[cycles.first]
     measured = np.empty((tension.shape[0], len(_MEASURED), cycles.n_cycles))
-    for block in _blocks_of_cycles(cycles):
+
+    def measure_block(block: slice) -> None:
         low = max(int(cycles.first[block.start]) - _REACH, 0)
         high = int(cycles.last[block.stop - 1]) + _REACH + 1
         basis = cycle_basis(time[low:high], cycles.first[block] - low, cycles.last[block] - low)
@@ -271,6 +273,8 @@ def close_loops(
             measured[index, :, block] = _measure(
                 force[low:high], stretch[low:high], basis, waveform
             )
+
+    run_blocks(measure_block, _blocks_of_cycles(cycles))
     shape = (tension.shape[0], cycles.n_cycles)
     tables = {name: np.empty(shape) for name in _FIELDS}
     uncertainty = {name: np.empty(shape) for name in _FIELDS if name != "cycle_start_time"}
