@@ -103,10 +103,11 @@ def lag_one_inflation(residual: ArrayLike) -> float:
     1.0
     """
     series = as_finite("residual", residual)
-    power = float(series @ series)
+    # sums, not dot products, whose last digits depend on the number of threads
+    power = float((series * series).sum())
     if series.size < 3 or power == 0:
         return 1.0
-    lag_one = min(0.95, max(0.0, float(series[1:] @ series[:-1]) / power))
+    lag_one = min(0.95, max(0.0, float((series[1:] * series[:-1]).sum()) / power))
     return (1 + lag_one) / (1 - lag_one)
 
 

@@ -74,13 +74,15 @@ def slope_per_decade(values: ArrayLike, *, first_cycle: int = 1) -> tuple[Floats
         x, y = np.log10(number[known]), one[known]
         share = 1 / number[known]
         share /= share.sum()
-        x = x - share @ x
-        y = y - share @ y
-        power = share @ (x * x)
-        slope[row] = share @ (x * y) / power
+        # sums, not dot products: those start threads of their own and depend on their number
+        x = x - (share * x).sum()
+        y = y - (share * y).sum()
+        power = (share * x * x).sum()
+        slope[row] = (share * x * y).sum() / power
         residual = y - slope[row] * x
         # Sandwich form: weights even out the decades, they do not claim different noise.
-        variance = residual @ residual / (y.size - 2) * (share**2 @ (x * x)) / power**2
+        freedom = y.size - 2
+        variance = (residual**2).sum() / freedom * ((share * x) ** 2).sum() / power**2
         uncertainty[row] = np.sqrt(variance * lag_one_inflation(residual))
     return slope, uncertainty
 
