@@ -30,9 +30,9 @@ def hold_table(view: TestView) -> Table | None:
     )
     columns = ["hold", "specimen", "kind"]
     rows = [
-        [words(f"{place + 1}"), words(specimen), words(kind)]
-        for place, (specimen, kind) in enumerate(
-            zip(view.texts("hold_specimen"), view.texts("hold_kind"), strict=True)
+        [words(f"{hold}"), words(specimen), words(kind)]
+        for hold, specimen, kind in zip(
+            view.hold_numbers, view.texts("hold_specimen"), view.texts("hold_kind"), strict=True
         )
     ]
     for name, unit, label in quantities:
@@ -51,10 +51,17 @@ def hold_table(view: TestView) -> Table | None:
 
 def refusals(view: TestView) -> list[str]:
     """Return the numbers that a hold does not support, each with its reason."""
+    return _of_holds(view, "hold_refusal")
+
+
+def _of_holds(view: TestView, name: str) -> list[str]:
+    """Return the texts of the holds that have one, each with its hold and specimen."""
     owners = view.texts("hold_specimen")
     return [
-        f"hold {place + 1}, {owners[place]}: {text}"
-        for place, text in enumerate(view.texts("hold_refusal"))
+        f"hold {number}, {owner}: {text}"
+        for number, owner, text in zip(
+            view.hold_numbers, owners, view.texts(name) or ("",) * len(owners), strict=True
+        )
         if text
     ]
 
@@ -71,27 +78,25 @@ def prony_table(view: TestView) -> Table | None:
     )
     end = view.array_like("long_time_tension", tension[:, 0])
     end_half = view.array_like("long_time_tension_standard_uncertainty", end)
-    criteria = view.texts("hold_criterion") or ("",) * end.size
     rows = []
     for hold, term in zip(*np.nonzero(np.isfinite(tension)), strict=True):
         own = (hold, term)
         rows.append(
             [
-                words(f"{hold + 1}"),
+                words(f"{view.hold_numbers[hold]}"),
                 words(view.texts("hold_specimen")[hold]),
                 count(float(term + 1)),
                 measured(tension[own], halves[0][own], force),
                 measured(times[own], halves[1][own], seconds),
                 measured(end[hold], end_half[hold], force),
-                words(criteria[hold]),
             ]
         )
     columns = (
         "hold", "specimen", "term", force.label("tension of the term"),
         seconds.label("relaxation time"), force.label("tension it tends to"),
-        "number of terms chosen by",
     )  # fmt: skip
     return make_table(
         "Prony series of the holds; ±: standard uncertainty.", columns, rows,
         synthetic=view.is_synthetic,
+        remarks=[f"Number of terms, {text}." for text in _of_holds(view, "hold_criterion")],
     ) if rows else None  # fmt: skip

@@ -42,12 +42,16 @@ class Cell:
 
 @dataclass(frozen=True)
 class Table:
-    """A table; the first cell of a row heads it.  ``caption`` is plain text."""
+    """A table; the first cell of a row heads it.
+
+    ``caption`` and ``remarks``, which stand below, are plain text.
+    """
 
     caption: str
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     is_tall: bool = False
+    remarks: tuple[str, ...] = ()
 
     @property
     def number_columns(self) -> tuple[bool, ...]:
@@ -64,13 +68,14 @@ def make_table(
     *,
     synthetic: bool,
     is_tall: bool = False,
+    remarks: Sequence[str] = (),
 ) -> Table:
     """Return a table; the caption says where the data are synthetic.
 
     A mark for what is missing stands flush right among numbers, whoever made its cell.
     """
     text = f"{caption} SYNTHETIC DATA." if synthetic else caption
-    plain = Table(text, tuple(columns), tuple(tuple(row) for row in rows), is_tall)
+    plain = Table(text, tuple(columns), tuple(tuple(row) for row in rows), is_tall, tuple(remarks))
     missing = Cell(NOT_GIVEN, is_number=True)
     aligned = tuple(
         tuple(

@@ -113,6 +113,15 @@ class TestView:
             return ()
         return tuple(str(value) for value in np.ravel(self.data[name].values))
 
+    @property
+    def hold_numbers(self) -> tuple[int, ...]:
+        """Number of each hold in time, from 1: specimens that stand still together share one."""
+        start = self.array("hold_start_time")
+        if start is None:
+            return ()
+        _, place = np.unique(start, return_inverse=True)
+        return tuple(int(number) + 1 for number in place)
+
     def text(self, name: str) -> str:
         """Value of a text variable without dimensions."""
         return " ".join(self.texts(name))

@@ -361,3 +361,37 @@ def test_a_plot_says_what_it_shows_and_has_a_caption(report, rich_test):
 def test_the_page_says_what_a_constant_fraction_would_read(report, rich_test):
     # 1 / 0.86 is 1.163
     assert "reads these moduli 16.3 % high" in "".join(report(rich_test).text)
+
+
+def test_holds_are_numbered_by_time_alike_for_all_specimens(report, rich_test):
+    begins = (3.0, 3.0, 1.0)  # new, used, and the creep of new before both
+    holds = tuple(
+        replace(hold, hold_start_time=begin)
+        for hold, begin in zip(rich_test.holds, begins, strict=True)
+    )
+    page = report(replace(rich_test, holds=holds))
+    rows = page.rows("Holds: relaxation")
+    assert [[cell[1] for cell in row[:3]] for row in rows[1:]] == [
+        ["2", "new", "relaxation"], ["2", "used", "relaxation"], ["1", "new", "creep"],
+    ]  # fmt: skip
+    assert [row[0][1] for row in page.rows("Prony series")[1:]] == ["2", "2", "1", "1"]
+    names = {
+        name: [trace["name"].split(",")[0] for trace in figure["data"]]
+        for name, figure in page.figures().items()
+        if "-hold-" in name
+    }
+    assert {
+        name.removeprefix("test-0-hold-").removesuffix("-data"): set(drawn)
+        for name, drawn in names.items()
+    } == {"relaxation-0": {"hold 2"}, "relaxation-1": {"hold 2"}, "creep-0": {"hold 1"}}
+    text = "".join(page.text)
+    assert "hold 2, used: Prony series: the hold lasts 25 s" in text
+    assert "hold 2 used: refused: rate: too short" in text
+    assert "hold 1 new: ramp of 4 s left out" in text
+
+
+def test_how_the_terms_were_chosen_stands_once_a_hold_below_the_prony_table(report, rich_test):
+    page = report(rich_test)
+    assert not any("chosen" in cell[1] for cell in page.rows("Prony series")[0])
+    said = re.findall(r"Number of terms, hold \d+, \w+: [^<\n]+", "".join(page.text))
+    assert len(said) == len(set(said)) == len(rich_test.holds)

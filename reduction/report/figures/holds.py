@@ -8,7 +8,7 @@ from reduction.holds.series import prony_tension
 from reduction.record import Floats
 from reduction.report.decimate import POINTS, keep_extremes
 from reduction.report.figure import Figure, Trace, axis, line, make_figure
-from reduction.report.style import Kind, colour, shown
+from reduction.report.style import Kind, colour, marker, shown
 from reduction.report.view import TestView
 
 __all__ = ["draw_holds"]
@@ -17,7 +17,7 @@ FIT_POINTS = 120
 
 
 def draw_holds(view: TestView) -> list[Figure]:
-    """Draw one figure a specimen and kind of hold; one colour a hold."""
+    """Draw one figure a specimen and kind of hold; a colour and a marker a hold."""
     time, start = view.array("time"), view.array("hold_start_time")
     if time is None or start is None or start.size == 0:
         return []
@@ -28,8 +28,8 @@ def draw_holds(view: TestView) -> list[Figure]:
         for kind in dict.fromkeys(kinds.tolist()):
             own = np.flatnonzero((owners == specimen) & (kinds == kind))
             traces: list[Trace] = []
-            for order, hold in enumerate(own):
-                traces += _one_hold(view, time, index, int(hold), order, is_creep=kind == "creep")
+            for hold in own:
+                traces += _one_hold(view, time, index, int(hold), is_creep=kind == "creep")
             if not any(trace["y"] for trace in traces):
                 continue
             what: Kind = "strain" if kind == "creep" else "tension"
@@ -52,7 +52,7 @@ def draw_holds(view: TestView) -> list[Figure]:
 
 
 def _one_hold(
-    view: TestView, time: Floats, specimen: int, hold: int, order: int, *, is_creep: bool
+    view: TestView, time: Floats, specimen: int, hold: int, *, is_creep: bool
 ) -> list[Trace]:
     start = view.array_like("hold_start_time", time)[hold]
     length = view.array_like("hold_duration", time)[hold]
@@ -68,10 +68,14 @@ def _one_hold(
     since, y = time[own] - start, values[specimen, own] * unit.factor
     kept = keep_extremes(np.log10(since), y, limit=POINTS // 2)
     level = "" if held is None or np.isnan(held[hold]) else f", strain {100 * held[hold]:.0f} %"
-    name = f"hold {hold + 1}{level}"
+    number = view.hold_numbers[hold]
+    name, order = f"hold {number}{level}", number - 1
     traces = [
-        line(since[kept], y[kept], name=name, colour=colour(order), width=1.2, legendgroup=name)
-    ]
+        line(
+            since[kept], y[kept], name=name, colour=colour(order), width=1.2, legendgroup=name,
+            mode="lines+markers", marker={**marker(order), "maxdisplayed": 6},
+        )
+    ]  # fmt: skip
     fit = None if is_creep else _prony(view, hold, since)
     if fit is not None:
         moments, tension = fit
