@@ -1,6 +1,7 @@
 """A first campaign for a folder of logs: text for a person to complete, never a campaign yet.
 
-Every ``?`` has to be replaced before the campaign loads.
+Every ``?`` has to be replaced before the campaign loads.  Which specimen hung at which load
+no log says, so that none is assumed: two logs may be of one specimen, or of two.
 """
 
 from __future__ import annotations
@@ -15,15 +16,23 @@ from pathlib import Path
 from reduction.errors import LogError
 from reduction.ingest.sniff import SniffedLayout, format_of, sniff_layout
 from reduction.ingest.sniff_binary import table_sheets
+from reduction.ingest.sniff_channels import UNKNOWN
 
 __all__ = ["starter_campaign"]
 
 _WRITTEN = ("campaign.toml", "tests.csv")
 _MARKS = {"test", "specimen", "hold"}
 _COLUMNS = ("id", "kind", "file", "layout", "order", "specimens")
-_SPECIMEN = """[specimens.specimen-{number}]
+_SPECIMENS = """\
+# One such section for each specimen: copy it, and put the specimen's name, such as tether-A, in
+# place of the ? in brackets. The same name stands in the column specimens of tests.csv in every
+# test of this specimen, so that its history is known; of several, parted by ;, the first hung
+# at tension.1.
+[specimens."?"]
 kind = "?"  # rubber tether, stretch hose, rope, wire or elastomer
-diameter = ["?"]  # readings before stretch, with their unit: ["1.04 in"]
+diameter = ["?"]  # before stretch, each reading with its unit: ["1.04 in", "1.03 in"]
+# material = ""  # what is known: EPDM, nylon, ...
+# rated_break_strength = ""  # with its unit: "800 lbf"
 """
 
 
@@ -132,7 +141,6 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
             layouts[log.sniffed.settings] = _unique(wish, taken), log.sniffed
         name = f"{Path(log.file).stem}-{log.sheet}" if log.sheet else Path(log.file).stem
         rows.append((_slug(name), log))
-    n_specimens = max(log.n_specimens for log in logs)
     lines = [
         "# A first draft. Replace every ?, check every line, then: reduction check campaign.toml",
         "",
@@ -144,9 +152,8 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
         'institution = "?"',
         'source = "?"',
         "",
-        *(_SPECIMEN.format(number=number + 1) for number in range(n_specimens)),
+        _SPECIMENS,
         "[defaults]",
-        f"specimens = {json.dumps([f'specimen-{n + 1}' for n in range(n_specimens)])}",
         'kind = "cyclic"  # fatigue, relaxation, creep, stepwise, quasi-static, tensile, snap',
         'control = "position"  # or load',
     ]
@@ -163,7 +170,7 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
     writer.writerow(_COLUMNS)
     ids: set[str] = set()
     for wish, log in rows:
-        specimens = ";".join(f"specimen-{n + 1}" for n in range(log.n_specimens))
+        specimens = ";".join([UNKNOWN] * log.n_specimens)
         layout, _ = layouts[log.sniffed.settings]
         writer.writerow((_unique(wish, ids), "", log.file, layout, "", specimens))
     return {"campaign.toml": "\n".join(lines) + "\n", "tests.csv": table.getvalue()}

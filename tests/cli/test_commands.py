@@ -190,6 +190,8 @@ def test_init_writes_a_starter_once_and_never_over_a_file(small, command):
     assert {"campaign.toml", "tests.csv"} <= {path.name for path in (small / "raw").iterdir()}
     again = command("init", small / "raw")
     assert again.returncode == 2 and "a campaign is there already" in again.stderr
+    check = command("check", small / "raw" / "campaign.toml")
+    assert check.returncode == 2 and "tests.csv:3 [specimens]" in check.stderr
 
 
 def test_schema_is_json_and_knows_the_sections(command):

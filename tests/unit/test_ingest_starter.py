@@ -4,13 +4,13 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from workbook import write_xlsx
 
 from reduction.campaign.load import load_campaign
 from reduction.errors import LogError, SettingsError
 from reduction.ingest.starter import starter_campaign
 
-SHARED = Path(__file__).parents[2].parent / "shared"
-DATA = SHARED / "data"
+RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 LOG = "time_s,crosshead_ft,load_new_lb,load_used_lb\n0,12,1,2\n1,13,2,3\n2,14,3,4\n"
 ONE = "Zeit;Kraft\ns;kN\n0;1,5\n1;2,5\n2;3,5\n"
 
@@ -48,10 +48,13 @@ def test_logs_that_look_alike_share_a_layout(folder):
     assert set(tomllib.loads(files["campaign.toml"])["layouts"]) == {"log", "log-2"}
 
 
-def test_each_test_has_as_many_specimens_as_its_log_has_loads(folder):
-    table = rows(starter_campaign(folder))
-    assert table[0]["specimens"] == "specimen-1;specimen-2"
-    assert table[-1]["specimens"] == "specimen-1"
+def test_each_load_of_a_log_asks_for_its_specimen(folder):
+    files = starter_campaign(folder)
+    assert [row["specimens"] for row in rows(files)] == ["?;?", "?;?", "?;?", "?"]
+    draft = tomllib.loads(files["campaign.toml"])
+    assert set(draft["specimens"]) == {"?"}
+    assert "specimens" not in draft["defaults"]
+    assert {draft["campaign"][key] for key in ("title", "institution", "source")} == {"?"}
 
 
 def test_marks_are_used_and_what_is_no_log_is_listed(folder):
@@ -85,30 +88,62 @@ def test_a_folder_without_logs_is_refused(tmp_path):
 
 
 def test_the_draft_loads_once_every_question_is_answered(folder):
-    files = starter_campaign(folder)
     (folder / "marks.csv").unlink()
+    (folder / "campaign.toml").unlink()
     for name, text in starter_campaign(folder).items():
         (folder / name).write_text(text, encoding="utf-8")
-    with pytest.raises(SettingsError):
+    with pytest.raises(SettingsError) as raised:
         load_campaign(folder / "campaign.toml")
+    asked = [line.strip() for line in str(raised.value).splitlines()]
+    assert asked[0].endswith("campaign.toml: 11 values are still '?', first campaign.title")
+    assert asked[1:7] == [
+        *(f"campaign.{key}" for key in ("title", "institution", "source")),
+        *("specimens.?", "specimens.?.kind", "specimens.?.diameter"),
+    ]
+    assert asked[7:] == [
+        "layouts.log.channels.crosshead_position.datum",
+        *(f"tests.csv:{row} [specimens]" for row in (2, 3, 4)),
+        "and 1 more",
+    ]
+    text = (folder / "campaign.toml").read_text(encoding="utf-8")
+    section = text[text.index('[specimens."?"]') : text.index("[defaults]")]
     answered = (
-        files["campaign.toml"]
-        .replace('strain = { marks = "marks.csv" }\n', "")
+        text.replace(section, section.replace('"?"]\nkind', '"used"]\nkind') + section)
+        .replace('[specimens."?"]', "[specimens.new]")
         .replace('datum = "?"', 'datum = "pin-to-pin"')
         .replace('kind = "?"', 'kind = "rope"')
         .replace('diameter = ["?"]', 'diameter = ["1 in"]')
+        .replace('"?"', '"told"')
     )
     (folder / "campaign.toml").write_text(answered, encoding="utf-8")
+    table = (folder / "tests.csv").read_text(encoding="utf-8")
+    (folder / "tests.csv").write_text(
+        table.replace("?;?", "new;used").replace("?", "used"), encoding="utf-8"
+    )
     campaign = load_campaign(folder / "campaign.toml")
     assert campaign.id == "summer-tests"
-    assert list(campaign.tests) == ["T-1", "T-2", "T-10", "ber-5"]
+    assert set(campaign.specimens) == {"new", "used"}
+    specimens = {name: plan.specimens for name, plan in campaign.tests.items()}
+    assert list(specimens) == ["T-1", "T-2", "T-10", "ber-5"]
+    assert specimens["T-1"] == ("new", "used") and specimens["ber-5"] == ("used",)
 
 
-@pytest.mark.skipif(not SHARED.exists(), reason="the reference logs are not there")
-def test_the_draft_for_the_tether_tests_has_every_log_and_sheet():
-    files = starter_campaign(DATA / "tmt-synthetic")
-    table = rows(files)
-    assert [row["layout"] for row in table[:10]] == ["log"] * 10
-    assert [row["layout"] for row in table[10:]][-1] == "xlsx-Overnight-Hold"
-    assert len(table) == 17
-    assert "diameters.csv" in files["campaign.toml"]
+def test_each_sheet_of_a_workbook_that_holds_a_table_is_a_log(tmp_path):
+    table = [line.split(",") for line in LOG.splitlines()]
+    sheet = [table[0], *([float(cell) for cell in row] for row in table[1:])]
+    write_xlsx(tmp_path / "logs.xlsx", {"Readme": [["words"]], "T 1": sheet, "T 2": sheet})
+    files = starter_campaign(tmp_path)
+    assert [row["id"] for row in rows(files)] == ["logs-T-1", "logs-T-2"]
+    assert [row["layout"] for row in rows(files)] == ["xlsx-T-1", "xlsx-T-2"]
+    layouts = tomllib.loads(files["campaign.toml"])["layouts"]
+    assert layouts["xlsx-T-2"]["sheet"] == "T 2"
+
+
+def test_the_draft_for_the_tether_tests_has_every_log():
+    files = starter_campaign(RAW)
+    names = [f"T-{n}" for n in range(1, 7)] + ["overnight_hold"]
+    names += ["T-4_extended", "T-4_extended_end_5Hz", "T-4_extended_start_5Hz"]
+    assert {row["file"] for row in rows(files)} == {f"{name}.csv" for name in names}
+    assert {row["layout"] for row in rows(files)} == {"log"}
+    assert {row["specimens"] for row in rows(files)} == {"?;?"}
+    assert tomllib.loads(files["campaign.toml"])["defaults"]["strain"] == {"marks": "marks.csv"}
