@@ -168,10 +168,11 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
     survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
     survey.greatest = _greatest(located)
     survey.slack_tension = located.standstills.slack_tension
-    for name, tension in zip(record.specimens, record.tension, strict=True):
+    position = located.position
+    for name, tension in zip(record.specimens, located.tension, strict=True):
         taut = tension > FIRST_RISE * np.nanmax(tension, initial=0.0)
         stop = int(np.argmax(taut)) + 1 if taut.any() else 0
-        survey.first_rise[name] = (record.crosshead_position[:stop].copy(), tension[:stop].copy())
+        survey.first_rise[name] = (position[:stop].copy(), tension[:stop].copy())
     return survey
 
 
@@ -182,13 +183,13 @@ def _greatest(located: Located) -> dict[str, tuple[Floats, Floats, float]]:
     strain is at one of these samples, which the strain model tells.
     """
     record = located.record
-    position = record.crosshead_position
+    position = located.position
     if not np.isfinite(position).any():
         return {}
     far = float(np.nanmax(position))
     at_top = np.flatnonzero(position >= far - located.standstills.position_tolerance)
     found = {}
-    for name, tension in zip(record.specimens, record.tension, strict=True):
+    for name, tension in zip(record.specimens, located.tension, strict=True):
         if np.isfinite(tension[at_top]).any():
             found[name] = (
                 position[at_top],
@@ -201,7 +202,7 @@ def _greatest(located: Located) -> dict[str, tuple[Floats, Floats, float]]:
 def _measure_marks(survey: Survey, marks: dict[str, SpliceMarks]) -> None:
     if survey.located is None:
         return
-    record, standstills = survey.located.record, survey.located.standstills
+    standstills = survey.located.standstills
     for index, name in enumerate(survey.plan.specimens):
         if name in marks and survey.plan.id in marks[name].test:
             read_at_end, read_at_start = (
@@ -209,7 +210,7 @@ def _measure_marks(survey: Survey, marks: dict[str, SpliceMarks]) -> None:
                     marks[name],
                     test_id=survey.plan.id,
                     standstills=standstills,
-                    tension=record.tension[index],
+                    tension=survey.located.tension[index],
                     reading=reading,
                 )
                 for reading in ("end", "start")

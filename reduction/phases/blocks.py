@@ -171,7 +171,8 @@ def still_blocks(
         low, high = _extremes_between(least, greatest, firsts, lasts)
         # a window at each end may hold the begin of a move, one up and one down
         within = high - low <= 2 * tolerance
-        found.append(np.column_stack([firsts, lasts])[within])
+        # blocks without a sample keep within anything, and say nothing
+        found.append(np.column_stack([firsts, lasts])[within & (low <= high)])
         work += [
             (int(first), int(last) + 1, 2 * width)
             for first, last in zip(firsts[~within], lasts[~within], strict=True)

@@ -54,7 +54,7 @@ def parts_of_cycles(
     ]  # fmt: skip
     if cycles.n_cycles >= settings.slip.minimum_cycles:
         level, slope = cycle_tension_level(
-            record.crosshead_position, tension, cycle_number=cycles.cycle_number,
+            located.position, tension, cycle_number=cycles.cycle_number,
             branch=cycles.branch, n_cycles=cycles.n_cycles,
         )  # fmt: skip
         parts["slips"] = find_slips(

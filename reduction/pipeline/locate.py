@@ -30,6 +30,17 @@ class Located:
     standstills: Standstills
     cycles: Cycles | None
 
+    @property
+    def position(self) -> Floats:
+        """Crosshead position, NaN where it is not usable, shape (n_samples,). [m]."""
+        record = self.record
+        return usable(record.crosshead_position, record.crosshead_position_quality_flag)
+
+    @property
+    def tension(self) -> Floats:
+        """Tension, NaN where it is not usable, shape (n_specimens, n_samples). [N]."""
+        return usable(self.record.tension, self.record.quality_flag)
+
 
 def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located:
     """Find the standstills and the cycles of a record; only cyclic kinds have cycles."""
@@ -39,15 +50,15 @@ def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located
             found=kind,
             needed="one of " + ", ".join((*CYCLIC, *PULLED, *HELD, "stepwise")),
         )
-    standstills = find_standstills(
-        record.time, record.crosshead_position, record.tension, settings=settings.phases
-    )
+    position = usable(record.crosshead_position, record.crosshead_position_quality_flag)
+    tension = usable(record.tension, record.quality_flag)
+    standstills = find_standstills(record.time, position, tension, settings=settings.phases)
     if kind not in CYCLIC:
         return Located(record, standstills, None)
     cycles = find_cycles(
         record.time,
-        record.crosshead_position,
-        record.tension,
+        position,
+        tension,
         standstills,
         settings=settings.cycles,
         cycle_counter=record.cycle_counter,

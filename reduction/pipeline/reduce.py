@@ -19,7 +19,7 @@ from reduction.moduli.slack import slack_strain_at_unloading
 from reduction.moduli.stepwise import reduce_stepwise
 from reduction.pipeline.cyclic import parts_of_cycles
 from reduction.pipeline.loading import parts_of_first_loading
-from reduction.pipeline.locate import Located, usable
+from reduction.pipeline.locate import Located
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
 from reduction.record import Floats, Quality, Record, Specimen, StepReadings
@@ -75,17 +75,17 @@ def reduce_test(
     """
     record, standstills, cycles = located.record, located.standstills, located.cycles
     area = np.array([specimen.area for specimen in specimens])
-    tension = usable(record.tension, record.quality_flag)
-    strain = _strain(record, tension, models)
+    position, tension = located.position, located.tension
+    strain = _strain(record, position, tension, models)
     parts = parts_of_cycles(located, strain, tension, area, settings)
     parts |= parts_of_first_loading(located, strain, tension, area, settings, history)
     holds = reduce_holds(
-        record.time, record.crosshead_position, tension, strain, standstills,
+        record.time, position, tension, strain, standstills,
         specimens=record.specimens, settings=settings.holds,
         kind="creep" if description.kind == "creep" else "relaxation",
     )  # fmt: skip
     slack, slack_uncertainty, remarks = slack_strain_at_unloading(
-        record.crosshead_position,
+        position,
         tension,
         slack_tension=standstills.slack_tension,
         relaxed_free_length=np.array(
@@ -168,9 +168,10 @@ def _flag(located: Located, models: Sequence[StrainModel]) -> Record:
     return replace(record, quality_flag=flags, crosshead_position_quality_flag=of_position)
 
 
-def _strain(record: Record, tension: Floats, models: Sequence[StrainModel]) -> Floats:
+def _strain(
+    record: Record, position: Floats, tension: Floats, models: Sequence[StrainModel]
+) -> Floats:
     """Strain of each specimen; NaN where position, or a tension that it needs, is not usable."""
-    position = usable(record.crosshead_position, record.crosshead_position_quality_flag)
     strain = np.empty_like(tension)
     for index, model in enumerate(models):
         strain[index] = free_length_strain_of(
