@@ -54,6 +54,8 @@ class PhaseSettings:
     """Shortest standstill that is a hold or a rest. [s]"""
     position_tolerance: float | None = None
     """Range of position inside a standstill; None: from the record's noise. [m]"""
+    tension_tolerance: float | None = None
+    """Range of tension inside a hold at constant tension; None: from its noise. [N]"""
     slack_tension: float | None = None
     """A standstill at or below this tension is a rest; None: from the record. [N]"""
 

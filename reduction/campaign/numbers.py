@@ -19,6 +19,7 @@ __all__ = ["apply_numbers"]
 _DIMENSION: dict[tuple[str, str], Dimension] = {
     ("phases", "minimum_duration"): "time",
     ("phases", "position_tolerance"): "length",
+    ("phases", "tension_tolerance"): "force",
     ("phases", "slack_tension"): "force",
     ("holds", "minimum_duration"): "time",
     ("holds", "times"): "time",

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.phases.standstill import Standstills, median_step
+from reduction.phases.intervals import median_step
+from reduction.phases.standstill import Standstills
 from reduction.record import Bools, Floats, Integers
 
 __all__ = ["HalfCycles", "find_half_cycles"]

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.errors import SettingsError
+from reduction.phases.intervals import median_step
 from reduction.phases.noise import estimate_noise
-from reduction.phases.standstill import median_step
 from reduction.record import Bools, Floats
 
 __all__ = ["constant_rate_span", "stroke_span"]

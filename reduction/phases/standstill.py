@@ -10,21 +10,19 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import ceil
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
 from reduction.errors import DataError
-from reduction.phases.blocks import block_extremes, still_blocks
+from reduction.phases.intervals import FEWEST_SAMPLES, interval_means, still_intervals
 from reduction.phases.noise import noise_range
 from reduction.record import Bools, Floats, Integers, freeze_arrays
 from reduction.settings import PhaseSettings
 
-__all__ = ["Standstills", "find_standstills", "median_step"]
+__all__ = ["Standstills", "describe_standstills", "find_standstills"]
 
-_FEWEST_SAMPLES = 4  # two equal samples may be the two sides of a peak
 _SLACK_SHARE = 0.02
 _STEPS_READ = 100_001
 
@@ -46,9 +44,12 @@ class Standstills:
     is_rest : ndarray of bool, shape (n_standstills,)
         True where every specimen is slack.
     position_tolerance : float
-        Range of position that was allowed inside a standstill. [m]
+        Range of position that was allowed inside a standstill of the crosshead. [m]
     slack_tension : float
         Tension at or below which a standstill is a rest. [N]
+    tension_tolerance : float or None
+        Range of tension that was allowed inside a hold, where holds are intervals of
+        constant tension; None where the crosshead stands still in them. [N]
     """
 
     first: Integers
@@ -60,6 +61,7 @@ class Standstills:
     is_rest: Bools
     position_tolerance: float
     slack_tension: float
+    tension_tolerance: float | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -78,63 +80,6 @@ class Standstills:
         return is_still
 
 
-def _reach(position: Floats, edge: Integers, centre: Floats, half: float, step: int) -> Integers:
-    """Samples beyond each edge, at most ``abs(step)``, that stay near the centre."""
-    offsets = np.sign(step) * np.arange(1, abs(step) + 1)
-    index = edge[:, None] + offsets
-    inside = (index >= 0) & (index < position.size)
-    value = position[np.clip(index, 0, position.size - 1)]
-    near = inside & ~(np.abs(value - centre[:, None]) > half)  # a missing sample is no movement
-    return np.where(near.all(axis=1), abs(step), np.argmin(near, axis=1))
-
-
-def _interval_means(values: Floats, first: Integers, last: Integers) -> Floats:
-    """Mean of the finite values of each interval, NaN where there are none."""
-    if first.size == 0:
-        return np.empty(0)
-    bounds = np.column_stack([first, last + 1]).ravel()
-    if bounds[-1] == values.size:
-        bounds = bounds[:-1]
-    total = np.add.reduceat(values, bounds)[::2]
-    mean = np.asarray(total / (last - first + 1))
-    for i in np.flatnonzero(np.isnan(mean)):
-        finite = values[first[i] : last[i] + 1]
-        finite = finite[np.isfinite(finite)]
-        mean[i] = finite.mean() if finite.size else np.nan
-    return mean
-
-
-def median_step(time: Floats) -> float:
-    """Return the median time step, of at most 100,001 steps that advance.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time. [s]
-
-    Returns
-    -------
-    median_step : float
-        Greater than zero. [s]
-
-    Raises
-    ------
-    DataError
-        If time does not advance.
-
-    Examples
-    --------
-    >>> median_step(np.array([0.0, 0.1, 0.2, 0.2, 0.3, 60.0]))
-    0.1
-    """
-    first = np.arange(0, time.size - 1, max(1, time.size // _STEPS_READ))
-    steps = time[first + 1] - time[first]
-    steps = steps[steps > 0]
-    if steps.size == 0:
-        raise DataError("time does not advance", needed="at least one later sample")
-    return float(np.median(steps))
-
-
 def _slack_tension(tension: Floats) -> float:
     """Two hundredths of the greatest tension, or the noise about zero, of any specimen."""
     levels = [0.0]
@@ -144,6 +89,72 @@ def _slack_tension(tension: Floats) -> float:
         if sampled.size >= 8:
             levels += [_SLACK_SHARE * float(sampled.max()), noise_range(one) / 2]
     return max(levels)
+
+
+def describe_standstills(
+    time: Floats,
+    position: Floats,
+    tension: Floats,
+    first: Integers,
+    last: Integers,
+    *,
+    position_tolerance: float,
+    slack_tension: float,
+    tension_tolerance: float | None = None,
+) -> Standstills:
+    """Means over given intervals, and which of them are rests.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time. [s]
+    position : ndarray, shape (n_samples,)
+        Crosshead position; NaN where missing. [m]
+    tension : ndarray, shape (n_specimens, n_samples)
+        Tension; NaN where missing. [N]
+    first : ndarray of int, shape (n_standstills,)
+        First sample of each interval, in order of time. [1]
+    last : ndarray of int, shape (n_standstills,)
+        Last sample, inside. [1]
+    position_tolerance : float
+        As `Standstills` has it. [m]
+    slack_tension : float
+        As `Standstills` has it. [N]
+    tension_tolerance : float, optional
+        As `Standstills` has it. [N]
+
+    Returns
+    -------
+    standstills : Standstills
+        Of these intervals. [SI]
+
+    Raises
+    ------
+    IndexError
+        If an interval reaches beyond the record.
+
+    Examples
+    --------
+    >>> time, load = np.arange(4.0), np.array([[0.0, 0.0, 9.0, 11.0]])
+    >>> found = describe_standstills(
+    ...     time, time, load, np.array([0, 2]), np.array([1, 3]),
+    ...     position_tolerance=1.0, slack_tension=1.0)
+    >>> print(found.mean_tension, found.is_rest)
+    [[ 0. 10.]] [ True False]
+    """
+    mean_tension = np.array([interval_means(one, first, last) for one in tension])
+    return Standstills(
+        first=first,
+        last=last,
+        start_time=time[first],
+        end_time=time[last],
+        mean_position=interval_means(position, first, last),
+        mean_tension=mean_tension.reshape(tension.shape[0], first.size),
+        is_rest=(mean_tension <= slack_tension).all(axis=0).reshape(first.size),
+        position_tolerance=float(position_tolerance),
+        slack_tension=float(slack_tension),
+        tension_tolerance=tension_tolerance,
+    )
 
 
 def find_standstills(
@@ -206,11 +217,11 @@ def find_standstills(
     """
     tension = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
-    if time.size < _FEWEST_SAMPLES or not np.isfinite(position).any():
+    if time.size < FEWEST_SAMPLES or not np.isfinite(position).any():
         raise DataError(
             "the record is too short to stand still",
             found=f"{int(np.isfinite(position).sum())} positions in {time.size} rows",
-            needed=f"{_FEWEST_SAMPLES} rows or more",
+            needed=f"{FEWEST_SAMPLES} rows or more",
         )
     tolerance = settings.position_tolerance
     if tolerance is None:
@@ -219,47 +230,9 @@ def find_standstills(
     if slack is None:
         slack = _slack_tension(tension)
 
-    fewest = max(ceil(settings.minimum_duration / median_step(time) - 1e-6) + 1, _FEWEST_SAMPLES)
-    length = max(fewest // 4, 1)
-    # a standstill of the fewest samples holds this many whole blocks, wherever it begins
-    window = max((fewest - length + 1) // length, 1)
-    least, greatest = block_extremes(position, length)
-    first_block, last_block = still_blocks(least, greatest, window=window, tolerance=tolerance)
-
-    first = first_block * length
-    last = np.minimum((last_block + 1) * length, position.size) - 1
-    centre = _interval_means(position, first, last)
-    for block, step in ((first_block, 1), (last_block, -1)):  # a block that moves is no edge
-        outside = np.ones(centre.size, dtype=bool)
-        while outside.any():
-            outside = (greatest[block] - centre > tolerance / 2) | (
-                centre - least[block] > tolerance / 2
-            )
-            outside &= first_block < last_block
-            block[outside] += step
-    first = first_block * length
-    last = np.minimum((last_block + 1) * length, position.size) - 1
-    first -= _reach(position, first, centre, tolerance / 2, -length)
-    last += _reach(position, last, centre, tolerance / 2, length)
-    last[:-1] = np.minimum(last[:-1], first[1:] - 1)
-
-    for edge, step in ((first, 1), (last, -1)):  # an edge is a sample that is there
-        for i in np.flatnonzero(np.isnan(position[edge])):
-            edge[i] += step * np.argmax(np.isfinite(position[first[i] : last[i] + 1][::step]))
-
-    long_enough = (time[last] - time[first] >= settings.minimum_duration * (1 - 1e-6)) & (
-        last - first + 1 >= _FEWEST_SAMPLES
+    first, last = still_intervals(
+        time, position, tolerance=tolerance, minimum_duration=settings.minimum_duration
     )
-    first, last = first[long_enough], last[long_enough]
-    mean_tension = np.array([_interval_means(one, first, last) for one in tension])
-    return Standstills(
-        first=first,
-        last=last,
-        start_time=time[first],
-        end_time=time[last],
-        mean_position=_interval_means(position, first, last),
-        mean_tension=mean_tension.reshape(tension.shape[0], first.size),
-        is_rest=(mean_tension <= slack).all(axis=0).reshape(first.size),
-        position_tolerance=float(tolerance),
-        slack_tension=float(slack),
+    return describe_standstills(
+        time, position, tension, first, last, position_tolerance=tolerance, slack_tension=slack
     )

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError
-from reduction.phases.standstill import find_standstills, median_step
+from reduction.phases.intervals import median_step
+from reduction.phases.standstill import find_standstills
 from reduction.settings import PhaseSettings
 
 TEST = [(0, 3), (20, 3), (40, 4), (100, 4), (110, 5), (290, 5), (300, 4), (310, 4)]
