@@ -27,7 +27,7 @@ def _set_after_rest(
     """Growth of the length at which the specimen becomes taut, since its first test. [1]."""
     if not earlier:
         return float("nan"), float("nan")
-    first = min(earlier, key=lambda entry: entry.plan.order or 0)
+    first = min(earlier, key=lambda entry: (entry.plan.order or 0, entry.plan.step_place))
     pair = (first, survey)
     if any(name not in entry.first_rise for entry in pair):
         return float("nan"), float("nan")
@@ -67,12 +67,13 @@ def history_of(
     history : History or None
         None where the test has no place in the order.
     """
-    by_test = {entry.plan.id: entry for entry in surveys}
+    by_log = {entry.plan.log: entry for entry in surveys}
     order = survey.plan.order
-    if survey.plan.part_of in by_test:
-        order = by_test[survey.plan.part_of].plan.order
+    if survey.plan.part_of in by_log:
+        order = by_log[survey.plan.part_of].plan.order
     if order is None:
         return None
+    place = (order, survey.plan.step_place)
     tests: list[tuple[str, ...]] = []
     strain, tension, cycles, left = [], [], [], []
     for name in survey.plan.specimens:
@@ -80,7 +81,7 @@ def history_of(
             entry
             for entry in surveys
             if entry.plan.order is not None
-            and entry.plan.order < order
+            and (entry.plan.order, entry.plan.step_place) < place
             and entry.plan.part_of is None
             and name in entry.plan.specimens
         ]
@@ -131,7 +132,7 @@ def history_remarks(survey: Survey, surveys: Sequence[Survey]) -> tuple[str, ...
     shared = [
         name
         for name in plan.specimens
-        if any(name in other.plan.specimens for other in surveys if other is not survey)
+        if any(name in other.plan.specimens for other in surveys if other.plan.log != plan.log)
     ]
     if plan.order is None and shared:
         return (

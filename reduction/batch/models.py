@@ -25,7 +25,7 @@ def _pooled(
     for survey in surveys:
         values = measured(survey).get(marks.specimen)
         if values is not None:
-            tension[of_test == survey.plan.id] = values
+            tension[of_test == survey.plan.log] = values
     return tension
 
 
@@ -65,7 +65,7 @@ def fit_strain_models(
             try:
                 models[survey.plan.id, name] = fit_strain_model(
                     campaign.specimens[name],
-                    test_id=survey.plan.id,
+                    test_id=survey.plan.log,
                     marks=campaign.marks.get(name),
                     mark_tension=at_end.get(name),
                     mark_tension_at_start=at_start.get(name),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from reduction import __version__
 from reduction.archive.dataset import to_dataset
@@ -14,11 +13,11 @@ from reduction.archive.write import write_archive, write_whole
 from reduction.batch.describe import describe, settings_json
 from reduction.batch.history import history_of, history_remarks
 from reduction.batch.models import fit_strain_models
-from reduction.batch.status import Status, TestStatus, status_csv
-from reduction.batch.survey import Survey, located_again, survey_campaign
+from reduction.batch.outcome import note_message, status_row
+from reduction.batch.status import TestStatus, read_status, status_csv
+from reduction.batch.survey import Survey, as_reduction_error, located_again, survey_campaign
 from reduction.campaign.plan import Campaign
-from reduction.errors import ArchiveError, ReductionError, SettingsError
-from reduction.ingest.quality import account_rows
+from reduction.errors import ArchiveError, SettingsError
 from reduction.pipeline.reduce import reduce_steps, reduce_test
 from reduction.product import History, ReducedTest
 from reduction.report.page import write_report
@@ -91,50 +90,6 @@ def _standing_notes(path: Path, survey: Survey, settings: str) -> list[tuple[str
         return None  # an archive that cannot be read is made again
 
 
-def _message(notes: Sequence[tuple[str, str]]) -> str:
-    """How many notes there are, and the first that is about the test and not the specimen."""
-    texts = list(dict.fromkeys(text for _, text in notes))
-    if not texts:
-        return ""
-    about = [text for stage, text in notes if not stage.startswith("specimen")] or texts
-    return f"{len(texts)} note{'s' if len(texts) > 1 else ''}; first: {about[0]}"
-
-
-def _found(survey: Survey) -> dict[str, Any]:
-    """What `check` prints of a test, beside rows and cycles."""
-    if survey.located is None:
-        return {}
-    record = survey.located.record
-    return {
-        "standstills": survey.located.standstills.n_standstills,
-        "flags": {
-            channel: masks for channel, masks in account_rows(record).n_flagged.items() if masks
-        },
-        "notes": list(record.notes),
-    }
-
-
-def _status(
-    survey: Survey,
-    status: Status,
-    *,
-    error: ReductionError | None = None,
-    message: str = "",
-    seconds: float = 0.0,
-) -> TestStatus:
-    return TestStatus(
-        test=survey.plan.id,
-        status=status,
-        exit_status=0 if error is None else error.exit_status,
-        message=message if error is None else str(error),
-        n_rows=survey.n_rows,
-        n_cycles=survey.n_cycles,
-        raw_sha256=" ".join(source.sha256 for source in survey.sources),
-        seconds=seconds,
-        found=_found(survey),
-    )
-
-
 def check_campaign(
     campaign: Campaign, *, tests: Sequence[str] = (), progress: Progress | None = None
 ) -> tuple[list[TestStatus], dict[tuple[str, str], StrainModel]]:
@@ -161,7 +116,9 @@ def check_campaign(
     statuses = []
     for survey in _selected(surveys, tests):
         error = survey.error or errors.get(survey.plan.id)
-        statuses.append(_status(survey, "no_work" if error is None else "failed", error=error))
+        statuses.append(
+            status_row(campaign, survey, "no_work" if error is None else "failed", error=error)
+        )
     return statuses, models
 
 
@@ -251,7 +208,7 @@ def run_campaign(
         start = clock()
         error = survey.error or errors.get(name)
         if error is not None:
-            statuses.append(_status(survey, "failed", error=error))
+            statuses.append(status_row(campaign, survey, "failed", error=error))
             continue
         if progress is not None:
             progress("reduce", name)
@@ -262,8 +219,10 @@ def run_campaign(
         settings = settings_json(campaign, survey, of_test, history)
         standing = None if force else _standing_notes(path, survey, settings)
         if standing is not None:
-            message = _message(standing)
-            statuses.append(_status(survey, "unchanged", message=message, seconds=clock() - start))
+            message = note_message(standing)
+            statuses.append(
+                status_row(campaign, survey, "unchanged", message=message, seconds=clock() - start)
+            )
             continue
         try:
             product = _reduce(campaign, survey, of_test, history, settings)
@@ -272,19 +231,19 @@ def run_campaign(
             write_archive(to_dataset(product, version=__version__, command=command), path)
         except Exception as failure:
             # a campaign goes on after a failed test, even where the failure is a defect here
-            if not isinstance(failure, ReductionError):
-                failure = ReductionError(
-                    f"internal error, a defect of this program: {type(failure).__name__}: {failure}"
-                )
-            statuses.append(_status(survey, "failed", error=failure, seconds=clock() - start))
+            error = as_reduction_error(failure)
+            statuses.append(
+                status_row(campaign, survey, "failed", error=error, seconds=clock() - start)
+            )
             continue
         survey.located = None  # its record is in the archive now
         notes = product.all_notes()
         statuses.append(
-            _status(
+            status_row(
+                campaign,
                 survey,
                 "reduced_with_notes" if notes else "reduced",
-                message=_message(notes),
+                message=note_message(notes),
                 seconds=clock() - start,
             )
         )
@@ -293,13 +252,23 @@ def run_campaign(
     ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
     archives = [path for path in ours if path.exists()]
     report = None
+    rows = _all_rows(folder / "status.csv", surveys, statuses)
+    if statuses:
+        write_whole(folder / "status.csv", status_csv(rows))
     if archives:
         write_tables(archives, folder / "tables")
-        write_whole(folder / "status.csv", status_csv(statuses))
         if progress is not None:
             progress("report", campaign.id)
         report = write_report(folder, reports / campaign.id, units=units)
-    elif statuses:
-        write_whole(folder / "status.csv", status_csv(statuses))
     stray = sorted(path.name for path in folder.glob("*.nc") if path not in ours)
     return CampaignResult(tuple(statuses), folder, report, tuple(stray))
+
+
+def _all_rows(
+    path: Path, surveys: Sequence[Survey], statuses: Sequence[TestStatus]
+) -> list[TestStatus]:
+    """One row for each test of the campaign; a test that was not asked for keeps its own."""
+    new = {status.test: status for status in statuses}
+    before = read_status(path) if len(new) < len(surveys) else {}
+    rows = [new.get(survey.plan.id) or before.get(survey.plan.id) for survey in surveys]
+    return [row for row in rows if row is not None]

@@ -5,10 +5,11 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Literal, cast
 
-__all__ = ["Status", "TestStatus", "status_csv"]
+__all__ = ["Status", "TestStatus", "read_status", "status_csv"]
 
 Status = Literal["reduced", "reduced_with_notes", "unchanged", "no_work", "failed"]
 _COLUMNS = ("test", "status", "exit_status", "message", "raw_sha256", "seconds")
@@ -48,7 +49,7 @@ class TestStatus:
     n_cycles: int
     raw_sha256: str
     seconds: float
-    found: dict[str, Any]
+    found: dict[str, Any] = field(default_factory=dict)
 
     def document(self) -> dict[str, Any]:
         """The entry of ``tests`` in the JSON answer."""
@@ -74,3 +75,25 @@ def status_csv(rows: Sequence[TestStatus]) -> str:
             ]
         )
     return text.getvalue()
+
+
+def read_status(path: Path) -> dict[str, TestStatus]:
+    """Rows of an earlier status.csv by test; empty where there is none that can be read."""
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        return {
+            row["test"]: TestStatus(
+                test=row["test"],
+                status=cast("Status", row["status"]),
+                exit_status=int(row["exit_status"]),
+                message=row["message"],
+                n_rows=0,
+                n_cycles=0,
+                raw_sha256=row["raw_sha256"],
+                seconds=float(row["seconds"]),
+            )
+            for row in rows
+        }
+    except (OSError, KeyError, ValueError, TypeError):
+        return {}  # it is made anew, from what this run did

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
-from reduction.errors import DataError, ReductionError
+from reduction.errors import DataError, LogError, ReductionError
 from reduction.ingest.record_of_test import read_record
 from reduction.ingest.steps import read_step_readings
 from reduction.pipeline.locate import Located, locate
@@ -20,7 +20,7 @@ from reduction.provenance import Source
 from reduction.record import Floats, Record, SpliceMarks, StepReadings
 from reduction.strain.fit import measure_mark_tension, zero_strain_position
 
-__all__ = ["Survey", "located_again", "read_test", "survey_campaign"]
+__all__ = ["Survey", "as_reduction_error", "located_again", "read_test", "survey_campaign"]
 
 # records larger than this together are read again rather than kept between the passes
 KEPT_SAMPLES = 10_000_000
@@ -93,7 +93,7 @@ def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
     return _slice(record, int(whole.cycles.first[first - 1]), int(whole.cycles.last[last - 1]) + 1)
 
 
-def _step_plan(plan: TestPlan, step: StepPlan) -> TestPlan:
+def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
     cycles = replace(plan.settings.cycles, expected_cycles=step.expected_cycles)
     note = {"step": step.name} | ({"step_note": step.note} if step.note else {})
     return replace(
@@ -102,6 +102,7 @@ def _step_plan(plan: TestPlan, step: StepPlan) -> TestPlan:
         kind=step.kind,
         settings=replace(plan.settings, cycles=cycles),
         attributes=plan.attributes | note,
+        step_place=place,
         steps=(),
     )
 
@@ -138,16 +139,29 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
         length_needed=_needs_length(campaign, plan),
     )
     if not plan.steps:
-        return [_located(plan, record, sources)]
+        survey = _located(plan, record, sources)
+        _measure_marks(survey, survey.located, campaign.marks)
+        return [survey]
+    # a mark, and the position of zero strain, belong to the whole log and not to a step of it
+    whole = locate(record, kind="relaxation", settings=plan.settings)
     surveys = []
-    for step in plan.steps:
-        part = _step_plan(plan, step)
+    for place, step in enumerate(plan.steps, start=1):
+        part = _step_plan(plan, step, place)
         try:
             record_of_step = replace(_step_record(record, step, plan), test_id=part.id)
-            surveys.append(_located(part, record_of_step, sources))
+            survey = _located(part, record_of_step, sources)
         except ReductionError as error:
-            surveys.append(Survey(part, sources, n_rows=record.n_samples, error=error))
+            survey = Survey(part, sources, n_rows=record.n_samples, error=error)
+        survey.zero_strain_position = _zero_strain_position(whole)
+        surveys.append(survey)
+    _measure_marks(surveys[0], whole, campaign.marks)
     return surveys
+
+
+def _zero_strain_position(located: Located) -> float | None:
+    return zero_strain_position(
+        located.standstills, position_is_length=located.record.position_is_length
+    )
 
 
 def _needs_length(campaign: Campaign, plan: TestPlan) -> bool:
@@ -161,9 +175,7 @@ def _needs_length(campaign: Campaign, plan: TestPlan) -> bool:
 def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Survey:
     located = locate(record, kind=plan.kind, settings=plan.settings)
     survey = Survey(plan, sources, located, n_rows=record.n_samples)
-    survey.zero_strain_position = zero_strain_position(
-        located.standstills, position_is_length=record.position_is_length
-    )
+    survey.zero_strain_position = _zero_strain_position(located)
     survey.has_extensometer = record.measured_strain is not None
     survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
     survey.greatest = _greatest(located)
@@ -199,18 +211,18 @@ def _greatest(located: Located) -> dict[str, tuple[Floats, Floats, float]]:
     return found
 
 
-def _measure_marks(survey: Survey, marks: dict[str, SpliceMarks]) -> None:
-    if survey.located is None:
+def _measure_marks(survey: Survey, located: Located | None, marks: dict[str, SpliceMarks]) -> None:
+    """Tension while each mark of a log was read, into the survey of its test or first step."""
+    if located is None:
         return
-    standstills = survey.located.standstills
     for index, name in enumerate(survey.plan.specimens):
-        if name in marks and survey.plan.id in marks[name].test:
+        if name in marks and survey.plan.log in marks[name].test:
             read_at_end, read_at_start = (
                 measure_mark_tension(
                     marks[name],
-                    test_id=survey.plan.id,
-                    standstills=standstills,
-                    tension=survey.located.tension[index],
+                    test_id=survey.plan.log,
+                    standstills=located.standstills,
+                    tension=located.tension[index],
                     reading=reading,
                 )
                 for reading in ("end", "start")
@@ -243,10 +255,8 @@ def survey_campaign(
             progress("survey", plan.id)
         try:
             of_test = read_test(campaign, plan)
-            for survey in of_test:
-                _measure_marks(survey, campaign.marks)
-        except ReductionError as error:
-            of_test = [Survey(plan, error=error)]
+        except Exception as error:
+            of_test = [Survey(plan, error=as_reduction_error(error))]
         for survey in of_test:
             kept += survey.n_rows
             if kept > KEPT_SAMPLES and len(campaign.tests) > 1:
@@ -259,11 +269,26 @@ def located_again(campaign: Campaign, survey: Survey) -> Located:
     """The record of a survey, read again where it was not kept."""
     if survey.located is not None:
         return survey.located
-    whole = campaign.tests.get(survey.plan.id) or campaign.tests[survey.plan.id.rpartition(".")[0]]
-    for again in read_test(campaign, whole):
+    for again in read_test(campaign, campaign.tests[survey.plan.log]):
         if again.plan.id == survey.plan.id and again.located is not None:
+            if again.sources != survey.sources:
+                raise LogError(
+                    campaign.file(survey.plan.files[0][0]),
+                    "the file changed while the campaign ran",
+                    found=f"another content than the {survey.n_rows} rows that were read first",
+                    needed="raw files that stay as they are",
+                )
             return again.located
     raise DataError(
         f"test '{survey.plan.id}' was read before and cannot be read again",
         needed="raw files that stay as they are while a campaign runs",
+    )
+
+
+def as_reduction_error(error: Exception) -> ReductionError:
+    """An error as a test carries it; one that was not raised on purpose is a defect here."""
+    if isinstance(error, ReductionError):
+        return error
+    return ReductionError(
+        f"internal error, a defect of this program: {type(error).__name__}: {error}"
     )

@@ -100,7 +100,7 @@ def _specimen(path: Path, name: str, section: SpecimenSection) -> Specimen:
     )
 
 
-def _inside(path: Path, name: str) -> str:
+def _inside(path: Path, name: str, *, is_needed: bool = True) -> str:
     """A file name that stays inside the campaign folder, or `SettingsError`."""
     folder = path.parent.resolve()
     target = (folder / name).resolve()
@@ -109,7 +109,7 @@ def _inside(path: Path, name: str) -> str:
             path, "a file lies outside the campaign folder", found=repr(name),
             needed="a path inside the folder of campaign.toml, links followed",
         )  # fmt: skip
-    if not target.is_file():
+    if is_needed and not target.is_file():
         raise LogError(path.parent / name, "the file is not there", needed=f"as {path} says")
     return name
 
@@ -177,7 +177,8 @@ def _plan(
     return TestPlan(
         id=name,
         kind=kind,
-        files=tuple((_inside(path, entry), str(used)) for entry, used in pieces),
+        # a log that is not there is its test's error, and the other tests go on
+        files=tuple((_inside(path, entry, is_needed=False), str(used)) for entry, used in pieces),
         specimens=specimens,
         order=test.order,
         control=given("control"),
@@ -186,6 +187,7 @@ def _plan(
         attributes=attributes,
         settings=settings,
         part_of=test.part_of,
+        log=name,
         steps=tuple(
             StepPlan(
                 name=step.name,

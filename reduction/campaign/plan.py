@@ -44,6 +44,10 @@ class TestPlan:
     attributes: dict[str, str]
     settings: ReductionSettings
     part_of: str | None = None
+    log: str = ""
+    """Id of the test whose log this is: another than ``id`` for a step of a log."""
+    step_place: int = 0
+    """Place of a step in its log, from 1; 0 for a test without steps."""
     steps: tuple[StepPlan, ...] = ()
 
 

@@ -130,9 +130,12 @@ def report(
 
 
 @app.command()
-def schema() -> None:
+def schema(
+    json: Annotated[bool, typer.Option("--json", help="As it is in any case.")] = False,
+    quiet: Quiet = False,
+) -> None:
     """Print the JSON Schema of campaign.toml."""
-    with guarded(Outcome(json=True)) as outcome:
+    with guarded(Outcome(json=not quiet or json, quiet=quiet)) as outcome:
         from reduction.campaign.model import CampaignFile
 
         outcome.answer(CampaignFile.model_json_schema())

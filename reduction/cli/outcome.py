@@ -65,7 +65,8 @@ def guarded(outcome: Outcome) -> Iterator[Outcome]:
         outcome.error(str(error))
         outcome.raise_status(error.exit_status)
         if not outcome.answered:
-            outcome.answer({"error": str(error), "exit_status": error.exit_status})
+            failed = {"tests": [], "error": str(error), "exit_status": error.exit_status}
+            outcome.answer(failed)
     except KeyboardInterrupt:
         outcome.error("interrupted; products that were finished are kept")
         outcome.status = INTERRUPTED

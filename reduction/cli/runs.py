@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, cast
 
 from rich.console import Console
-from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from reduction.batch.run import check_campaign as check_tests
@@ -30,15 +31,18 @@ ProgressCall = Callable[[str, str], None]
 
 
 @contextmanager
-def _progress(outcome: Outcome) -> Iterator[ProgressCall]:
+def _progress(outcome: Outcome, n_steps: int) -> Iterator[ProgressCall]:
     """A line on standard error while a person waits; nothing where no terminal is."""
     if outcome.quiet or outcome.json or not sys.stderr.isatty():
         yield lambda stage, name: None
         return
-    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    columns = (
+        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
+    )  # fmt: skip
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("")
-        yield lambda stage, name: bar.update(task, description=f"{stage} {name}")
+        task = bar.add_task("", total=n_steps)
+        # each call announces a step, so the ones before it are done
+        yield lambda stage, name: bar.update(task, description=f"{stage} {name}", advance=1)
 
 
 def _show(outcome: Outcome, table: Table) -> None:
@@ -49,21 +53,25 @@ def _show(outcome: Outcome, table: Table) -> None:
 
 def _status_table(tests: Sequence[TestStatus]) -> Table:
     table = Table(box=None, pad_edge=False)
-    for heading in ("test", "status", "rows", "cycles", "message"):
-        table.add_column(heading, justify="right" if heading in ("rows", "cycles") else "left")
+    for heading in ("test", "status", "rows", "rate [Hz]", "gaps", "cycles", "message"):
+        is_count = heading not in ("test", "status", "message")
+        table.add_column(escape(heading), justify="right" if is_count else "left")
     for test in tests:
-        # a message is text from files of strangers: no markup is read in it
-        message = test.message.replace("[", r"\[")
+        message = escape(test.message)  # text from files of strangers: no markup is read in it
         # nothing is reduced in a check: what can be read and located is ready for a run
         status = "ready" if test.status == "no_work" else test.status
-        table.add_row(test.test, status, str(test.n_rows), str(test.n_cycles), message)
+        rate = test.found.get("rate", {}).get("value")
+        table.add_row(
+            test.test, status, str(test.n_rows), "" if rate is None else f"{rate:.4g}",
+            str(test.found.get("gaps", "")), str(test.n_cycles), message,
+        )  # fmt: skip
     return table
 
 
 def _report_failures(outcome: Outcome, tests: Sequence[TestStatus]) -> None:
     for test in tests:
         if test.exit_status:
-            outcome.error(f"{test.test}: {test.message}")
+            outcome.error(test.message)
             outcome.raise_status(test.exit_status)
 
 
@@ -73,7 +81,7 @@ def _model_lines(
     table = Table(box=None, pad_edge=False)
     length, factor = display_unit("m", units)
     for heading in ("test", "specimen", "strain method", "marks", f"marked range [{length}]"):
-        table.add_column(heading)
+        table.add_column(escape(heading))
     shown = {test.test for test in tests}
     for (test, specimen), model in models.items():
         if test in shown:
@@ -87,7 +95,7 @@ def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> N
     """Read and validate everything, print what was found, write nothing."""
     units = cast("UnitSystem", outcome.units)
     campaign = load_campaign(path)
-    with _progress(outcome) as progress:
+    with _progress(outcome, len(campaign.tests)) as progress:
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
     _show(outcome, _status_table(statuses))
     for test in statuses:
@@ -112,7 +120,8 @@ def run_campaign(
 ) -> None:
     """Reduce a campaign and say what became of each test."""
     campaign = load_campaign(path)
-    with _progress(outcome) as progress:
+    # each log is surveyed, then reduced; then come the tables and the report
+    with _progress(outcome, 2 * len(campaign.tests) + 2) as progress:
         result = run_tests(
             campaign,
             processed=processed,

@@ -116,7 +116,11 @@ def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(small, co
         (('unit = "ft"', 'unit = "furlongs_x"'), 2, "unit 'furlongs_x' is not known"),
         (('unit = "ft"', 'unit = "lbf"'), 2, "unit 'lbf' is not a unit of length"),
         (('column = "load_new_lb"', 'column = "load"'), 3, "load"),
-        (('file = "A.csv"', 'file = "C.csv"'), 3, "C.csv: the file is not there"),
+        (
+            ('file = "A.csv"', 'file = "C.csv"'),
+            3,
+            "C.csv: the file cannot be read; found No such file",
+        ),
         (('"pin-to-pin"', '"displacement"'), 2, "displacement"),
         (("[tests.A]", '[tests.A]\nkind = "snap"'), 4, "does not reduce"),
     ],
@@ -207,3 +211,75 @@ def test_report_without_an_archive_says_what_is_missing(tmp_path, command):
 def test_help_and_version_answer(command):
     assert "Reduce a campaign" in command("--help").stdout
     assert command("--version").stdout.startswith("reduction ")
+
+
+def test_a_log_that_is_not_there_fails_its_own_test_alone(small, command):
+    (small / "raw" / "A.csv").unlink()
+    done = command("run", small / "raw" / "campaign.toml", "--json", cwd=small)
+    assert done.returncode == 3 and "A.csv: the file cannot be read" in done.stderr
+    statuses = {test["id"]: test["status"] for test in json.loads(done.stdout)["tests"]}
+    assert statuses == {"A": "failed", "B": "reduced_with_notes"}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ('source = "synthetic"', 'source = "synthetic"\nsynthetic = true\ninstitution = "x"'),
+        ("[defaults]", '[defaults]\nmachine = "linear drive"'),
+        ("[tests.A]", '[tests.A]\ndate = "2026-11-21"'),
+        ("[tests.A]", "[tests.A]\norder = 1"),
+        ("[tests.A]", "[tests.A]\ntarget_strain = [0.5, 1.0]"),
+        ("[tests.A]", "[tests.A]\n[tests.A.reduction.cycles]\nbreak_in_cycles = 1\n[tests.A.x]"),
+        ('diameter = ["1.04 in"]', 'diameter = ["1.04 in"]\nnote = "cut from one length"'),
+    ],
+)
+def test_whatever_a_product_says_is_part_of_what_makes_it_unchanged(small, command, change):
+    campaign = small / "raw" / "campaign.toml"
+    assert command("run", campaign, "--quiet", "--test", "A", cwd=small).returncode == 0
+    text = campaign.read_text().replace(*change)
+    campaign.write_text(text.replace("\n[tests.A.x]", ""))
+    if "[tests.A.x]" in text:  # the file key must come before the sub-table
+        campaign.write_text(
+            CAMPAIGN.replace(
+                '[tests.A]\nfile = "A.csv"\nn_cycles = 10',
+                '[tests.A]\nfile = "A.csv"\nn_cycles = 10\nreduction.cycles.break_in_cycles = 1',
+            )
+        )
+    done = command("run", campaign, "--json", "--test", "A", cwd=small)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["tests"][0]["status"] == "reduced_with_notes"
+
+
+def test_marks_of_a_log_in_steps_serve_the_other_tests_as_before(small, command):
+    campaign = small / "raw" / "campaign.toml"
+    assert command("run", campaign, "--quiet", cwd=small).returncode == 0
+    archives = small / "processed" / "small"
+    whole = (archives / "tables" / "tangent_modulus.csv").read_text().splitlines()
+    campaign.write_text(
+        campaign.read_text()
+        + '[[tests.B.steps]]\nname = "first"\nfrom = 1\nto = 5\n'
+        + '[[tests.B.steps]]\nname = "second"\nfrom = 6\nto = 10\n'
+    )
+    done = command("run", campaign, "--json", cwd=small)
+    assert done.returncode == 0, done.stderr
+    split = (archives / "tables" / "tangent_modulus.csv").read_text().splitlines()
+    of_a = [line for line in whole if line.startswith("A,")]
+    assert of_a and of_a == [line for line in split if line.startswith("A,")]
+
+
+def test_one_test_alone_leaves_the_rows_of_the_others_in_the_status(small, command):
+    campaign = small / "raw" / "campaign.toml"
+    assert command("run", campaign, "--quiet", cwd=small).returncode == 0
+    assert command("run", campaign, "--quiet", "--test", "B", cwd=small).returncode == 0
+    with (small / "processed" / "small" / "status.csv").open(newline="") as file:
+        rows = {row["test"]: row for row in csv.DictReader(file)}
+    assert rows["A"]["status"] == "reduced_with_notes" and "note" in rows["A"]["message"]
+    assert rows["B"]["status"] == "unchanged" and "note" in rows["B"]["message"]
+
+
+def test_a_failure_is_one_object_too(tmp_path, command):
+    done = command("run", tmp_path / "nope.toml", "--json")
+    assert done.returncode == 2
+    answer = json.loads(done.stdout)
+    assert answer["tests"] == [] and "cannot be read" in answer["error"]
+    assert json.loads(command("schema", "--json").stdout)["title"] == "CampaignFile"

@@ -1,0 +1,77 @@
+"""What a run says of one test: its status, in one line what matters, and what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from reduction.batch.status import Status, TestStatus
+from reduction.batch.survey import Survey
+from reduction.campaign.plan import Campaign
+from reduction.errors import LogError, ReductionError, SettingsError
+from reduction.ingest.quality import account_rows
+
+__all__ = ["note_message", "status_row"]
+
+
+def note_message(notes: Sequence[tuple[str, str]]) -> str:
+    """How many notes there are, and the first that is about the test and not the specimen."""
+    texts = list(dict.fromkeys(text for _, text in notes))
+    if not texts:
+        return ""
+    about = [text for stage, text in notes if not stage.startswith("specimen")] or texts
+    return f"{len(texts)} note{'s' if len(texts) > 1 else ''}; first: {about[0]}"
+
+
+def _error_message(campaign: Campaign, survey: Survey, error: ReductionError) -> str:
+    """``FILE:ROW [CHANNEL]: problem``; an error of the data is given its test's file."""
+    if isinstance(error, (LogError, SettingsError)):
+        return str(error)
+    return f"{campaign.file(survey.plan.files[0][0])}: {error}"
+
+
+def _found(survey: Survey) -> dict[str, Any]:
+    """What `check` prints of a test, beside rows and cycles."""
+    if survey.located is None:
+        return {}
+    record = survey.located.record
+    step = np.diff(record.time)
+    step = step[np.isfinite(step) & (step > 0)]
+    gaps = account_rows(record).n_flagged.get("crosshead_position", {}).get("gap", 0)
+    return {
+        "rate": {"value": float(1 / np.median(step)) if step.size else None, "unit": "Hz"},
+        "gaps": int(gaps),
+        "standstills": survey.located.standstills.n_standstills,
+        "flags": {
+            channel: masks for channel, masks in account_rows(record).n_flagged.items() if masks
+        },
+        "notes": [
+            *record.notes,
+            *(() if survey.located.cycles is None else survey.located.cycles.notes),
+        ],
+    }
+
+
+def status_row(
+    campaign: Campaign,
+    survey: Survey,
+    status: Status,
+    *,
+    error: ReductionError | None = None,
+    message: str = "",
+    seconds: float = 0.0,
+) -> TestStatus:
+    """One row of the status table."""
+    return TestStatus(
+        test=survey.plan.id,
+        status=status,
+        exit_status=0 if error is None else error.exit_status,
+        message=message if error is None else _error_message(campaign, survey, error),
+        n_rows=survey.n_rows,
+        n_cycles=survey.n_cycles,
+        raw_sha256=" ".join(source.sha256 for source in survey.sources),
+        seconds=seconds,
+        found=_found(survey),
+    )
