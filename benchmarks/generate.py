@@ -1,4 +1,4 @@
-"""Synthetic logs of any size for the benchmarks: two spliced specimens cycled between two stretches.
+"""Synthetic logs of any size for the benchmarks: two spliced specimens, cycled.
 
 The logs are synthetic: tension follows a cubic law of the free strain with hysteresis, the
 splices stretch by c F^n, and both channels carry noise and 12-bit quantisation.
@@ -7,6 +7,7 @@ Nothing here is a measurement.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -66,9 +67,12 @@ def columns(n_rows: int, *, per_cycle: int = 400, seed: int = 1) -> dict[str, np
     rng = np.random.default_rng(seed)
     levels = list(HOLDS.values())
     set_up = [np.full(int(20 * RATE), levels[0])]
-    for low, high in zip(levels, levels[1:], strict=False):
+    for low, high in pairwise(levels):
         set_up += [np.linspace(low, high, int(10 * RATE)), np.full(int(30 * RATE), high)]
-    set_up += [np.linspace(levels[-1], levels[1], int(10 * RATE)), np.full(int(5 * RATE), levels[1])]
+    set_up += [
+        np.linspace(levels[-1], levels[1], int(10 * RATE)),
+        np.full(int(5 * RATE), levels[1]),
+    ]
     before = np.concatenate(set_up)[:n_rows]
     step = np.arange(n_rows - before.size)
     phase = (step % per_cycle) / per_cycle

@@ -30,7 +30,7 @@ REDUCE = """
 import time, json, resource, sys
 from pathlib import Path
 from reduction.batch.models import fit_strain_models
-from reduction.batch.run import _reduce
+from reduction.batch.run import reduce_survey
 from reduction.batch.survey import survey_campaign
 from reduction.campaign.load import load_campaign
 campaign = load_campaign(Path(sys.argv[1]))
@@ -41,7 +41,8 @@ models, errors = fit_strain_models(campaign, surveys)
 survey = surveys[0]
 if survey.error is not None:
     raise survey.error
-test = _reduce(campaign, survey, [models[survey.plan.id, n] for n in survey.plan.specimens], None, "{}")
+of_test = [models[survey.plan.id, name] for name in survey.plan.specimens]
+test = reduce_survey(campaign, survey, of_test, None, "{}")
 print(json.dumps({"seconds": time.perf_counter() - start, "located": located - start,
     "cycles": test.cycles.n_cycles,
     "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}))
@@ -66,13 +67,18 @@ def main(n_rows: int, repeats: int) -> None:
     log = folder / f"long_{n_rows}.csv"
     pairs = [(run(REDUCE, campaign), run(PARSE, log)) for _ in range(repeats + 1)][1:]
     ratios = [ours["seconds"] / theirs["seconds"] for ours, theirs in pairs]
-    print(f"{n_rows} rows, {log.stat().st_size / 1e6:.0f} MB, {pairs[0][0]['cycles']} cycles, "
-          f"{os.cpu_count()} processors, {repeats} pairs after one warm-up")
+    print(
+        f"{n_rows} rows, {log.stat().st_size / 1e6:.0f} MB, {pairs[0][0]['cycles']} cycles, "
+        f"{os.cpu_count()} processors, {repeats} pairs after one warm-up"
+    )
     print("| | median s | min | max | peak MB |\n|---|---|---|---|---|")
     for name, side in (("reduction, hashing included", 0), ("pandas.read_csv", 1)):
         seconds = sorted(pair[side]["seconds"] for pair in pairs)
         peak = max(pair[side]["peak_mb"] for pair in pairs)
-        print(f"| {name} | {median(seconds):.2f} | {seconds[0]:.2f} | {seconds[-1]:.2f} | {peak:.0f} |")
+        print(
+            f"| {name} | {median(seconds):.2f} | {seconds[0]:.2f} | {seconds[-1]:.2f} "
+            f"| {peak:.0f} |"
+        )
     print(f"| ratio | {median(ratios):.2f} | {min(ratios):.2f} | {max(ratios):.2f} | |")
 
 

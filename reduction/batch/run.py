@@ -25,7 +25,7 @@ from reduction.strain.model import StrainModel
 from reduction.tables.write import write_tables
 from reduction.units import UnitSystem
 
-__all__ = ["CampaignResult", "check_campaign", "run_campaign"]
+__all__ = ["CampaignResult", "check_campaign", "reduce_survey", "run_campaign"]
 
 Progress = Callable[[str, str], None]
 
@@ -122,13 +122,38 @@ def check_campaign(
     return statuses, models
 
 
-def _reduce(
+def reduce_survey(
     campaign: Campaign,
     survey: Survey,
     models: Sequence[StrainModel],
     history: History | None,
     settings: str,
 ) -> ReducedTest:
+    """Reduce one surveyed test.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        Where its files, layouts and specimens are.
+    survey : Survey
+        The test after the first pass.
+    models : sequence of StrainModel
+        One a specimen, in the order of the test; none for a stepwise test.
+    history : History or None
+        What the specimens had seen before.
+    settings : str
+        Every setting in force, as JSON, for the product.
+
+    Returns
+    -------
+    test : ReducedTest
+        Ready for the archive.
+
+    Raises
+    ------
+    ReductionError
+        If the record cannot support a stage that its kind needs.
+    """
     description = describe(campaign, survey)
     specimens = tuple(campaign.specimens[name] for name in survey.plan.specimens)
     if survey.steps is not None:
@@ -225,7 +250,7 @@ def run_campaign(
             )
             continue
         try:
-            product = _reduce(campaign, survey, of_test, history, settings)
+            product = reduce_survey(campaign, survey, of_test, history, settings)
             remarks = history_remarks(survey, surveys)
             product = replace(product, notes=(*product.notes, *remarks))
             write_archive(to_dataset(product, version=__version__, command=command), path)
