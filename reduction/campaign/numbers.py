@@ -6,6 +6,7 @@ dimension carries its unit.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import Any
@@ -26,6 +27,28 @@ _DIMENSION: dict[tuple[str, str], Dimension] = {
     ("modulus", "strain_bin_width"): "strain",
     ("modulus", "window"): "strain",
     ("modulus", "stress_at_strain"): "strain",
+}
+# least and greatest value that a stage can work with; SI
+_LIMITS: dict[tuple[str, str], tuple[float, float]] = {
+    ("quality", "stuck_samples"): (3, math.inf),
+    ("quality", "spike_factor"): (3, math.inf),
+    ("quality", "gap_factor"): (1.01, math.inf),
+    ("quality", "rate_tolerance"): (1e-6, math.inf),
+    ("phases", "minimum_duration"): (1e-3, math.inf),
+    ("phases", "position_tolerance"): (1e-9, math.inf),
+    ("cycles", "band"): (1e-9, math.inf),
+    ("cycles", "trim_threshold"): (0.0, 1.0),
+    ("cycles", "break_in_cycles"): (0, math.inf),
+    ("modulus", "strain_bin_width"): (1e-4, 10.0),
+    ("modulus", "window"): (1e-4, 10.0),
+    ("modulus", "minimum_count"): (3, math.inf),
+    ("modulus", "maximum_segments"): (1, 8),
+    ("modulus", "segment_tolerance"): (1e-6, 1.0),
+    ("modulus", "selected_cycles"): (2, math.inf),
+    ("holds", "minimum_duration"): (1e-3, math.inf),
+    ("holds", "maximum_terms"): (1, 5),
+    ("slip", "minimum_cycles"): (20, math.inf),
+    ("slip", "false_alarm"): (1e-9, 0.5),
 }
 # set elsewhere in campaign.toml, under their own names
 _ELSEWHERE = {("strain", "method"), ("cycles", "control"), ("cycles", "waveform"),
@@ -49,8 +72,12 @@ def _value(group: str, name: str, value: object, default: object, control: str) 
         number = float(value)
     else:
         raise SettingsError(f"{where} is not a number", found=repr(value), needed="a number")
-    if number < 0:
-        raise SettingsError(f"{where} is negative", found=repr(value), needed="zero or more")
+    least, greatest = _LIMITS.get((group, name), (0.0, math.inf))
+    if not least <= number <= greatest:
+        upper = "" if math.isinf(greatest) else f" and at most {greatest:g}"
+        raise SettingsError(
+            f"{where} is out of range", found=repr(value), needed=f"at least {least:g}{upper}"
+        )
     if isinstance(default, int):
         if number != int(number):
             raise SettingsError(
