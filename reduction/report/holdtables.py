@@ -6,9 +6,12 @@ import numpy as np
 
 from reduction.report.htmltable import Table, count, make_table, measured, words
 from reduction.report.style import shown
+from reduction.report.uncertainty import plus_minus
 from reduction.report.view import TestView
 
 __all__ = ["hold_table", "prony_table", "refusals"]
+
+_OF_HOLDS = "noise, regression"
 
 
 def hold_table(view: TestView) -> Table | None:
@@ -43,9 +46,8 @@ def hold_table(view: TestView) -> Table | None:
             for row, value, uncertainty in zip(rows, values, half, strict=True):
                 row.append(measured(value, uncertainty, unit))
     return make_table(
-        "Holds: relaxation at constant length, creep at constant tension; plus or minus one"
-        " standard uncertainty.",
-        columns, rows, synthetic=view.is_synthetic, is_tall=len(rows) > 12,
+        "Holds: relaxation at constant length, creep at constant tension.", columns, rows,
+        synthetic=view.is_synthetic, is_tall=len(rows) > 12, remarks=[plus_minus(_OF_HOLDS)],
     )  # fmt: skip
 
 
@@ -96,7 +98,10 @@ def prony_table(view: TestView) -> Table | None:
         seconds.label("relaxation time"), force.label("tension it tends to"),
     )  # fmt: skip
     return make_table(
-        "Prony series of the holds; ±: standard uncertainty.", columns, rows,
+        "Prony series of the holds.", columns, rows,
         synthetic=view.is_synthetic,
-        remarks=[f"Number of terms, {text}." for text in _of_holds(view, "hold_criterion")],
+        remarks=[
+            *(f"Number of terms, {text}." for text in _of_holds(view, "hold_criterion")),
+            plus_minus(_OF_HOLDS),
+        ],
     ) if rows else None  # fmt: skip

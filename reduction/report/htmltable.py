@@ -27,6 +27,7 @@ __all__ = [
 
 NOT_GIVEN = "\N{EN DASH}"
 _MOST_DECIMALS = 12
+_LEAST_LEADING = 2.0
 _NOISE = 1e-12
 """A sum of numbers of order one that ought to vanish ends at 1e-16 or so, in percent at 1e-14."""
 
@@ -52,6 +53,7 @@ class Table:
     rows: tuple[tuple[Cell, ...], ...]
     is_tall: bool = False
     remarks: tuple[str, ...] = ()
+    is_compact: bool = False
 
     @property
     def number_columns(self) -> tuple[bool, ...]:
@@ -69,13 +71,15 @@ def make_table(
     synthetic: bool,
     is_tall: bool = False,
     remarks: Sequence[str] = (),
+    is_compact: bool = False,
 ) -> Table:
     """Return a table; the caption says where the data are synthetic.
 
     A mark for what is missing stands flush right among numbers, whoever made its cell.
     """
     text = f"{caption} SYNTHETIC DATA." if synthetic else caption
-    plain = Table(text, tuple(columns), tuple(tuple(row) for row in rows), is_tall, tuple(remarks))
+    cells = tuple(tuple(row) for row in rows)
+    plain = Table(text, tuple(columns), cells, is_tall, tuple(remarks), is_compact)
     missing = Cell(NOT_GIVEN, is_number=True)
     aligned = tuple(
         tuple(
@@ -121,13 +125,19 @@ def number_text(value: float, digits: int = 4) -> str:
     return f"{value:,.{_decimals(value, digits)}f}"
 
 
-def measured(value: float, uncertainty: float, unit: Shown | None = None) -> Cell:
+def measured(
+    value: float, uncertainty: float, unit: Shown | None = None, *, is_short: bool = False
+) -> Cell:
     """Return a cell of a value and its standard uncertainty, to two digits of the latter.
+
+    The short form has one digit where that is 2 or more, and is off by a fifth at most.
 
     Examples
     --------
     >>> measured(1.23456e6, 1.2e4, Shown("MPa", 1e-6)).text
     '1.235 ± 0.012'
+    >>> measured(1.23456e6, 7.2e3, Shown("MPa", 1e-6), is_short=True).text
+    '1.235 ± 0.007'
     """
     scale = 1.0 if unit is None else unit.factor
     if not isfinite(value):
@@ -139,7 +149,8 @@ def measured(value: float, uncertainty: float, unit: Shown | None = None) -> Cel
         return number(value, unit)
     if not 1e-10 <= half < 1e9:
         return Cell(f"{value * scale:.4g} ± {half:.2g}", _exact(value), is_number=True)
-    places = _decimals(half, 2)
+    leading = half / 10.0 ** floor(log10(half))
+    places = _decimals(half, 1 if is_short and leading >= _LEAST_LEADING else 2)
     shown = f"{_fixed(value * scale, places)} ± {_fixed(half, places)}"
     return Cell(shown, _exact(value), is_number=True)
 

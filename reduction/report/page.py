@@ -19,6 +19,7 @@ from reduction import __version__
 from reduction.archive.open import open_archive
 from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
+from reduction.report.designtables import design_tables
 from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.campaign import (
     draw_all_moduli,
@@ -118,7 +119,7 @@ def _render(
         make_part("Start against end", draw_parts(tests)),
         make_part("Static against dynamic", draw_static_dynamic(tests)),
     ]
-    answers = [segment_table(tests), *(interval_table(view) for view in tests)]
+    intervals = [interval_table(view) for view in tests]
     first = tests[0] if tests else None
     return template.render(
         title=(first.attribute("title") if first else "") or f"Campaign {folder}",
@@ -131,7 +132,9 @@ def _render(
         specimens=specimen_table(tests, units),
         specimen_notes=specimen_notes(tests),
         tests=test_table(tests, statuses),
-        answers=[table for table in answers if table is not None],
+        designs=design_tables(tests),
+        segments=segment_table(tests),
+        intervals=[table for table in intervals if table is not None],
         faults=faults,
         comparisons=[part for part in comparisons if part.figures],
         sections=sections,

@@ -19,6 +19,7 @@ from reduction.report.htmltable import (
     words,
 )
 from reduction.report.style import Shown, shown
+from reduction.report.uncertainty import plus_minus
 from reduction.report.view import TestView, any_synthetic
 from reduction.units import UnitSystem
 from reduction.vocabulary import QUANTITIES
@@ -108,9 +109,14 @@ def coefficient_table(view: TestView) -> Table | None:
         *([words(name), *(column.get(name, words("")) for column in columns)] for name in names),
     ]
     return make_table(
-        "Position to strain of the splice-free length: method, and what it goes by; plus or minus"
-        " one standard uncertainty.",
+        "Position to strain of the splice-free length: method, and what it goes by.",
         ("what, with its unit", *view.specimens), rows, synthetic=view.is_synthetic,
+        remarks=[
+            plus_minus(
+                "tape readings, regression on the splice marks",
+                left_out="load-cell calibration, position scale, the choice of strain method",
+            )
+        ],
     )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from reduction.report.figures.steps import flagged_steps
 from reduction.report.htmltable import Table, make_table, measured, number, words
 from reduction.report.style import shown
+from reduction.report.uncertainty import plus_minus_of_steps
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_VALUES
 
@@ -70,10 +71,10 @@ def interval_table(view: TestView) -> Table | None:
     ]
     columns = (
         "between", "branch", percent.label("strain in the middle"),
-        stress.label("interval modulus ± standard uncertainty"),
+        stress.label("interval modulus"),
     )  # fmt: skip
     return make_table(
         "Slope of stress on strain between two readings; none where a reading is flagged or the"
         " weights turn.",
-        columns, rows, synthetic=view.is_synthetic,
+        columns, rows, synthetic=view.is_synthetic, remarks=[plus_minus_of_steps()],
     )  # fmt: skip

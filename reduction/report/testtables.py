@@ -9,6 +9,7 @@ import numpy as np
 from reduction.record import Floats
 from reduction.report.htmltable import Cell, Table, count, make_table, measured, number, span, words
 from reduction.report.style import shown
+from reduction.report.uncertainty import plus_minus
 from reduction.report.view import TestView, any_synthetic
 from reduction.vocabulary import BRANCH_NAMES
 
@@ -26,13 +27,13 @@ def segment_table(tests: Sequence[TestView]) -> Table | None:
     units = tests[0].units
     columns = (
         "test", "specimen", "branch", "segment",
-        shown("stress", units).label("segment modulus ± standard uncertainty"),
+        shown("stress", units).label("segment modulus"),
         shown("strain", units).label("strain range"),
         shown("tension", units).label("tension range"), "cycles [1]", "strain method",
     )  # fmt: skip
     return make_table(
         "Elastic modulus of the rubber, piecewise linear, from trimmed branches.", columns, rows,
-        synthetic=any_synthetic(tests), is_tall=len(rows) > 16,
+        synthetic=any_synthetic(tests), is_tall=len(rows) > 16, remarks=[plus_minus()],
     )  # fmt: skip
 
 
@@ -108,9 +109,9 @@ def summary_table(view: TestView) -> Table | None:
         cells = (measured(value, u, unit) for value, u in zip(values, half, strict=True))
         rows.append([words(label), *cells])
     return make_table(
-        "Means over the cycles of the test, and what changed over them; plus or minus one standard"
-        " uncertainty.",
+        "Means over the cycles of the test, and what changed over them.",
         ("what, with its unit", *view.specimens), rows, synthetic=view.is_synthetic,
+        remarks=[plus_minus()],
     )  # fmt: skip
 
 
@@ -162,8 +163,8 @@ def slip_table(view: TestView) -> Table | None:
         force.label("step of peak tension"), small.label("splice let out"),
     )  # fmt: skip
     return make_table(
-        "Steps of a splice, told apart from steady creep; ±: standard uncertainty.", columns, rows,
-        synthetic=view.is_synthetic,
+        "Steps of a splice, told apart from steady creep.", columns, rows,
+        synthetic=view.is_synthetic, remarks=[plus_minus()],
     )  # fmt: skip
 
 
@@ -217,12 +218,12 @@ def elastomer_table(view: TestView) -> Table | None:
         for place, law in enumerate(laws)
     ]
     columns = (
-        "specimen", "law", "parameters ± standard uncertainty", percent.label("fitted range"),
+        "specimen", "law", "parameters", percent.label("fitted range"),
         stress.label("rms residual"), "corrected Akaike criterion [1]", "stable over the range",
     )  # fmt: skip
     return make_table(
         "Hyperelastic laws of the first loading; a law says nothing outside its fitted range.",
-        columns, rows, synthetic=view.is_synthetic,
+        columns, rows, synthetic=view.is_synthetic, remarks=[plus_minus("regression")],
     )  # fmt: skip
 
 

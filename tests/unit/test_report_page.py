@@ -72,6 +72,9 @@ class Page(HTMLParser):
         return self.tables[name][0]
 
 
+PLUS_MINUS = "±: one standard uncertainty (k = 1), type A: "
+
+
 @pytest.fixture
 def report(tmp_path, write):
     """Write reduced tests as archives, make the page, and read it."""
@@ -395,3 +398,36 @@ def test_how_the_terms_were_chosen_stands_once_a_hold_below_the_prony_table(repo
     assert not any("chosen" in cell[1] for cell in page.rows("Prony series")[0])
     said = re.findall(r"Number of terms, hold \d+, \w+: [^<\n]+", "".join(page.text))
     assert len(said) == len(set(said)) == len(rich_test.holds)
+
+
+def test_wherever_a_plus_minus_stands_its_meaning_stands_too(
+    report, rich_test, stepwise_test, tmp_path
+):
+    report(rich_test, stepwise_test)
+    html = (tmp_path / "reports" / "index.html").read_text(encoding="utf-8")
+    html = re.sub(r"<script.*?</script>", "", html, flags=re.DOTALL)
+    captions = re.findall(r"<figcaption>(.*?)</figcaption>", html, flags=re.DOTALL)
+    tables = re.findall(r"<table>.*?(?=<table>|<h\d|<figure|<details)", html, flags=re.DOTALL)
+    places = [text for text in (*captions, *tables) if "±" in text]
+    assert len(places) > 12
+    for text in places:
+        assert PLUS_MINUS in text, text[:300]
+        assert "Not in it: " in text
+
+
+def test_the_first_answer_is_the_modulus_at_round_strains(report, rich_test):
+    page = report(rich_test)
+    headings = [a.get("id") for tag, a in page.elements if tag == "h2"]
+    assert headings[0] == "answer"
+    captions = list(page.tables)
+    assert captions[0].startswith("new: tangent modulus at stated strains")
+    assert captions[1].startswith("used: tangent modulus at stated strains")
+    folded = [a for tag, a in page.elements if tag == "details" and a.get("class") == "segments"]
+    assert len(folded) == 1 and "open" not in folded[0]
+
+
+def test_the_segments_are_unfolded_where_no_round_strain_is_reached(report, rich_test):
+    curves = replace(rich_test.curves, strain_bin=rich_test.curves.strain_bin * 0 + 0.0031)
+    page = report(replace(rich_test, curves=curves))
+    folded = [a for tag, a in page.elements if tag == "details" and a.get("class") == "segments"]
+    assert len(folded) == 1 and "open" in folded[0]

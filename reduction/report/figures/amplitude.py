@@ -9,6 +9,7 @@ import numpy as np
 from reduction.record import Floats
 from reduction.report.figure import Figure, Trace, axis, make_figure, plain_numbers
 from reduction.report.style import Kind, marker, plot_text, shown
+from reduction.report.uncertainty import plus_minus
 from reduction.report.view import TestView, all_specimens, any_synthetic
 
 __all__ = ["draw_amplitude_pairs"]
@@ -43,8 +44,9 @@ def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
             f"campaign-{name}", f"{words.capitalize()} of each test",
             f"{words.capitalize()}, mean over the cycles of a test, against mean strain. The"
             " level bar is the strain range of the cycles: tests at one mean strain and two"
-            " amplitudes stand above each other. Upright bar: ± 1 standard uncertainty. Colour and"
-            " shape of a marker are the test's, its filling the specimen's (grey in the legend).",
+            " amplitudes stand above each other. Upright bar: ±. Colour and shape of a marker are"
+            " the test's, its filling the specimen's (grey in the legend)."
+            f" {plus_minus()}",
             data, synthetic=any_synthetic(tests), height=400,
             xaxis=axis("mean strain [%]"), yaxis=axis(unit.label(words)),
         )  # fmt: skip

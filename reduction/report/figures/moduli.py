@@ -7,6 +7,7 @@ import numpy as np
 from reduction.record import Floats
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure
 from reduction.report.style import COLOURS, DASHES, Shown, shown
+from reduction.report.uncertainty import plus_minus
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_NAMES
 
@@ -41,7 +42,7 @@ def draw_moduli(view: TestView) -> list[Figure]:
                 ),
                 band(
                     x, mean - uncertainty, mean + uncertainty, colour=tint, alpha=0.35,
-                    name=f"{branch}: mean ± standard uncertainty", legendgroup=branch,
+                    name=f"{branch}: mean ±", legendgroup=branch,
                 ),
                 line(
                     x, parts["untrimmed"][own], name=f"{branch}, ends not trimmed", colour=tint,
@@ -57,9 +58,9 @@ def draw_moduli(view: TestView) -> list[Figure]:
             make_figure(
                 f"{view.key}-modulus-{index}",
                 f"{view.id}: modulus, {specimen}",
-                "Tangent modulus against strain, mean over the cycles. Dark band: ± 1 standard"
-                " uncertainty; light band: least to greatest cycle; thin lines: the branches with"
-                " their ends, where the rate is not constant.",
+                "Tangent modulus against strain, mean over the cycles. Dark band: mean ±;"
+                " light band: least to greatest cycle; thin lines: the branches with their ends,"
+                f" where the rate is not constant. {plus_minus()}",
                 [trace for trace in data if trace["y"]],
                 synthetic=view.is_synthetic,
                 height=400,
@@ -95,8 +96,8 @@ def draw_cycle_curves(view: TestView) -> list[Figure]:
         found.append(
             make_figure(
                 f"{view.key}-first-last-{index}", f"{view.id}: first and last cycle, {specimen}",
-                "Tangent modulus of the first and of the last cycle; band: ± 1 standard"
-                " uncertainty; ascending solid, descending dashed.",
+                "Tangent modulus of the first and of the last cycle, ascending solid,"
+                f" descending dashed; band: ±. {plus_minus('noise, regression')}",
                 [trace for trace in data if trace["y"]], synthetic=view.is_synthetic,
                 xaxis=axis(in_strain.label("strain")),
                 yaxis=axis(in_stress.label("tangent modulus"), rangemode="tozero"),

@@ -6,6 +6,7 @@ import numpy as np
 
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
 from reduction.report.style import COLOURS, DASHES, plot_text, shown
+from reduction.report.uncertainty import plus_minus_of_steps
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_VALUES
 
@@ -107,8 +108,8 @@ def _moduli(view: TestView) -> Figure:
         )  # fmt: skip
     return make_figure(
         f"{view.key}-step-moduli", f"{view.id}: interval and secant modulus",
-        "Interval modulus: slope of stress on strain between two readings, at their middle, with"
-        " ± 1 standard uncertainty. Secant modulus: stress over strain of one reading.",
+        "Interval modulus: slope of stress on strain between two readings, at their middle; bars:"
+        f" ±. Secant modulus: stress over strain of one reading. {plus_minus_of_steps()}",
         [trace for trace in data if trace["y"]], synthetic=view.is_synthetic, height=400,
         xaxis=axis(in_strain.label("strain")), yaxis=axis(in_stress.label("modulus")),
     )  # fmt: skip

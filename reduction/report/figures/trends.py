@@ -10,6 +10,7 @@ from reduction.record import Floats
 from reduction.report.decimate import POINTS, keep_extremes
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure
 from reduction.report.style import Kind, colour, faded, plot_text, shown
+from reduction.report.uncertainty import plus_minus
 from reduction.report.view import TestView
 
 __all__ = ["LONG", "draw_trends"]
@@ -62,7 +63,7 @@ def draw_trends(view: TestView) -> list[Figure]:
         figure = make_figure(
             f"{view.key}-{key}",
             f"{view.id}: {words}",
-            _CAPTIONS[key] + " Band: ± 1 standard uncertainty." + _slip_words(view),
+            f"{_CAPTIONS[key]} Band: ±.{_slip_words(view)} {plus_minus('noise, regression')}",
             [trace for trace in data if trace["y"]],
             synthetic=view.is_synthetic,
             height=340,
