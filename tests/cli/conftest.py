@@ -1,5 +1,6 @@
-"""The synthetic campaign, run once by the installed command, for all tests that look at it."""
+"""The campaigns of the project, run once by the command itself, and the command for small ones."""
 
+import contextlib
 import os
 import subprocess
 import sys
@@ -7,6 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
+from reduction.cli.main import app
 
 ROOT = Path(__file__).parents[2]
 
@@ -21,6 +25,20 @@ def reduction(*arguments, cwd=ROOT, **environment):
         check=False,
         env=os.environ | {"PYTHONPATH": str(ROOT)} | environment,
     )
+
+
+@dataclass(frozen=True)
+class Ended:
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+def invoke(*arguments, cwd=ROOT):
+    """Run the command in this process: all of it but two seconds of imports."""
+    with contextlib.chdir(cwd):
+        done = CliRunner().invoke(app, [str(entry) for entry in arguments], catch_exceptions=False)
+    return Ended(done.exit_code, done.stdout, done.stderr)
 
 
 @dataclass(frozen=True)
@@ -40,6 +58,11 @@ def run_campaign(name, folder, *options, **environment):
 
 @pytest.fixture(scope="session")
 def command():
+    return invoke
+
+
+@pytest.fixture(scope="session")
+def process():
     return reduction
 
 

@@ -41,10 +41,8 @@ n_cycles = 10
 """
 
 
-@pytest.fixture
-def small(tmp_path):
+def write_small(folder):
     """Two synthetic logs, their marks, and a campaign."""
-    folder = tmp_path / "raw"
     folder.mkdir()
     shutil.copy(RAW / "T-1.csv", folder / "A.csv")
     shutil.copy(RAW / "T-2.csv", folder / "B.csv")
@@ -54,6 +52,27 @@ def small(tmp_path):
         "\n".join(kept).replace("T-1,", "A,").replace("T-2,", "B,") + "\n"
     )
     (folder / "campaign.toml").write_text(CAMPAIGN)
+
+
+@pytest.fixture
+def small(tmp_path):
+    write_small(tmp_path / "raw")
+    return tmp_path
+
+
+@pytest.fixture(scope="session")
+def reduced_once(tmp_path_factory, command):
+    folder = tmp_path_factory.mktemp("reduced")
+    write_small(folder / "raw")
+    done = command("run", folder / "raw" / "campaign.toml", "--quiet", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+@pytest.fixture
+def reduced(reduced_once, tmp_path):
+    """The small campaign with its products, to be changed at will."""
+    shutil.copytree(reduced_once, tmp_path, dirs_exist_ok=True)
     return tmp_path
 
 
@@ -68,35 +87,32 @@ def test_check_prints_what_it_found_and_writes_nothing(small, command):
     assert sorted(small.rglob("*")) == before
 
 
-def test_a_test_that_did_not_change_is_not_done_again(small, command):
-    campaign = small / "raw" / "campaign.toml"
-    first = command("run", campaign, "--json", cwd=small)
-    assert first.returncode == 0, first.stderr
-    product = small / "processed" / "small" / "A.nc"
+def test_a_test_that_did_not_change_is_not_done_again(reduced, command):
+    campaign = reduced / "raw" / "campaign.toml"
+    product = reduced / "processed" / "small" / "A.nc"
     stamp, content = product.stat().st_mtime_ns, product.read_bytes()
-    again = json.loads(command("run", campaign, "--json", cwd=small).stdout)
+    again = json.loads(command("run", campaign, "--json", cwd=reduced).stdout)
     assert [test["status"] for test in again["tests"]] == ["unchanged", "unchanged"]
     assert product.stat().st_mtime_ns == stamp
-    forced = json.loads(command("run", campaign, "--json", "--force", cwd=small).stdout)
+    forced = json.loads(command("run", campaign, "--json", "--force", cwd=reduced).stdout)
     assert {test["status"] for test in forced["tests"]} == {"reduced_with_notes"}
     assert product.read_bytes() == content
     campaign.write_text(campaign.read_text().replace("1.04 in", "1.01 in"))
-    changed = json.loads(command("run", campaign, "--json", "--test", "A", cwd=small).stdout)
+    changed = json.loads(command("run", campaign, "--json", "--test", "A", cwd=reduced).stdout)
     assert [test["status"] for test in changed["tests"]] == ["reduced_with_notes"]
     assert product.read_bytes() != content
-    report = command("report", small / "processed", "--json", cwd=small)
+    report = command("report", reduced / "processed", "--json", cwd=reduced)
     assert json.loads(report.stdout)["reports"] == [str(Path("reports/small/index.html"))]
 
 
-def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(small, command):
-    campaign = small / "raw" / "campaign.toml"
-    assert command("run", campaign, "--quiet", cwd=small).returncode == 0
-    old = (small / "processed" / "small" / "A.nc").read_bytes()
-    log = small / "raw" / "A.csv"
+def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(reduced, command):
+    campaign = reduced / "raw" / "campaign.toml"
+    old = (reduced / "processed" / "small" / "A.nc").read_bytes()
+    log = reduced / "raw" / "A.csv"
     lines = log.read_text().splitlines()
     lines[1000] = "99.7,ovrflw,1,1"
     log.write_text("\n".join(lines) + "\n")
-    done = command("run", campaign, "--json", cwd=small)
+    done = command("run", campaign, "--json", cwd=reduced)
     assert done.returncode == 3
     statuses = {test["id"]: test for test in json.loads(done.stdout)["tests"]}
     assert statuses["A"]["status"] == "failed" and statuses["A"]["exit_status"] == 3
@@ -104,8 +120,8 @@ def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(small, co
     assert "ovrflw" in done.stderr and "Traceback" not in done.stderr
     # the marks of A can no longer be used, so B is another reduction than before
     assert statuses["B"]["status"] == "reduced_with_notes"
-    assert (small / "processed" / "small" / "A.nc").read_bytes() == old
-    with (small / "processed" / "small" / "status.csv").open(newline="") as file:
+    assert (reduced / "processed" / "small" / "A.nc").read_bytes() == old
+    with (reduced / "processed" / "small" / "status.csv").open(newline="") as file:
         assert {row["test"]: row["status"] for row in csv.DictReader(file)}["A"] == "failed"
 
 
@@ -168,16 +184,15 @@ def test_a_log_in_steps_gives_one_product_a_step(small, command):
     assert names == {"A.first-five.nc", "A.hold.nc"}
 
 
-def test_a_product_of_no_test_is_named_and_left_alone(small, command):
-    campaign = small / "raw" / "campaign.toml"
-    assert command("run", campaign, "--quiet", cwd=small).returncode == 0
+def test_a_product_of_no_test_is_named_and_left_alone(reduced, command):
+    campaign = reduced / "raw" / "campaign.toml"
     campaign.write_text(campaign.read_text().split("[tests.B]")[0])
-    marks = small / "raw" / "marks.csv"
+    marks = reduced / "raw" / "marks.csv"
     kept = [line for line in marks.read_text().splitlines() if not line.startswith("B,")]
     marks.write_text("\n".join(kept) + "\n")
-    done = command("run", campaign, "--quiet", cwd=small)
+    done = command("run", campaign, "--quiet", cwd=reduced)
     assert done.returncode == 0 and "B.nc: belongs to no test of this campaign" in done.stderr
-    assert (small / "processed" / "small" / "B.nc").exists()
+    assert (reduced / "processed" / "small" / "B.nc").exists()
 
 
 def test_sniff_proposes_a_layout_that_a_person_completes(small, command):
@@ -208,9 +223,12 @@ def test_report_without_an_archive_says_what_is_missing(tmp_path, command):
     assert done.returncode == 6 and "no archive was found" in done.stderr
 
 
-def test_help_and_version_answer(command):
-    assert "Reduce a campaign" in command("--help").stdout
-    assert command("--version").stdout.startswith("reduction ")
+def test_the_program_itself_answers_refuses_and_ends_with_its_status(process):
+    assert "Reduce a campaign" in process("--help").stdout
+    assert process("--version").stdout.startswith("reduction ")
+    refused = process("check", "nowhere.toml")
+    assert refused.returncode == 2 and not refused.stdout
+    assert "cannot be read" in refused.stderr and "Traceback" not in refused.stderr
 
 
 def test_a_log_that_is_not_there_fails_its_own_test_alone(small, command):
@@ -233,9 +251,8 @@ def test_a_log_that_is_not_there_fails_its_own_test_alone(small, command):
         ('diameter = ["1.04 in"]', 'diameter = ["1.04 in"]\nnote = "cut from one length"'),
     ],
 )
-def test_whatever_a_product_says_is_part_of_what_makes_it_unchanged(small, command, change):
-    campaign = small / "raw" / "campaign.toml"
-    assert command("run", campaign, "--quiet", "--test", "A", cwd=small).returncode == 0
+def test_whatever_a_product_says_is_part_of_what_makes_it_unchanged(reduced, command, change):
+    campaign = reduced / "raw" / "campaign.toml"
     text = campaign.read_text().replace(*change)
     campaign.write_text(text.replace("\n[tests.A.x]", ""))
     if "[tests.A.x]" in text:  # the file key must come before the sub-table
@@ -245,33 +262,31 @@ def test_whatever_a_product_says_is_part_of_what_makes_it_unchanged(small, comma
                 '[tests.A]\nfile = "A.csv"\nn_cycles = 10\nreduction.cycles.break_in_cycles = 1',
             )
         )
-    done = command("run", campaign, "--json", "--test", "A", cwd=small)
+    done = command("run", campaign, "--json", "--test", "A", cwd=reduced)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["tests"][0]["status"] == "reduced_with_notes"
 
 
-def test_marks_of_a_log_in_steps_serve_the_other_tests_as_before(small, command):
-    campaign = small / "raw" / "campaign.toml"
-    assert command("run", campaign, "--quiet", cwd=small).returncode == 0
-    archives = small / "processed" / "small"
+def test_marks_of_a_log_in_steps_serve_the_other_tests_as_before(reduced, command):
+    campaign = reduced / "raw" / "campaign.toml"
+    archives = reduced / "processed" / "small"
     whole = (archives / "tables" / "tangent_modulus.csv").read_text().splitlines()
     campaign.write_text(
         campaign.read_text()
         + '[[tests.B.steps]]\nname = "first"\nfrom = 1\nto = 5\n'
         + '[[tests.B.steps]]\nname = "second"\nfrom = 6\nto = 10\n'
     )
-    done = command("run", campaign, "--json", cwd=small)
+    done = command("run", campaign, "--json", cwd=reduced)
     assert done.returncode == 0, done.stderr
     split = (archives / "tables" / "tangent_modulus.csv").read_text().splitlines()
     of_a = [line for line in whole if line.startswith("A,")]
     assert of_a and of_a == [line for line in split if line.startswith("A,")]
 
 
-def test_one_test_alone_leaves_the_rows_of_the_others_in_the_status(small, command):
-    campaign = small / "raw" / "campaign.toml"
-    assert command("run", campaign, "--quiet", cwd=small).returncode == 0
-    assert command("run", campaign, "--quiet", "--test", "B", cwd=small).returncode == 0
-    with (small / "processed" / "small" / "status.csv").open(newline="") as file:
+def test_one_test_alone_leaves_the_rows_of_the_others_in_the_status(reduced, command):
+    campaign = reduced / "raw" / "campaign.toml"
+    assert command("run", campaign, "--quiet", "--test", "B", cwd=reduced).returncode == 0
+    with (reduced / "processed" / "small" / "status.csv").open(newline="") as file:
         rows = {row["test"]: row for row in csv.DictReader(file)}
     assert rows["A"]["status"] == "reduced_with_notes" and "note" in rows["A"]["message"]
     assert rows["B"]["status"] == "unchanged" and "note" in rows["B"]["message"]
