@@ -11,7 +11,7 @@ _SHARED = (
 )
 
 
-def plus_minus(found_from: str = _CYCLES, *, left_out: str = _SHARED) -> str:
+def plus_minus(found_from: str = _CYCLES, *, left_out: str = _SHARED, mark: str = "±") -> str:
     """Return the sentence: what a standard uncertainty was found from, and what it leaves out.
 
     Examples
@@ -19,12 +19,13 @@ def plus_minus(found_from: str = _CYCLES, *, left_out: str = _SHARED) -> str:
     >>> plus_minus("tape readings", left_out="position scale")
     '±: one standard uncertainty (k = 1), type A: tape readings. Not in it: position scale.'
     """
-    return f"±: one standard uncertainty (k = 1), type A: {found_from}. Not in it: {left_out}."
+    return f"{mark}: one standard uncertainty (k = 1), type A: {found_from}. Not in it: {left_out}."
 
 
-def plus_minus_of_steps() -> str:
+def plus_minus_of_steps(mark: str = "±") -> str:
     """Return the sentence for a stepwise test, which has readings and no cycles."""
     return plus_minus(
         "scatter of the readings of length and tension",
         left_out="calibration of length and load, diameter, gauge length",
+        mark=mark,
     )

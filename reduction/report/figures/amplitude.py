@@ -44,9 +44,9 @@ def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
             f"campaign-{name}", f"{words.capitalize()} of each test",
             f"{words.capitalize()}, mean over the cycles of a test, against mean strain. The"
             " level bar is the strain range of the cycles: tests at one mean strain and two"
-            " amplitudes stand above each other. Upright bar: ±. Colour and shape of a marker are"
+            " amplitudes stand above each other. Colour and shape of a marker are"
             " the test's, its filling the specimen's (grey in the legend)."
-            f" {plus_minus()}",
+            f" {plus_minus(mark='Upright bar, ±')}",
             data, synthetic=any_synthetic(tests), height=400,
             xaxis=axis("mean strain [%]"), yaxis=axis(unit.label(words)),
         )  # fmt: skip

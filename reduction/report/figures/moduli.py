@@ -58,9 +58,9 @@ def draw_moduli(view: TestView) -> list[Figure]:
             make_figure(
                 f"{view.key}-modulus-{index}",
                 f"{view.id}: modulus, {specimen}",
-                "Tangent modulus against strain, mean over the cycles. Dark band: mean ±;"
-                " light band: least to greatest cycle; thin lines: the branches with their ends,"
-                f" where the rate is not constant. {plus_minus()}",
+                "Tangent modulus against strain, mean over the cycles. Light"
+                " band: least to greatest cycle; thin lines: the branches with their ends,"
+                f" where the rate is not constant. {plus_minus(mark='Dark band, ±')}",
                 [trace for trace in data if trace["y"]],
                 synthetic=view.is_synthetic,
                 height=400,
@@ -97,7 +97,7 @@ def draw_cycle_curves(view: TestView) -> list[Figure]:
             make_figure(
                 f"{view.key}-first-last-{index}", f"{view.id}: first and last cycle, {specimen}",
                 "Tangent modulus of the first and of the last cycle, ascending solid,"
-                f" descending dashed; band: ±. {plus_minus('noise, regression')}",
+                f" descending dashed. {plus_minus('noise, regression', mark='Band, ±')}",
                 [trace for trace in data if trace["y"]], synthetic=view.is_synthetic,
                 xaxis=axis(in_strain.label("strain")),
                 yaxis=axis(in_stress.label("tangent modulus"), rangemode="tozero"),

@@ -108,8 +108,8 @@ def _moduli(view: TestView) -> Figure:
         )  # fmt: skip
     return make_figure(
         f"{view.key}-step-moduli", f"{view.id}: interval and secant modulus",
-        "Interval modulus: slope of stress on strain between two readings, at their middle; bars:"
-        f" ±. Secant modulus: stress over strain of one reading. {plus_minus_of_steps()}",
+        "Interval modulus: slope of stress on strain between two readings, at their middle."
+        f" Secant modulus: stress over strain of one reading. {plus_minus_of_steps('Bars, ±')}",
         [trace for trace in data if trace["y"]], synthetic=view.is_synthetic, height=400,
         xaxis=axis(in_strain.label("strain")), yaxis=axis(in_stress.label("modulus")),
     )  # fmt: skip

@@ -63,7 +63,8 @@ def draw_trends(view: TestView) -> list[Figure]:
         figure = make_figure(
             f"{view.key}-{key}",
             f"{view.id}: {words}",
-            f"{_CAPTIONS[key]} Band: ±.{_slip_words(view)} {plus_minus('noise, regression')}",
+            f"{_CAPTIONS[key]}{_slip_words(view)}"
+            f" {plus_minus('noise, regression', mark='Band, ±')}",
             [trace for trace in data if trace["y"]],
             synthetic=view.is_synthetic,
             height=340,
