@@ -233,6 +233,9 @@ _ROWS = (
     Quantity("standstill_tension", "N", "mean tension of the standstill"),
     Quantity("standstill_is_rest", "1", "whether every specimen is slack"),
     Quantity("standstill_position_tolerance", "m", "range of position allowed in a standstill"),
+    Quantity(
+        "hold_tension_tolerance", "N", "range of tension allowed in a hold at constant tension"
+    ),
     Quantity("slack_tension", "N", "tension at or below which a standstill is a rest"),
     # holds
     Quantity("hold", "1", "number of the hold, each specimen counted"),

@@ -33,8 +33,8 @@ _PRONY = (
 
 
 def standstill_values(standstills: Standstills) -> Values:
-    """Return every interval in which the crosshead stands still."""
-    return {
+    """Return every interval in which the crosshead, or the tension that is kept, stands still."""
+    values: Values = {
         "standstill_start_time": standstills.start_time,
         "standstill_end_time": standstills.end_time,
         "standstill_position": standstills.mean_position,
@@ -43,6 +43,9 @@ def standstill_values(standstills: Standstills) -> Values:
         "standstill_position_tolerance": np.array(standstills.position_tolerance),
         "slack_tension": np.array(standstills.slack_tension),
     }
+    if standstills.tension_tolerance is not None:
+        values["hold_tension_tolerance"] = np.array(standstills.tension_tolerance)
+    return values
 
 
 def hold_values(holds: Sequence[HoldResult]) -> Values:

@@ -8,7 +8,7 @@ dimension                      one entry for
 =============================  ============================================================
 ``specimen``                   each specimen; text coordinate ``specimen``
 ``sample``                     each row of the log; auxiliary coordinate ``time``
-``standstill``                 each interval in which the crosshead stands still
+``standstill``                 each rest and each hold
 ``cycle``                      each whole cycle; coordinate ``cycle`` (1, 2, ...)
 ``branch_name``                ascending, descending; text coordinate ``branch_name``
 ``strain_bin``                 each strain bin; ``strain_bin`` with ``strain_bin_bounds``
@@ -177,6 +177,7 @@ _ROWS = chain(
     stated("standstill_tension", ("specimen", "standstill"), MEAN_READING),
     flag("standstill_is_rest", ("standstill",), _NO_YES),
     stated("standstill_position_tolerance", (), SETTING),
+    stated("hold_tension_tolerance", (), SETTING),
     stated("slack_tension", (), SETTING),
     # strain methods
     label("strain_method", _S),

@@ -126,9 +126,13 @@ def _select(
     inside = slice(first, last + 1)
     rows = first + _sound_rows(time[inside], position[inside], tension[inside])
     seconds, place, load, stretch = (one[rows] for one in (time, position, tension, strain))
-    rows = begin + _sound_rows(*(one[begin : first + 1] for one in (time, position, tension)))
-    before = [one[rows] for one in (time, position, tension)]
-    ramp = find_ramp(*before, band=standstills.position_tolerance) if before[0].size > 2 else None
+    # under load control the machine moves the tension, and the length answers
+    moved, answer, band = position, tension, standstills.position_tolerance
+    if standstills.tension_tolerance is not None:
+        moved, answer, band = tension, position, standstills.tension_tolerance
+    rows = begin + _sound_rows(*(one[begin : first + 1] for one in (time, moved, answer)))
+    before = [one[rows] for one in (time, moved, answer)]
+    ramp = find_ramp(*before, band=band) if before[0].size > 2 else None
     return Hold(
         time=seconds,
         position=place,
@@ -141,14 +145,17 @@ def _select(
     )
 
 
-def _describe(hold: Hold, rate: Rate | None, n_samples: int, follows_hold: bool) -> None:
+def _describe(
+    hold: Hold, rate: Rate | None, *, n_samples: int, follows_hold: bool, on_tension: bool
+) -> None:
     """Say how the ramp was treated and what was left out."""
     if hold.ramp is not None:
+        added = "length" if on_tension else "tension"
+        use = "counts" if on_tension else "enters the Prony terms"
         hold.notes.append(
             f"ramp of {hold.ramp.end_time - hold.ramp.start_time:.3g} s; it acts as a step "
             f"{hold.ramp.end_time - hold.ramp.centre_time:.3g} s before the hold (centre of the "
-            f"tension it adds) and enters the Prony terms as {hold.ramp.duration:.3g} s at "
-            "constant rate"
+            f"{added} it adds) and {use} as {hold.ramp.duration:.3g} s at constant rate"
         )
     if rate is not None:
         hold.notes.append(
@@ -162,7 +169,14 @@ def _describe(hold: Hold, rate: Rate | None, n_samples: int, follows_hold: bool)
 
 
 def _result(
-    hold: Hold, *, name: str, kind: str, settings: HoldSettings, n_samples: int, follows_hold: bool
+    hold: Hold,
+    *,
+    name: str,
+    kind: str,
+    settings: HoldSettings,
+    n_samples: int,
+    follows_hold: bool,
+    on_tension: bool,
 ) -> HoldResult:
     """Reduce one hold of one specimen."""
     times = np.array(settings.times, dtype=np.float64)
@@ -191,7 +205,7 @@ def _result(
             drop = Rate(ends.drop, ends.drop_uncertainty, np.nan, np.nan)
             rate = _rate(hold, ends)
             prony = _prony(hold, ends, settings)
-    _describe(hold, rate, n_samples, follows_hold)
+    _describe(hold, rate, n_samples=n_samples, follows_hold=follows_hold, on_tension=on_tension)
     shown = rate or Rate(np.nan, np.nan, np.nan, np.nan)
     return HoldResult(
         specimen=name,
@@ -250,7 +264,8 @@ def reduce_holds(
     strain : array_like, shape (n_specimens, n_samples)
         Strain of the free length. [1]
     standstills : Standstills
-        Intervals in which the crosshead (for creep: the tension) stands still.
+        Intervals in which the crosshead (for creep: the tension) stands still; where it has a
+        ``tension_tolerance`` the ramps are those of the tension.
     specimens : tuple of str, length n_specimens
         Names, in the order of the rows.
     settings : HoldSettings
@@ -271,7 +286,8 @@ def reduce_holds(
     Notes
     -----
     Source: WHOI-2005-10, sec. 4.1 and Figure 24 ([1]_), which calls relaxation "creep".
-    The zero of time for rates is the centre of the tension that the ramp adds; for
+    The zero of time for rates is the centre of what the ramp adds, tension or, where the
+    machine keeps the tension, length; for
     ``times`` it is the first sample of the hold; the Prony terms are corrected for the
     ramp exactly as far as it has a constant rate.  Uncertainties are type A.  Cost grows
     with the samples of the holds: series are fitted on 40 block means a decade of time.
@@ -314,6 +330,7 @@ def reduce_holds(
                     settings=settings,
                     n_samples=n_samples,
                     follows_hold=earlier,
+                    on_tension=standstills.tension_tolerance is not None,
                 )
             )
     return tuple(results)

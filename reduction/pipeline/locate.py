@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,15 +10,17 @@ from numpy.typing import NDArray
 from reduction.cycles.find import find_cycles
 from reduction.cycles.product import Cycles
 from reduction.errors import DataError
+from reduction.phases.constant_tension import find_tension_stands
 from reduction.phases.standstill import Standstills, find_standstills
 from reduction.record import Floats, Quality, Record
 from reduction.settings import ReductionSettings
 
-__all__ = ["Located", "locate", "usable"]
+__all__ = ["HELD", "Located", "locate", "usable"]
 
 CYCLIC = ("cyclic", "fatigue")
 PULLED = ("quasi-static", "tensile")
 HELD = ("relaxation", "creep")
+_REPEATS = Quality.SATURATED | Quality.STUCK
 _UNUSABLE = Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE
 
 
@@ -51,19 +53,46 @@ def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located
             needed="one of " + ", ".join((*CYCLIC, *PULLED, *HELD, "stepwise")),
         )
     position = usable(record.crosshead_position, record.crosshead_position_quality_flag)
-    tension = usable(record.tension, record.quality_flag)
-    standstills = find_standstills(record.time, position, tension, settings=settings.phases)
+    if kind == "creep" or (settings.cycles.control == "load" and kind != "relaxation"):
+        record, standstills = _held_on_tension(record, position, settings)
+    else:
+        tension = usable(record.tension, record.quality_flag)
+        standstills = find_standstills(record.time, position, tension, settings=settings.phases)
     if kind not in CYCLIC:
         return Located(record, standstills, None)
     cycles = find_cycles(
         record.time,
         position,
-        tension,
+        usable(record.tension, record.quality_flag),
         standstills,
         settings=settings.cycles,
         cycle_counter=record.cycle_counter,
     )
     return Located(record, standstills, cycles)
+
+
+def _held_on_tension(
+    record: Record, position: Floats, settings: ReductionSettings
+) -> tuple[Record, Standstills]:
+    """Holds at constant tension, in which a load that repeats one value is no fault."""
+    kept = record.quality_flag & ~np.uint16(_REPEATS)
+    standstills = find_tension_stands(
+        record.time, position, usable(record.tension, kept), settings=settings.phases
+    )
+    in_hold = np.zeros(record.n_samples, dtype=bool)
+    for first, last, is_rest in zip(
+        standstills.first, standstills.last, standstills.is_rest, strict=True
+    ):
+        in_hold[first : last + 1] = not is_rest
+    freed = int(np.count_nonzero(in_hold & (kept != record.quality_flag)))
+    if not freed:
+        return record, standstills
+    note = (
+        f"{freed} samples in holds at constant tension repeat one value of it: their flags stuck "
+        "and saturated are taken off, since the machine holds it there"
+    )
+    flags = np.where(in_hold, kept, record.quality_flag)
+    return replace(record, quality_flag=flags, notes=(*record.notes, note)), standstills
 
 
 def usable(values: Floats, flags: NDArray[np.uint16]) -> Floats:

@@ -17,9 +17,10 @@ from reduction.errors import DataError
 from reduction.holds.reduce import reduce_holds
 from reduction.moduli.slack import slack_strain_at_unloading
 from reduction.moduli.stepwise import reduce_stepwise
+from reduction.phases.standstill import Standstills
 from reduction.pipeline.cyclic import parts_of_cycles
 from reduction.pipeline.loading import parts_of_first_loading
-from reduction.pipeline.locate import Located
+from reduction.pipeline.locate import HELD, Located
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
 from reduction.record import Floats, Quality, Record, Specimen, StepReadings
@@ -82,7 +83,7 @@ def reduce_test(
     holds = reduce_holds(
         record.time, position, tension, strain, standstills,
         specimens=record.specimens, settings=settings.holds,
-        kind="creep" if description.kind == "creep" else "relaxation",
+        kind="relaxation" if standstills.tension_tolerance is None else "creep",
     )  # fmt: skip
     slack, slack_uncertainty, remarks = slack_strain_at_unloading(
         position,
@@ -94,6 +95,8 @@ def reduce_test(
     )
     notes = [note for specimen in specimens for note in check_constant_volume(specimen)]
     notes += parts.pop("notes", [])
+    if description.kind in HELD and not holds:
+        notes.append(_no_hold(standstills, settings))
     notes += [
         f"{name}: {text}" for name, text in zip(record.specimens, remarks, strict=True) if text
     ]
@@ -185,6 +188,24 @@ def _strain(
     return strain
 
 
+def _no_hold(standstills: Standstills, settings: ReductionSettings) -> str:
+    """Why a test that was to be held has no number of a hold."""
+    if standstills.tension_tolerance is None:
+        channel, tolerance, key = (
+            "the crosshead", f"{standstills.position_tolerance:.3g} m", "position_tolerance",
+        )  # fmt: skip
+    else:
+        channel, tolerance, key = (
+            "the tension", f"{standstills.tension_tolerance:.3g} N", "tension_tolerance",
+        )  # fmt: skip
+    return (
+        f"refused: everything about holds: none is found; above the slack tension of "
+        f"{standstills.slack_tension:.3g} N {channel} nowhere keeps within {tolerance} for "
+        f"{settings.phases.minimum_duration:g} s (kind and control right? else state "
+        f"phases.{key})"
+    )
+
+
 def _steps(located: Located, models: Sequence[StrainModel]) -> tuple[Step, ...]:
     """One line a stage, with the numbers it found."""
     record, standstills, cycles = located.record, located.standstills, located.cycles
@@ -193,7 +214,13 @@ def _steps(located: Located, models: Sequence[StrainModel]) -> tuple[Step, ...]:
         Step(
             "phases",
             f"{standstills.n_standstills} standstills within "
-            f"{standstills.position_tolerance:.4g} m, slack at {standstills.slack_tension:.4g} N",
+            f"{standstills.position_tolerance:.4g} m"
+            + (
+                ""
+                if standstills.tension_tolerance is None
+                else f", holds on tension within {standstills.tension_tolerance:.4g} N"
+            )
+            + f", slack at {standstills.slack_tension:.4g} N",
         ),
     ]
     for model in models:

@@ -288,6 +288,7 @@ def rich_test():
             is_rest=np.array([True, False]),
             position_tolerance=0.004,
             slack_tension=8.0,
+            tension_tolerance=2.0,
         ),
         phase=np.repeat([0.0, 1.0, 2.0, 3.0], N_SAMPLES // 4),
         strain=array(rng, 2, N_SAMPLES),

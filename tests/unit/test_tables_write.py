@@ -100,6 +100,7 @@ def test_every_number_of_an_archive_but_the_samples_is_in_a_table():
         "crosshead_position_standard_uncertainty", "crosshead_displacement_standard_uncertainty",
         "tension_standard_uncertainty", "diameter_reading", "stretched_diameter",
         "stretched_diameter_strain", "standstill_position_tolerance", "slack_tension",
+        "hold_tension_tolerance",
     }  # fmt: skip
     missing = {
         name

@@ -1,0 +1,142 @@
+"""Tests under load control, end to end: creep at constant tension, and cycles of tension."""
+
+import csv
+
+import numpy as np
+import pytest
+
+CAMPAIGN = """
+[campaign]
+id = "load-control"
+title = "Load control"
+synthetic = true
+[specimens.cord]
+kind = "elastomer"
+diameter = ["20 mm"]
+gauge_length = "1 m"
+[layouts.logger]
+format = "delimited"
+delimiter = ","
+[layouts.logger.channels]
+time = { column = "t", unit = "s" }
+crosshead_position = { column = "x", unit = "m", datum = "pin-to-pin" }
+tension.1 = { column = "F", unit = "N" }
+[tests.held]
+layout = "logger"
+specimens = ["cord"]
+file = "held.csv"
+"""
+STIFFNESS = 1000.0  # N per unit strain, one tenth of a second after a step of tension
+RATE = 0.05  # of that strain, per decade
+
+
+def creep_strain(time, start, ramp, load):
+    """Superposition over a ramp of constant rate, from 400 steps of it."""
+    begins = start + ramp * (np.arange(400) + 0.5) / 400
+    strain = np.zeros(time.size)
+    for begin in begins:
+        since = time - begin
+        grown = 1 + RATE * np.log10(1 + np.clip(since, 0, None) / 0.1)
+        strain += np.where(since > 0, grown, 0) * load / STIFFNESS / begins.size
+    return strain
+
+
+def run(command, folder, time, position, tension, *lines):
+    noise = np.random.default_rng(7)
+    columns = [
+        time,
+        position + noise.normal(0, 0.0002, time.size),
+        tension + noise.normal(0, 0.3, time.size),
+    ]
+    np.savetxt(
+        folder / "held.csv", np.column_stack(columns), delimiter=",", header="t,x,F", comments="",
+        fmt="%.6g",
+    )  # fmt: skip
+    (folder / "campaign.toml").write_text("\n".join([CAMPAIGN, *lines]), encoding="utf-8")
+    done = command(
+        "run", folder / "campaign.toml", "--processed", folder / "processed",
+        "--reports", folder / "reports",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return folder / "processed" / "load-control" / "tables"
+
+
+def table(folder, name):
+    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture(scope="module")
+def creep():
+    """Slack for 20 s, 300 N within 20 s, kept for 30 min, and back."""
+    time = np.arange(0, 2000, 0.5)
+    tension = np.interp(time, [0, 20, 40, 1840, 1860], [0, 0, 300, 300, 0])
+    strain = creep_strain(time, 20, 20, 300.0)
+    return time, 1 + np.where(time < 1840, strain, strain * tension / 300), tension
+
+
+def test_creep_at_constant_tension_has_its_rate(command, tmp_path, creep):
+    lines = ['kind = "creep"', 'control = "load"']
+    tables = run(command, tmp_path, *creep, *lines)
+    (hold,) = table(tables, "relaxation")
+    assert hold["hold_kind"] == "creep"
+    assert float(hold["hold_start_time [s]"]) == pytest.approx(40, abs=0.5)
+    assert float(hold["hold_duration [s]"]) == pytest.approx(1800, abs=1)
+    assert float(hold["hold_initial_tension [N]"]) == pytest.approx(300, abs=0.2)
+    rate = float(hold["creep_rate_per_decade [1]"])
+    spread = float(hold["creep_rate_per_decade_standard_uncertainty [1]"])
+    truth = RATE * 300 / STIFFNESS
+    assert rate == pytest.approx(truth, abs=2 * spread)
+    assert spread < 0.01 * truth
+    assert hold["relaxation_rate_per_decade [1]"] == hold["hold_refusal"] == ""
+    at = {
+        row["hold_time [s]"]: float(row["strain_at_time [1]"])
+        for row in table(tables, "relaxation_times")
+        if row["strain_at_time [1]"]
+    }
+    # one hour is not reached
+    assert set(at) == {"1.0", "10.0", "60.0", "180.0", "600.0"}
+    assert at["600.0"] - at["60.0"] == pytest.approx(
+        float(np.diff(creep_strain(np.array([100.0, 640.0]), 20, 20, 300.0))[0]), rel=0.01
+    )
+
+
+def sine(time):
+    """Slack for 20 s, then a sine without a stop."""
+    return np.where(time > 20, 150 * (1 - np.cos(2 * np.pi * (time - 20) / 40)), 0)
+
+
+def test_a_creep_test_without_a_hold_says_so(command, tmp_path, creep):
+    time, tension = creep[0], sine(creep[0])
+    tables = run(command, tmp_path, time, 1 + tension / STIFFNESS, tension, 'kind = "creep"')
+    assert not (tables / "relaxation.csv").exists()
+    refusals = [row["note"] for row in table(tables, "notes") if row["note"].startswith("refused")]
+    assert len(refusals) == 1
+    assert "the tension nowhere keeps within" in refusals[0]
+    assert "phases.tension_tolerance" in refusals[0]
+
+
+def test_a_relaxation_test_without_a_hold_says_so(command, tmp_path, creep):
+    time, tension = creep[0], sine(creep[0])
+    tables = run(command, tmp_path, time, 1 + tension / STIFFNESS, tension, 'kind = "relaxation"')
+    refusals = [row["note"] for row in table(tables, "notes") if row["note"].startswith("refused")]
+    assert len(refusals) == 1
+    assert "the crosshead nowhere keeps within" in refusals[0]
+
+
+def test_cycles_of_tension_keep_their_holds_of_tension(command, tmp_path):
+    """Ten cycles between 100 and 300 N, a creep hold of two minutes, ten more."""
+    turns = [100, *[300, 100] * 10]
+    knots = [(0, 0), (20, 0), *((30 + 10 * i, load) for i, load in enumerate(turns))]
+    knots += [(240, 200), (360, 200), *((370 + 10 * i, load) for i, load in enumerate(turns))]
+    knots += [(580, 0), (600, 0)]
+    time = np.arange(0, 600, 0.1)
+    tension = np.interp(time, *np.array(knots, dtype=float).T)
+    held = np.where(time > 240, 0.01 * np.log10(1 + np.clip(time - 240, 0, 120)), 0)
+    position = 1 + tension / STIFFNESS + held * (tension > 0)
+    tables = run(command, tmp_path, time, position, tension, 'control = "load"', "n_cycles = 20")
+    assert len(table(tables, "cycles")) == 20
+    (hold,) = table(tables, "relaxation")
+    assert hold["hold_kind"] == "creep"
+    assert float(hold["hold_start_time [s]"]) == pytest.approx(240, abs=0.5)
+    assert float(hold["hold_duration [s]"]) == pytest.approx(120, abs=1)
