@@ -17,6 +17,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reduction.blocks import run_blocks
 from reduction.moduli.blur import window_blur
 from reduction.moduli.grid import StrainGrid, bins_each_side, round_number
 from reduction.moduli.moments import LocalFits, accumulate_moments, fit_windows
@@ -76,10 +77,10 @@ def _rising_pieces(strain: Floats, tension: Floats, is_still: Bools) -> NDArray[
 
     The result is as long as the rise; a standstill or an unloading ends a piece.
     """
-    known = np.flatnonzero(np.isfinite(strain))
-    if known.size == 0:
+    is_known = np.isfinite(strain)
+    if not is_known.any():
         return np.empty(0, dtype=np.int64)
-    start = float(strain[known[0]])
+    start = float(strain[is_known.argmax()])
     smooth = _without_single_spikes(strain)
     end = _end_of_rise(smooth, start) + 1
     smooth = smooth[:end]
@@ -211,9 +212,9 @@ def first_loading_curves(
     strains, tensions, areas = pair_specimens(strain, tension, area)
     n_samples = strains.shape[1]
     is_still = np.zeros(n_samples, bool) if standstills is None else standstills.covers(n_samples)
-    pieces = [
-        _rising_pieces(row, load, is_still) for row, load in zip(strains, tensions, strict=True)
-    ]
+    pieces = run_blocks(
+        lambda row: _rising_pieces(strains[row], tensions[row], is_still), range(areas.size)
+    )
     grid = _grid_of_rise(strains, pieces, settings)
     if grid is None:
         return None

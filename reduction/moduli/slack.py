@@ -124,25 +124,27 @@ def slack_crossings(
     as_positive("slack_tension", slack_tension)
     place, load = as_same_shape(position=position, tension=tension)
     known = np.isfinite(place) & np.isfinite(load)
-    place, load = place[known], load[known]
-    taut = np.flatnonzero(load > REACH * slack_tension)
-    slack = np.flatnonzero(load <= slack_tension)
+    if not known.all():
+        place, load = place[known], load[known]
+    is_taut = load > REACH * slack_tension
     crossing, uncertainty = np.full((2, 2), np.nan)
-    if taut.size == 0:
+    if not is_taut.any():
         return crossing, uncertainty, "the specimen is never taut"
-    before, after = slack[slack < taut[0]], slack[slack > taut[-1]]
+    taut_first, taut_last = int(is_taut.argmax()), load.size - 1 - int(is_taut[::-1].argmax())
+    before = np.flatnonzero(load[:taut_first] <= slack_tension)
+    after = np.flatnonzero(load[taut_last:] <= slack_tension) + taut_last
     reasons = []
     if before.size == 0:
         reasons.append("the record does not begin slack")
     else:
-        rise = slice(before[-1], taut[0] + 1)
+        rise = slice(before[-1], taut_first + 1)
         crossing[0], uncertainty[0] = slack_position(
             place[rise], load[rise], slack_tension=slack_tension
         )
     if after.size == 0:
         reasons.append("the record does not return to slack")
     else:
-        fall = slice(taut[-1], after[0] + 1)
+        fall = slice(taut_last, after[0] + 1)
         crossing[1], uncertainty[1] = slack_position(
             place[fall], load[fall], slack_tension=slack_tension
         )

@@ -17,6 +17,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.blocks import run_blocks
 from reduction.cycles.product import Loops
 from reduction.errors import DataError
 from reduction.moduli.product import Slips
@@ -136,7 +137,9 @@ def cycle_tension_level(
         )
     level = np.full((loads.shape[0], n_cycles), np.nan)
     slope = np.full(loads.shape[0], np.nan)
-    for row, load in enumerate(loads[:, used]):
+
+    def find_level(row: int) -> None:
+        load = loads[row, used]
         product, power, count = np.zeros((3, n_cycles))
         top, top_slope = [], []
         for which in (1, 2):
@@ -158,6 +161,8 @@ def cycle_tension_level(
             slope[row] = np.mean(top_slope)
             known = (count >= FEWEST_IN_A_CYCLE) & (power > 0)
             level[row, known] = np.mean(top) + slope[row] * product[known] / power[known]
+
+    run_blocks(find_level, range(loads.shape[0]))
     return level, slope
 
 
