@@ -14,6 +14,7 @@ from reduction.moduli.product import (
     AmplitudeSummary,
     CycleIdentity,
     ElastomerFit,
+    EndModuli,
     ModulusCurves,
     PeakTrend,
     Ratio,
@@ -93,6 +94,7 @@ class ReducedTest:
     curves: ModulusCurves | None = None
     first_loading: ModulusCurves | None = None
     segments: Segments | None = None
+    end_moduli: EndModuli | None = None
     identity: CycleIdentity | None = None
     amplitude: AmplitudeSummary | None = None
     trend: PeakTrend | None = None

@@ -88,6 +88,8 @@ _ROWS = (
     Quantity("dynamic_modulus", "Pa", "apparent spring constant over area at zero tension"),
     Quantity("secant_modulus", "Pa", "stress over strain", "002 eq 1"),
     Quantity("chord_modulus", "Pa", "end-to-end slope of a branch"),
+    Quantity("chord_modulus_ascending", "Pa", "end-to-end slope of the ascending branch"),
+    Quantity("chord_modulus_descending", "Pa", "end-to-end slope of the descending branch"),
     Quantity(
         "stroke_mean_modulus_difference",
         "Pa",

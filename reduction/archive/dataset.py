@@ -23,6 +23,7 @@ from reduction.archive.notes import note_values
 from reduction.archive.per_cycle import (
     amplitude_values,
     cycle_values,
+    end_modulus_values,
     identity_values,
     loop_values,
     slip_values,
@@ -103,6 +104,8 @@ def _all_values(test: ReducedTest) -> Values:
         values |= cycle_values(test.cycles, control=test.description.control)
     if test.loops is not None:
         values |= loop_values(test.loops)
+    if test.end_moduli is not None:
+        values |= end_modulus_values(test.end_moduli)
     if test.identity is not None:
         values |= identity_values(test.identity)
     if test.amplitude is not None:

@@ -8,12 +8,19 @@ import numpy as np
 
 from reduction.archive.values import Values, texts
 from reduction.cycles.product import Cycles, Loops
-from reduction.moduli.product import AmplitudeSummary, CycleIdentity, PeakTrend, Slips
+from reduction.moduli.product import (
+    AmplitudeSummary,
+    CycleIdentity,
+    EndModuli,
+    PeakTrend,
+    Slips,
+)
 from reduction.vocabulary import BRANCH_NAMES
 
 __all__ = [
     "amplitude_values",
     "cycle_values",
+    "end_modulus_values",
     "identity_values",
     "loop_values",
     "slip_values",
@@ -60,6 +67,11 @@ def loop_values(loops: Loops) -> Values:
 def amplitude_values(amplitude: AmplitudeSummary) -> Values:
     """Return the means over the cycles of a test; ``test_`` keeps them apart from the cycles'."""
     return _with_uncertainty(amplitude, "test_")
+
+
+def end_modulus_values(moduli: EndModuli) -> Values:
+    """Return secant and chord modulus of each cycle."""
+    return {item.name: getattr(moduli, item.name) for item in fields(moduli)}
 
 
 def identity_values(identity: CycleIdentity) -> Values:

@@ -32,8 +32,8 @@ dimension                      one entry for
 ``bound``                      lower and upper edge of a cell
 =============================  ============================================================
 
-A stepwise test has ``time``, ``tension``, ``strain`` and ``branch`` along ``step`` and no
-``sample``.  The coefficients of the strain methods are variables of their own along
+A stepwise test has ``time``, ``tension``, ``strain``, ``branch`` and ``secant_modulus``
+along ``step`` and no ``sample``.  The coefficients of the strain methods are variables of their own along
 ``specimen`` (``relaxed_free_length``, ``splice_exponent``, ...), each with its standard
 uncertainty; ``strain_coefficient_correlation`` completes their covariance.
 
@@ -98,6 +98,7 @@ They differ where the name has another meaning in a product.
 _S = ("specimen",)
 _C = ("specimen", "cycle")
 _CB = ("cycle", "branch_name")
+_CE = ("specimen", "cycle", "branch_name")
 _B = ("specimen", "branch_name", "strain_bin")
 _F = ("specimen", "branch_name", "first_loading_strain_bin")
 _BC = ("specimen", "selected_cycle", "branch_name", "strain_bin")
@@ -229,6 +230,8 @@ _ROWS = chain(
             "fundamental_energy_share",
         )
     ),
+    measured("secant_modulus", _C),
+    measured("chord_modulus", _CE),
     stated("stroke_mean_modulus_difference", _C, "one side of a check"),
     stated("tension_loss_modulus", _C, "one side of a check"),
     stated("identity_residual", _C, CHECK),
@@ -314,7 +317,6 @@ _ROWS = chain(
     stated("eye_to_eye_length", ("step",), "a tape reading"),
     stated("printed_strain", ("step",), STATED),
     mask("step_flag", ("step",), STEP_MASKS),
-    stated("secant_modulus", ("step",), NOT_EVALUATED),
     measured("relaxed_gauge_length", ()),
     stated("interval_strain", ("interval",), "middle of two readings"),
     measured("interval_modulus", ("interval",)),
@@ -334,6 +336,7 @@ STEPWISE: dict[str, Variable] = {
         stated("tension", ("step",), "weights as stated"),
         stated("strain", ("step",), "from tape readings", ancillary=("step_flag",)),
         flag("branch", ("step",), BRANCH_VALUES),
+        stated("secant_modulus", ("step",), NOT_EVALUATED),
     )
 }
 """Names that stand along ``step`` in a stepwise test."""

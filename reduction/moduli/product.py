@@ -14,6 +14,7 @@ __all__ = [
     "AmplitudeSummary",
     "CycleIdentity",
     "ElastomerFit",
+    "EndModuli",
     "ModulusCurves",
     "PeakTrend",
     "Ratio",
@@ -90,6 +91,25 @@ class Segments:
     segment_tension_low: Floats
     segment_tension_high: Floats
     criterion: str
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class EndModuli:
+    """Moduli from the ends of the branches, each with its standard uncertainty (noise). [Pa].
+
+    ``secant_modulus`` is stress over strain at the peak of a cycle, shape (n_specimens,
+    n_cycles); ``chord_modulus`` the slope from end to end of a branch, shape
+    (n_specimens, n_cycles, 2).
+    """
+
+    secant_modulus: Floats
+    secant_modulus_standard_uncertainty: Floats
+    chord_modulus: Floats
+    chord_modulus_standard_uncertainty: Floats
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

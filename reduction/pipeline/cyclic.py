@@ -8,6 +8,7 @@ from typing import Any
 from reduction.cycles.loops import close_loops
 from reduction.moduli.amplitude import summarise_amplitude
 from reduction.moduli.compare import compare_curves, compare_cycles
+from reduction.moduli.ends import end_moduli
 from reduction.moduli.identity import check_identity
 from reduction.moduli.segments import find_segments
 from reduction.moduli.slip import cycle_tension_level, find_slips
@@ -40,6 +41,7 @@ def parts_of_cycles(
         "loops": loops,
         "curves": curves,
         "segments": find_segments(curves, area=area, settings=settings.modulus),
+        "end_moduli": end_moduli(strain, tension, area=area, cycles=cycles),
         "identity": check_identity(strain, tension, area=area, cycles=cycles),
         "amplitude": summarise_amplitude(loops, area=area, break_in_cycles=break_in),
         "trend": fit_peak_trend(loops, area=area, break_in_cycles=break_in),

@@ -7,6 +7,7 @@ import xarray as xr
 
 from reduction.archive.schema import COEFFICIENTS, SCHEMA
 from reduction.tables.table import Table
+from reduction.vocabulary import BRANCH_NAMES
 
 __all__ = ["TABLES"]
 
@@ -18,6 +19,19 @@ def _with_edges(dataset: xr.Dataset) -> xr.Dataset:
 
 def _with_cycle_count(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.assign(n_cycles=dataset.sizes.get("cycle", 0))
+
+
+def _with_chords(dataset: xr.Dataset) -> xr.Dataset:
+    """Give each branch a column of its own, so that a cycle stays one row."""
+    if "chord_modulus" not in dataset:
+        return dataset
+    return dataset.assign(
+        {
+            f"chord_modulus_{branch}{suffix}": dataset[f"chord_modulus{suffix}"][:, :, index]
+            for index, branch in enumerate(BRANCH_NAMES)
+            for suffix in ("", "_standard_uncertainty")
+        }
+    )
 
 
 def _with_fit_of_parameter(dataset: xr.Dataset) -> xr.Dataset:
@@ -63,7 +77,13 @@ TABLES = (
         ("segment_modulus",),
         _with_cycle_count,
     ),
-    Table("cycles", ("specimen", "cycle"), _PER_CYCLE, _PER_CYCLE),
+    Table(
+        "cycles",
+        ("specimen", "cycle"),
+        (*_PER_CYCLE, *(f"chord_modulus_{branch}" for branch in BRANCH_NAMES)),
+        _PER_CYCLE,
+        _with_chords,
+    ),
     Table(
         "tangent_modulus",
         ("specimen", "branch_name", "strain_bin"),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from reduction.archive.schema import schema_of
-from reduction.archive.variable import Variable, count, label, stated
+from reduction.archive.variable import Variable, count, label, measured, stated
 from reduction.tables.column import Column, uncertainty_of
 
 __all__ = ["SYNTHETIC", "TEST", "Table"]
@@ -19,6 +19,8 @@ _OWN = {
     row.name: row
     for row in [
         *count("n_cycles", ()),
+        *measured("chord_modulus_ascending", ("specimen", "cycle")),
+        *measured("chord_modulus_descending", ("specimen", "cycle")),
         *stated("strain_bin_low", ("strain_bin",), "bound"),
         *stated("strain_bin_high", ("strain_bin",), "bound"),
     ]

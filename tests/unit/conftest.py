@@ -16,6 +16,7 @@ from reduction.moduli.product import (
     AmplitudeSummary,
     CycleIdentity,
     ElastomerFit,
+    EndModuli,
     ModulusCurves,
     PeakTrend,
     Ratio,
@@ -298,6 +299,12 @@ def rich_test():
         curves=make_curves(rng, 2),
         first_loading=make_curves(rng, 2),
         segments=Segments(**segments, criterion="corrected Akaike"),
+        end_moduli=EndModuli(
+            array(rng, 2, N_CYCLES),
+            array(rng, 2, N_CYCLES),
+            array(rng, 2, N_CYCLES, 2),
+            array(rng, 2, N_CYCLES, 2),
+        ),
         identity=CycleIdentity(
             array(rng, *per_cycle), array(rng, *per_cycle), array(rng, *per_cycle)
         ),

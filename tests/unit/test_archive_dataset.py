@@ -258,6 +258,7 @@ def test_a_log_without_a_whole_cycle_still_makes_an_archive(rich_test, write):
         rich_test,
         cycles=without_cycles(rich_test.cycles),
         loops=None,
+        end_moduli=None,
         identity=None,
         curves=None,
         segments=None,

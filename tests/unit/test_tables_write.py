@@ -93,7 +93,7 @@ def test_every_number_of_an_archive_but_the_samples_is_in_a_table():
         "cycle_last_sample", "crosshead_rate", "tension_rate", "position_band", "tension_band",
         "cycles_counted_by", "strain_window",
         # as two columns
-        "strain_bin_bounds", "first_loading_strain_bin_bounds",
+        "chord_modulus", "strain_bin_bounds", "first_loading_strain_bin_bounds",
         # in the archive alone
         "strain_coefficient_correlation", "coefficient_name", "coefficient_name_other",
         "tangent_modulus_by_cycle", "selected_cycle", "elastomer_parameter_fit",
