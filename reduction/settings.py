@@ -39,7 +39,7 @@ class QualitySettings:
     stuck_samples: int = 50
     """A channel repeating one value this often while the crosshead moves is stuck. [1]"""
     spike_factor: float = 12.0
-    """A single sample this many robust deviations off both neighbours is a spike. [1]"""
+    """Samples, ten at most, this many robust deviations off their neighbours are a spike. [1]"""
     gap_factor: float = 3.5
     """A time step this many median steps long is a gap. [1]"""
     rate_tolerance: float = 0.2

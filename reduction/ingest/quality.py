@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from reduction.ingest.excursions import find_excursions, usual_step
 from reduction.record import Bools, Floats, Integers, Quality, Record
 
 __all__ = [
@@ -218,10 +219,11 @@ def noise_of(values: Floats) -> tuple[float, float]:
 
 
 def find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
-    """Single samples far off both neighbours, on the same side.
+    """Samples off the course of their neighbours: single ones, and excursions of up to ten.
 
-    The sample is off by ``factor`` times the noise and by three times the usual step
-    nearby, so that a reversal, the start of a ramp, a step and a rough stretch are none.
+    A sample is off by ``factor`` times the noise and by three times the usual step
+    nearby, so that a reversal, the start of a ramp, a step and a rough stretch are none;
+    for excursions of several samples see `reduction.ingest.excursions`.
 
     Parameters
     ----------
@@ -235,34 +237,28 @@ def find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
     Returns
     -------
     is_spike : ndarray of bool, shape (n_samples,)
-        True at the sample that is off.
+        True at the samples that are off.
     """
     is_spike = np.zeros(values.size, dtype=bool)
     limit = factor * noise
     if limit <= 0:
         return is_spike
-    for part in _blocks(values.size, 2):
+    jumps = []
+    for part in _blocks(values.size, 3):
         step = np.diff(values[part])
-        product = step[:-1] * step[1:]
-        place = np.flatnonzero(product < -(limit**2)) + 1 + part.start
-        if not place.size:
-            continue
-        before, here, after = values[place - 1], values[place], values[place + 1]
-        off = np.minimum(np.abs(here - before), np.abs(here - after))
-        nearby = np.fmax(np.abs(after - before), _usual_step(values, place))
-        is_spike[place[(off > limit) & (off > _SPIKE_TO_NEIGHBOURS * nearby)]] = True
-    return is_spike
-
-
-def _usual_step(values: Floats, place: Integers) -> Floats:
-    """Third largest of the eight steps around a sample and its neighbours.
-
-    Another spike nearby makes two large steps, which are passed over.
-    """
-    around = np.concatenate([np.arange(-5, -1), np.arange(1, 5)])
-    left = place[:, np.newaxis] + around
-    is_inside = (left >= 0) & (left < values.size - 1)
-    left = np.where(is_inside, left, 0)
-    steps = np.where(is_inside, np.abs(values[left + 1] - values[left]), 0.0)
-    usual: Floats = np.sort(np.nan_to_num(steps), axis=1)[:, -3]
-    return usual
+        bend = step[1:] - step[:-1]
+        # a jump bends the course at both its ends, against each other; a spike is two jumps
+        product = bend[:-1] * bend[1:]
+        jumps.append(np.flatnonzero(product < -(limit**2)) + 1 + part.start)
+    jump = np.unique(np.concatenate(jumps))
+    if not jump.size:
+        return is_spike
+    place = np.unique(np.concatenate([jump, jump + 1]))
+    before, here, after = values[place - 1], values[place], values[place + 1]
+    off = np.minimum(np.abs(here - before), np.abs(here - after))
+    opposite = (here - before) * (after - here) < -(limit**2)
+    nearby = np.fmax(np.abs(after - before), usual_step(values, place - 1, place))
+    single = place[opposite & (off > limit) & (off > _SPIKE_TO_NEIGHBOURS * nearby)]
+    is_spike[single] = True
+    of_single = is_spike[jump] | is_spike[jump + 1]
+    return is_spike | find_excursions(values, jump[~of_single], limit=limit)

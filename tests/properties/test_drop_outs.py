@@ -102,3 +102,28 @@ def test_single_samples_that_drop_out_change_no_cycle_and_no_loop(places, share)
     for name in ("peak_tension", "valley_tension"):
         assert np.abs(getattr(loops, name) - getattr(LOOPS, name)).max() <= near_turn
     assert np.allclose(loops.hysteresis_energy, LOOPS.hysteresis_energy, rtol=0.1)
+
+
+@settings(max_examples=60, deadline=None)
+@given(drop_outs(longest=10), st.sampled_from([-1.0, 5.0]))
+def test_drop_outs_of_up_to_ten_samples_are_flagged_and_change_no_count(places, share):
+    record = flag_record(
+        with_drop_outs(places, {"position": share, "tension": 1000.0 * share}),
+        settings=QualitySettings(),
+    )
+    by_channel = {
+        "position": record.crosshead_position_quality_flag,
+        "tension": record.quality_flag[0],
+    }
+    for channel, flags in by_channel.items():
+        off = {b + i for name, b, length in places if name == channel for i in range(length)}
+        assert set(np.flatnonzero(flags & Quality.SPIKE).tolist()) == off
+    located, loops = reduced(record)
+    assert located.cycles.n_cycles == N_CYCLES
+    assert located.standstills.n_standstills == 2 and located.standstills.is_rest.all()
+    # a loop that lacks a tenth of its readings at most has them bridged, at a turn by a chord
+    known = np.isfinite(loops.hysteresis_energy)
+    assert np.allclose(
+        loops.apparent_spring_constant[known], LOOPS.apparent_spring_constant[known], rtol=0.2
+    )
+    assert (loops.hysteresis_energy[known] > 0).all()
