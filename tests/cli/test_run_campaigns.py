@@ -12,7 +12,6 @@ import pytest
 
 from reduction.archive.open import open_archive
 
-pytestmark = pytest.mark.xdist_group("campaign")
 ROOT = Path(__file__).parents[2]
 TRUTH = ROOT / "raw" / "tmt-synthetic" / "truth"
 PSI = 4.4482216152605 / 0.0254**2

@@ -152,14 +152,6 @@ def test_the_proposal_for_a_text_log_reads_it(folder, name, settings, channels, 
     assert abs(log.n_rows_read - n_rows) <= 1  # the last line may lack its end
 
 
-@pytest.mark.parametrize(
-    "name", [f"T-{n}" for n in range(1, 7)] + ["T-4_extended", "overnight_hold"]
-)
-def test_logs_of_one_logger_have_one_proposal(name):
-    first = sniff_layout(RAW / "tmt-synthetic" / "T-1.csv").settings
-    assert sniff_layout(RAW / "tmt-synthetic" / f"{name}.csv").settings == first
-
-
 @needs_measured_logs
 @pytest.mark.parametrize(
     "name",
