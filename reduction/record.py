@@ -80,6 +80,8 @@ class Specimen:
         Stated once for a specimen. [N]
     gauge_length : float or None
         Distance between gauge marks at zero tension, where marked. [m]
+    material, condition, construction : str
+        In the laboratory's words; empty where not given.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Specimen:
     rated_break_strength_source: str = ""
     gauge_length: float | None = None
     notes: tuple[str, ...] = ()
+    construction: str = ""
 
     @property
     def mean_diameter(self) -> float:

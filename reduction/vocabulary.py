@@ -209,6 +209,7 @@ _ROWS = (
     Quantity("specimen", "", "specimen"),
     Quantity("specimen_kind", "", "kind of specimen"),
     Quantity("specimen_material", "", "material of the specimen"),
+    Quantity("specimen_construction", "", "how the specimen is built"),
     Quantity("specimen_condition", "", "condition of the specimen before the test"),
     Quantity("diameter_reading", "m", "diameter reading before stretch"),
     Quantity("stretched_diameter", "m", "diameter reading on the stretched specimen"),

@@ -33,9 +33,9 @@ dimension                      one entry for
 =============================  ============================================================
 
 A stepwise test has ``time``, ``tension``, ``strain``, ``branch`` and ``secant_modulus``
-along ``step`` and no ``sample``.  The coefficients of the strain methods are variables of their own along
-``specimen`` (``relaxed_free_length``, ``splice_exponent``, ...), each with its standard
-uncertainty; ``strain_coefficient_correlation`` completes their covariance.
+along ``step`` and no ``sample``.  The coefficients of the strain methods are variables of
+their own along ``specimen`` (``relaxed_free_length``, ``splice_exponent``, ...), each with its
+standard uncertainty; ``strain_coefficient_correlation`` completes their covariance.
 
 References
 ----------
@@ -134,6 +134,7 @@ _ROWS = chain(
     # specimens
     label("specimen_kind", _S),
     label("specimen_material", _S),
+    label("specimen_construction", _S),
     label("specimen_condition", _S),
     stated("diameter", _S, "mean of the diameter readings; see diameter_reading"),
     stated("diameter_reading", ("specimen", "reading"), STATED),

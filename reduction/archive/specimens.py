@@ -23,6 +23,7 @@ def specimen_values(specimens: Sequence[Specimen]) -> Values:
         "specimen": texts([one.name for one in specimens]),
         "specimen_kind": texts([one.kind for one in specimens]),
         "specimen_material": texts([one.material for one in specimens]),
+        "specimen_construction": texts([one.construction for one in specimens]),
         "specimen_condition": texts([one.condition for one in specimens]),
         "diameter": numbers(known),
         "diameter_reading": pad([one.diameter for one in specimens]),

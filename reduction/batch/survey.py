@@ -100,6 +100,7 @@ def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
         plan,
         id=f"{plan.id}.{step.name.replace(' ', '-')}",
         kind=step.kind,
+        target_strain=step.target_strain or plan.target_strain,
         settings=replace(plan.settings, cycles=cycles),
         attributes=plan.attributes | note,
         step_place=place,

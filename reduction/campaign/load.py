@@ -88,6 +88,7 @@ def _specimen(path: Path, name: str, section: SpecimenSection) -> Specimen:
         name=name,
         kind=section.kind,
         material=section.material,
+        construction=section.construction,
         condition=section.condition,
         diameter=tuple(_length(reading, where, path) for reading in readings),
         stretched_diameters=stretched,
@@ -193,6 +194,7 @@ def _plan(
                 name=step.name,
                 kind=step.kind or kind,
                 expected_cycles=step.n_cycles,
+                target_strain=step.target_strain,
                 note=step.note,
                 **_range(path, name, step),
             )

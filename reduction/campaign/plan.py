@@ -21,6 +21,7 @@ class StepPlan:
     time_range: tuple[float, float] | None
     cycle_range: tuple[int, int] | None
     expected_cycles: int | None
+    target_strain: tuple[float, ...] = ()
     note: str = ""
 
 

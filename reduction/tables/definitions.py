@@ -279,6 +279,7 @@ TABLES = (
         (
             "specimen_kind",
             "specimen_material",
+            "specimen_construction",
             "specimen_condition",
             "diameter",
             "area",

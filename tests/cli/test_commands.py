@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from reduction.archive.open import open_archive
+
 ROOT = Path(__file__).parents[2]
 RAW = ROOT / "raw" / "tmt-synthetic"
 CAMPAIGN = """
@@ -166,7 +168,9 @@ def test_a_log_in_steps_gives_one_product_a_step(small, command):
     campaign = small / "raw" / "campaign.toml"
     text = campaign.read_text().split("[tests.B]")[0]
     campaign.write_text(
-        text + '[[tests.A.steps]]\nname = "first five"\nfrom = 1\nto = 5\nn_cycles = 5\n'
+        text.replace("[specimens.new]", '[specimens.new]\nconstruction = "braided, one core"')
+        + '[[tests.A.steps]]\nname = "first five"\nfrom = 1\nto = 5\nn_cycles = 5\n'
+        "target_strain = [0.5, 1.25]\n"
         '[[tests.A.steps]]\nname = "hold"\nfrom = "150 s"\nto = "320 s"\nkind = "relaxation"\n'
     )
     (small / "raw" / "marks.csv").write_text(
@@ -182,6 +186,13 @@ def test_a_log_in_steps_gives_one_product_a_step(small, command):
     assert statuses == {"A.first-five": 5, "A.hold": 0}
     names = {path.name for path in (small / "processed" / "small").glob("*.nc")}
     assert names == {"A.first-five.nc", "A.hold.nc"}
+    with open_archive(small / "processed" / "small" / "A.first-five.nc") as archive:
+        assert archive.attrs["target_strain"] == "0.5 to 1.25"
+        assert archive["specimen_construction"].values[0] == "braided, one core"
+    with open_archive(small / "processed" / "small" / "A.hold.nc") as archive:
+        assert "target_strain" not in archive.attrs
+    specimens = (small / "processed" / "small" / "tables" / "specimens.csv").read_text("utf-8")
+    assert '"braided, one core"' in specimens
 
 
 def test_a_product_of_no_test_is_named_and_left_alone(reduced, command):

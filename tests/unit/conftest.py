@@ -240,6 +240,7 @@ def make_specimens():
         "new",
         material="Natsyn rubber",
         condition="new",
+        construction="extruded",
         diameter=(0.0264, 0.0265),
         stretched_diameters=((0.1, 0.0252), (1.0, 0.0187)),
         rated_break_strength=3558.0,
