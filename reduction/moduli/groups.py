@@ -20,10 +20,10 @@ from reduction.record import Bools, Integers, freeze_arrays
 
 __all__ = ["CycleGroups", "select_cycles"]
 
-# A block's temporaries stay in the processor's cache, yet it is large enough that threads
-# do not wait for the interpreter between its steps.
-_BLOCK_SAMPLES = 1 << 18
-_BLOCK_CELLS = 1 << 17
+# Large enough that threads do not wait for the interpreter between the steps of a block;
+# twice as large, and the system hands out fresh memory for every step, which costs more.
+_BLOCK_SAMPLES = 1 << 17
+_BLOCK_CELLS = 1 << 16
 _END_CYCLES = 3  # kept at the start and end of a long test, enough for a mean of each
 
 
