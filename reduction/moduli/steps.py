@@ -316,10 +316,11 @@ def step_sizes(values: ArrayLike, steps: tuple[Step, ...]) -> tuple[Floats, Floa
         columns = np.stack([row for row in ramps if np.ptp(row) > 0])
         basis = without_parabola(columns)
         local = without_parabola(series[first:last])
-        gram = np.linalg.pinv(basis @ basis.T)
-        found = gram @ (basis @ local)
-        residual = local - found @ basis
-        variance = float(residual @ residual) / max(1, local.size - 3 - found.size)
+        # einsum, not matrix products: their last digits depend on the number of threads
+        gram = np.linalg.pinv(np.einsum("ij,kj->ik", basis, basis))
+        found = gram @ np.einsum("ij,j->i", basis, local)
+        residual = local - np.einsum("i,ij->j", found, basis)
+        variance = float((residual**2).sum()) / max(1, local.size - 3 - found.size)
         share = step.size_standard_uncertainty / abs(step.size)
         sizes[:, index] = found[0], np.hypot(np.sqrt(variance * gram[0, 0]), share * found[0])
     return sizes[0], sizes[1]
