@@ -298,6 +298,13 @@ _ROWS = (
     Quantity("envelope_minimum_test", "", "test with the least tangent modulus"),
     Quantity("envelope_maximum", "Pa", "greatest tangent modulus of the tests of the campaign"),
     Quantity("envelope_maximum_test", "", "test with the greatest tangent modulus"),
+    Quantity("static_test", "", "stepwise test"),
+    Quantity("static_specimen", "", "specimen of the stepwise test"),
+    Quantity(
+        "static_dynamic_ratio",
+        "1",
+        "static interval modulus over dynamic tangent modulus, at one strain and branch",
+    ),
     Quantity("n_tests", "1", "number of tests with a tangent modulus at this strain"),
     Quantity("table", "", "file in which the column stands"),
     Quantity("column", "", "column"),

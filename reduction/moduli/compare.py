@@ -19,10 +19,9 @@ from scipy.stats import t as student_t
 from reduction.errors import DataError
 from reduction.moduli.interpolation import curve_at
 from reduction.moduli.product import ModulusCurves, Ratio
-from reduction.moduli.stepwise import StepwiseResult
 from reduction.record import Floats
 
-__all__ = ["compare_curves", "compare_cycles", "compare_static"]
+__all__ = ["compare_curves", "compare_cycles"]
 
 _CONFIDENCE = 0.95
 _TYPE_A = (
@@ -227,61 +226,3 @@ def compare_cycles(
         sides.append(_Side(name, modulus, uncertainty, np.full(modulus.shape, np.inf)))
     above, below = sides
     return _ratio(curves.strain_bin, above, below)
-
-
-def compare_static(stepwise: StepwiseResult, curves: ModulusCurves, *, specimen: int) -> Ratio:
-    r"""Ratio of the static modulus of a stepwise test to the dynamic one at equal strain.
-
-    Parameters
-    ----------
-    stepwise : StepwiseResult
-        Interval moduli of dead weights hung one after another. [SI]
-    curves : ModulusCurves
-        Of a cyclic test. [SI]
-    specimen : int
-        Place of the specimen in the curves. [1]
-
-    Returns
-    -------
-    ratio : Ratio
-        At the middles of the intervals, static over dynamic, branch by branch. [1]
-
-    Raises
-    ------
-    DataError
-        If a curve does not have a value a bin.
-
-    Notes
-    -----
-    Printed source: Figure 35 of [1]_ lays T-2, T-4, T-5 and the static test over each
-    other. The two specimens there differ in more than the rate: the static one is
-    another piece of rubber, of a diameter that is not printed.
-
-    Examples
-    --------
-    A static slope of 5 MPa beside a dynamic one of 10 MPa at 100 % elongation.
-
-    >>> import numpy as np
-    >>> x, ten = np.array([0.9, 1.1]), np.full((1, 2, 2), 10e6)
-    >>> blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((1, 2, 2)))
-    >>> curves = ModulusCurves(**blank | {
-    ...     "strain_bin": x, "strain_bin_bounds": np.stack([x - 0.1, x + 0.1], axis=1),
-    ...     "tangent_modulus": ten, "tangent_modulus_standard_uncertainty": 0.01 * ten,
-    ... })
-    >>> none = dict.fromkeys(StepwiseResult.__dataclass_fields__, np.empty(0))
-    >>> static = StepwiseResult(**none | {
-    ...     "interval_strain": np.array([1.0]), "interval_modulus": np.array([5e6]),
-    ...     "interval_modulus_standard_uncertainty": np.array([1e5]),
-    ...     "interval_branch": np.array([1]),
-    ... })
-    >>> print(compare_static(static, curves, specimen=0).ratio)
-    [[0.5]
-     [nan]]
-    """
-    order = np.argsort(stepwise.interval_strain, kind="stable")
-    strain = stepwise.interval_strain[order]
-    on_branch = stepwise.interval_branch[order] == np.array([[1], [2]])
-    modulus = np.where(on_branch, stepwise.interval_modulus[order], np.nan)
-    uncertainty = np.where(on_branch, stepwise.interval_modulus_standard_uncertainty[order], np.nan)
-    static = _Side("static", modulus, uncertainty, np.full(modulus.shape, np.inf))
-    return _ratio(strain, static, _side(curves, specimen, "dynamic", strain))

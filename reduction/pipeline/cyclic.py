@@ -5,17 +5,21 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from reduction.cycles.loops import close_loops
 from reduction.moduli.amplitude import summarise_amplitude
-from reduction.moduli.compare import compare_curves, compare_cycles
+from reduction.moduli.compare import compare_cycles
 from reduction.moduli.ends import end_moduli
 from reduction.moduli.identity import check_identity
 from reduction.moduli.segments import find_segments
 from reduction.moduli.slip import cycle_tension_level, find_slips
 from reduction.moduli.tangent import tangent_curves
 from reduction.moduli.trend import fit_peak_trend
+from reduction.pipeline.comparison import compare_specimens
 from reduction.pipeline.locate import Located
-from reduction.record import Floats
+from reduction.product import History
+from reduction.record import Floats, Specimen
 from reduction.settings import ReductionSettings
 
 __all__ = ["parts_of_cycles"]
@@ -25,12 +29,19 @@ ENDS = 6
 
 
 def parts_of_cycles(
-    located: Located, strain: Floats, tension: Floats, area: Floats, settings: ReductionSettings
+    located: Located,
+    strain: Floats,
+    tension: Floats,
+    *,
+    specimens: tuple[Specimen, ...],
+    history: History | None,
+    settings: ReductionSettings,
 ) -> dict[str, Any]:
     """Loops, curves, segments and what follows from them, by field of `ReducedTest`."""
     record, cycles = located.record, located.cycles
     if cycles is None:
         return {}
+    area = np.array([specimen.area for specimen in specimens])
     break_in = settings.cycles.break_in_cycles
     loops = close_loops(record.time, tension, strain, cycles, waveform=settings.cycles.waveform)
     curves = tangent_curves(
@@ -46,14 +57,7 @@ def parts_of_cycles(
         "amplitude": summarise_amplitude(loops, area=area, break_in_cycles=break_in),
         "trend": fit_peak_trend(loops, area=area, break_in_cycles=break_in),
     }
-    # each specimen against the first: used against new, where the campaign names new first
-    ratios = [
-        compare_curves(
-            curves, curves, numerator_specimen=index, denominator_specimen=0,
-            numerator_name=name, denominator_name=record.specimens[0],
-        )
-        for index, name in enumerate(record.specimens[1:], start=1)
-    ]  # fmt: skip
+    ratios = compare_specimens(curves, specimens, history)
     if cycles.n_cycles >= settings.slip.minimum_cycles:
         level, slope = cycle_tension_level(
             located.position, tension, cycle_number=cycles.cycle_number,

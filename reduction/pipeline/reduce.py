@@ -78,7 +78,9 @@ def reduce_test(
     area = np.array([specimen.area for specimen in specimens])
     position, tension = located.position, located.tension
     strain = _strain(record, position, tension, models)
-    parts = parts_of_cycles(located, strain, tension, area, settings)
+    parts = parts_of_cycles(
+        located, strain, tension, specimens=specimens, history=history, settings=settings
+    )
     parts |= parts_of_first_loading(located, strain, tension, area, settings, history)
     holds = reduce_holds(
         record.time, position, tension, strain, standstills,

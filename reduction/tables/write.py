@@ -14,6 +14,12 @@ from reduction.tables.column import Cell, Column, csv_text
 from reduction.tables.definitions import TABLES
 from reduction.tables.envelope import ENVELOPE_COLUMNS, Curve, curves_of, envelope_rows
 from reduction.tables.rows import table_rows
+from reduction.tables.static_dynamic import (
+    STATIC_DYNAMIC_COLUMNS,
+    Slope,
+    slopes_of,
+    static_dynamic_rows,
+)
 
 __all__ = ["write_tables"]
 
@@ -48,6 +54,7 @@ def write_tables(archives: Sequence[Path], folder: Path) -> list[Path]:
     """
     columns = {table.name: tuple(table.columns) for table in TABLES}
     columns["envelope"] = ENVELOPE_COLUMNS
+    columns["static_dynamic"] = STATIC_DYNAMIC_COLUMNS
     rows = _all_rows(archives)
     filled = [name for name in columns if rows[name]]
     rows["columns"] = [
@@ -75,14 +82,20 @@ def _place(attributes: dict[str, Any]) -> _Place:
 
 
 def _all_rows(archives: Sequence[Path]) -> dict[str, list[list[Cell]]]:
-    tests: list[tuple[_Place, dict[str, list[list[Cell]]], list[Curve]]] = []
+    tests: list[tuple[_Place, dict[str, list[list[Cell]]], list[Curve], list[Slope]]] = []
     for path in archives:
         with open_archive(path) as archive:
             of_test = {table.name: table_rows(archive, table) for table in TABLES}
-            tests.append((_place(archive.attrs), of_test, list(curves_of(archive))))
+            curves, slopes = list(curves_of(archive)), list(slopes_of(archive))
+            tests.append((_place(archive.attrs), of_test, curves, slopes))
     tests.sort(key=lambda entry: entry[0])
     rows = {
-        table.name: [row for _, of_test, _ in tests for row in of_test[table.name]]
+        table.name: [row for _, of_test, *_ in tests for row in of_test[table.name]]
         for table in TABLES
     }
-    return rows | {"envelope": envelope_rows([curve for _, _, own in tests for curve in own])}
+    curves = [curve for _, _, own, _ in tests for curve in own]
+    slopes = [slope for *_, own in tests for slope in own]
+    return rows | {
+        "envelope": envelope_rows(curves),
+        "static_dynamic": static_dynamic_rows(slopes, curves),
+    }

@@ -1,12 +1,11 @@
-"""Comparisons: ratio and interval, grids that differ, cycles, static against dynamic."""
+"""Comparisons: ratio and interval, grids that differ, cycles."""
 
 import numpy as np
 import pytest
 
 from reduction.errors import DataError
-from reduction.moduli.compare import compare_curves, compare_cycles, compare_static
+from reduction.moduli.compare import compare_curves, compare_cycles
 from reduction.moduli.product import ModulusCurves
-from reduction.moduli.stepwise import StepwiseResult
 
 NAMES = {"numerator_name": "new", "denominator_name": "used"}
 FIRST = {"numerator_specimen": 0, "denominator_specimen": 0}
@@ -110,20 +109,3 @@ def test_cycle_whose_curve_was_not_kept_is_refused(chosen):
         compare_cycles(
             by_cycle_curves(), specimen=0, numerator_cycles=chosen, denominator_cycles=[1]
         )
-
-
-def test_static_slopes_are_set_beside_the_branch_they_belong_to():
-    blank = dict.fromkeys(StepwiseResult.__dataclass_fields__, np.empty(0))
-    static = StepwiseResult(
-        **blank
-        | {
-            "interval_strain": np.array([0.2, 0.3, 0.25, 9.0]),
-            "interval_modulus": np.array([0.5e6, 0.6e6, 2e6, 1e6]),
-            "interval_modulus_standard_uncertainty": np.full(4, 1e4),
-            "interval_branch": np.array([1, 1, 2, 2]),
-        }
-    )
-    ratio = compare_static(static, curves_of(FINE, 1e6), specimen=0)
-    assert ratio.strain_bin == pytest.approx([0.2, 0.25, 0.3, 9.0])
-    assert ratio.ratio[0] == pytest.approx([0.5, np.nan, 0.6, np.nan], nan_ok=True)
-    assert ratio.ratio[1] == pytest.approx([np.nan, 2.0, np.nan, np.nan], nan_ok=True)

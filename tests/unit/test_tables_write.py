@@ -11,6 +11,7 @@ from reduction.archive.variable import SUFFIXES
 from reduction.errors import ArchiveError
 from reduction.tables.definitions import TABLES
 from reduction.tables.envelope import ENVELOPE_COLUMNS
+from reduction.tables.static_dynamic import STATIC_DYNAMIC_COLUMNS
 from reduction.tables.write import write_tables
 from reduction.vocabulary import QUANTITIES
 
@@ -35,7 +36,7 @@ def folder(tables, tmp_path):
 
 
 def test_a_campaign_with_everything_fills_every_table(tables):
-    names = {table.name for table in TABLES} | {"envelope", "columns"}
+    names = {table.name for table in TABLES} | {"envelope", "static_dynamic", "columns"}
     assert {path.stem for path in tables.iterdir()} == names
 
 
@@ -78,7 +79,9 @@ def test_every_column_of_every_table_is_explained(tables):
 
 
 def test_every_column_is_a_quantity_of_the_vocabulary():
-    for columns in [*(table.columns for table in TABLES), ENVELOPE_COLUMNS]:
+    for columns in [
+        *(table.columns for table in TABLES), ENVELOPE_COLUMNS, STATIC_DYNAMIC_COLUMNS,
+    ]:  # fmt: skip
         for column in columns:
             suffix = next((one for one in SUFFIXES if column.name.endswith(one)), "")
             names = {column.name, column.name.removesuffix(suffix)}

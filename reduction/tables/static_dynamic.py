@@ -1,0 +1,115 @@
+"""Static against dynamic: slopes of stepwise tests beside the curves of cyclic ones.
+
+Figure 35 of WHOI-2005-10 lays three cyclic tests and a static one over each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.schema import SCHEMA
+from reduction.archive.variable import label, measured
+from reduction.tables.column import Cell, Column, uncertainty_of
+from reduction.tables.envelope import Curve, on_grid
+from reduction.tables.table import SYNTHETIC, TEST
+from reduction.vocabulary import BRANCH_VALUES
+
+__all__ = ["STATIC_DYNAMIC_COLUMNS", "Slope", "slopes_of", "static_dynamic_rows"]
+
+_STATIC, _DYNAMIC = (Column(name, SCHEMA[name]) for name in ("interval_modulus", "tangent_modulus"))
+STATIC_DYNAMIC_COLUMNS = (
+    Column("static_test", label("static_test")[0]),
+    Column("static_specimen", label("static_specimen")[0]),
+    TEST,
+    Column("specimen", SCHEMA["specimen"]),
+    Column("branch", SCHEMA["branch_name"]),
+    Column("interval_strain", SCHEMA["interval_strain"]),
+    _STATIC,
+    uncertainty_of(_STATIC),
+    _DYNAMIC,
+    uncertainty_of(_DYNAMIC),
+    *(Column(row.name, row) for row in measured("static_dynamic_ratio", ("interval",))),
+    SYNTHETIC,
+)
+
+
+@dataclass(frozen=True)
+class Slope:
+    """Slope between two readings of a stepwise test, at the strain in their middle."""
+
+    test: str
+    specimen: str
+    branch: str
+    synthetic: str
+    strain: float
+    modulus: float
+    uncertainty: float
+
+
+def slopes_of(archive: xr.Dataset) -> Iterator[Slope]:
+    """Give the slopes of an archive that have a number; none where the test is not stepwise."""
+    if "interval_modulus" not in archive:
+        return
+    branches = {value: name for name, value in BRANCH_VALUES.items()}
+    for index in np.flatnonzero(np.isfinite(archive["interval_modulus"].values)):
+        yield Slope(
+            test=archive.attrs["test"],
+            specimen=str(archive["specimen"].values[0]),
+            branch=branches[int(archive["interval_branch"].values[index])],
+            synthetic=archive.attrs.get("synthetic", "no"),
+            strain=float(archive["interval_strain"].values[index]),
+            modulus=float(archive["interval_modulus"].values[index]),
+            uncertainty=float(archive["interval_modulus_standard_uncertainty"].values[index]),
+        )
+
+
+def static_dynamic_rows(slopes: Sequence[Slope], curves: Sequence[Curve]) -> list[list[Cell]]:
+    """Set every static slope beside the dynamic curves of its branch, and give their ratio.
+
+    Parameters
+    ----------
+    slopes : sequence of Slope
+        Of all stepwise tests of a campaign.
+    curves : sequence of Curve
+        Of all cyclic tests of it.
+
+    Returns
+    -------
+    rows : list of list
+        In the order of `STATIC_DYNAMIC_COLUMNS`, by curve and then by rising strain;
+        strains at which the curve has no modulus are left out.  The uncertainty of the
+        ratio takes both moduli as independent.
+    """
+    rows: list[list[Cell]] = []
+    for curve in curves:
+        beside = sorted(
+            (slope for slope in slopes if slope.branch == curve.branch),
+            key=lambda slope: (slope.test, slope.specimen, slope.strain),
+        )
+        dynamic = np.column_stack(on_grid(curve, np.array([slope.strain for slope in beside])))
+        rows += [
+            _row(slope, curve, float(modulus), float(spread))
+            for slope, (modulus, spread) in zip(beside, dynamic, strict=True)
+            if np.isfinite(modulus)
+        ]
+    return rows
+
+
+def _row(slope: Slope, curve: Curve, modulus: float, spread: float) -> list[Cell]:
+    ratio = slope.modulus / modulus
+    share = float(np.hypot(slope.uncertainty / slope.modulus, spread / modulus))
+    numbers = [slope.modulus, slope.uncertainty, modulus, spread, ratio, abs(ratio) * share]
+    return [
+        slope.test,
+        slope.specimen,
+        curve.test,
+        curve.specimen,
+        slope.branch,
+        slope.strain,
+        *(value if np.isfinite(value) else None for value in numbers),
+        "yes" if "yes" in (slope.synthetic, curve.synthetic) else "no",
+    ]

@@ -1,0 +1,79 @@
+"""Specimens of one test side by side: each against the first, and what makes them unequal."""
+
+import numpy as np
+import pytest
+
+from reduction.moduli.product import ModulusCurves
+from reduction.pipeline.comparison import compare_specimens
+from reduction.product import History
+from reduction.record import Specimen
+
+
+def curves(*moduli):
+    strain = np.array([1.0, 1.1, 1.2])
+    modulus = np.array(moduli)[:, None, None] * np.ones((len(moduli), 2, 3))
+    blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros(modulus.shape))
+    return ModulusCurves(
+        **blank
+        | {
+            "strain_bin": strain,
+            "strain_bin_bounds": np.stack([strain - 0.05, strain + 0.05], axis=1),
+            "tangent_modulus": modulus,
+            "tangent_modulus_count": np.full(modulus.shape, 10),
+            "tangent_modulus_standard_uncertainty": 0.01 * modulus,
+            "notes": (),
+        }
+    )
+
+
+def history(strain, cycles):
+    n = len(strain)
+    nothing = np.full(n, np.nan)
+    return History((("T-0",),) * n, np.array(strain), nothing, np.array(cycles), nothing, nothing)
+
+
+def remarks(first, other, past):
+    (ratio,) = compare_specimens(curves(1e6, 1e6), (first, other), past)
+    return [note for note in ratio.notes if note.startswith("b over a: ")]
+
+
+def test_three_specimens_give_two_ratios_over_the_first():
+    three = tuple(Specimen(name) for name in "abc")
+    found = compare_specimens(curves(1e6, 2e6, 0.5e6), three, history([1.0] * 3, [10.0] * 3))
+    assert [(one.numerator, one.denominator) for one in found] == [("b", "a"), ("c", "a")]
+    assert [float(one.ratio[0, 0]) for one in found] == pytest.approx([2.0, 0.5])
+    assert found[1].notes[-1].startswith("c over a: two specimens in one test")
+
+
+def test_one_specimen_is_compared_with_nothing():
+    assert compare_specimens(curves(1e6), (Specimen("a"),), None) == []
+
+
+def test_equal_histories_leave_only_the_word_on_two_pieces():
+    equal = history([1.28, 1.30], [10.0, 10.0])
+    assert len(remarks(Specimen("a"), Specimen("b"), equal)) == 1
+    first = history([np.nan, np.nan], [0.0, 0.0])
+    assert len(remarks(Specimen("a"), Specimen("b"), first)) == 1
+
+
+@pytest.mark.parametrize(
+    ("past", "told"),
+    [
+        (history([1.2, 1.2], [10.0, 30.0]), "30 earlier cycles against 10"),
+        (history([1.2, 1.8], [10.0, 10.0]), "greatest earlier strain 180% against 120%"),
+        (history([np.nan, 1.8], [0.0, 0.0]), "greatest earlier strain 180% against none known"),
+        (None, "is not known: no order is given"),
+    ],
+)
+def test_unequal_or_unknown_histories_are_told(past, told):
+    first, second = remarks(Specimen("a"), Specimen("b"), past)
+    assert "one piece of each" in first
+    assert told in second
+
+
+def test_another_condition_before_the_campaign_is_an_unequal_history():
+    equal = history([1.2, 1.2], [10.0, 10.0])
+    told = remarks(Specimen("a", condition="new"), Specimen("b", condition="used"), equal)
+    assert told[1] == "b over a: unequal before the campaign: condition 'used' against 'new'"
+    told = remarks(Specimen("a"), Specimen("b", condition="used"), equal)
+    assert "'used' against not stated" in told[1]
