@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from reduction.errors import DataError
 from reduction.record import Floats, Integers
 
 __all__ = ["counted_cycles"]
@@ -44,6 +45,8 @@ def counted_cycles(
     ------
     IndexError
         If the series do not pair up.
+    DataError
+        If the count runs backward to another number than 1, where a new block may begin.
 
     Notes
     -----
@@ -61,6 +64,7 @@ def counted_cycles(
     [1 5] [4 7] [[1, 3], [5, 6]] [[3, 4], [6, 7]] [1 2]
     """
     change = np.flatnonzero(cycle_counter[1:] != cycle_counter[:-1])
+    _check_rises(cycle_counter[np.concatenate([[0], change + 1])])
     first = np.concatenate([[0], change + 1])
     last = np.concatenate([change, [cycle_counter.size - 1]])
     counted = cycle_counter[first] > 0
@@ -78,3 +82,17 @@ def counted_cycles(
         branch_last[i, 0] = branch_first[i, 1] = peak
         branch_last[i, 1] = peak + int(np.nanargmin(falling))
     return first, last, branch_first, branch_last, cycle_counter[first]
+
+
+def _check_rises(counts: Integers) -> None:
+    """Refuse a channel that falls and rises as no count does."""
+    counts = counts[counts > 0]
+    backward = np.flatnonzero((counts[1:] < counts[:-1]) & (counts[1:] > 1))
+    if backward.size:
+        place = int(backward[0])
+        raise DataError(
+            f"the cycle counter runs backward {backward.size} times",
+            found=f"{int(counts[place + 1])} after {int(counts[place])}",
+            needed="a count that rises, or begins again with 1",
+            hint="Correct the column of cycle_counter, or leave it out: reversals then count.",
+        )

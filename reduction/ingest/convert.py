@@ -22,6 +22,7 @@ __all__ = ["to_record"]
 _WORKERS = 4
 _NO_COUNT = -1
 _DATUM_SHARE = 0.05
+_ABSURD = 1e9  # m, N or 1: no machine is as long or as strong
 
 
 def to_record(
@@ -184,7 +185,23 @@ def _fill(target: Floats, pieces: Sequence[Piece], key: str) -> None:
         np.multiply(piece.values[key], factor, out=part)
         if shift:
             part += shift
+        _check_size(part, piece, key)
         start += piece.time.size
+
+
+def _check_size(part: Floats, piece: Piece, key: str) -> None:
+    """Refuse numbers that no machine can have measured."""
+    if not part.size or (part.min() >= -_ABSURD and part.max() <= _ABSURD):
+        return
+    absurd = np.flatnonzero(np.abs(part) > _ABSURD)  # none where the extremes are NaN
+    if absurd.size:
+        raise DataError(
+            f"{key} has {absurd.size} values that nothing measures, "
+            f"first at {piece.row_of(int(absurd[0]))}",
+            found=f"{part[absurd[0]]:g} in SI",
+            needed=f"at most {_ABSURD:g}",
+            hint="Check the unit and the column; a value that stands for none belongs to missing.",
+        )
 
 
 def _counter(pieces: Sequence[Piece], n_samples: int) -> tuple[Integers | None, tuple[str, ...]]:

@@ -18,12 +18,14 @@ from reduction.ingest.quality import (
     noise_of,
     time_faults,
 )
+from reduction.ingest.stamps import bridge_stamps
 from reduction.record import Bools, Floats, Quality, Record
 from reduction.settings import QualitySettings
 
 __all__ = ["flag_record"]
 
 _Flags = NDArray[np.uint16]
+_IMPOSSIBLE_SHARE = 0.01  # of a record in lengths of zero or less: the datum is wrong
 
 
 def flag_record(
@@ -58,19 +60,24 @@ def flag_record(
     Raises
     ------
     DataError
-        If a channel holds no number at all.
+        If a channel holds no number that can be used, a tension is zero throughout, or a
+        pin-to-pin length is not positive.
     """
     position_flag: _Flags = np.zeros(record.n_samples, dtype=np.uint16)
     tension_flag: _Flags = np.zeros(record.tension.shape, dtype=np.uint16)
     position = record.crosshead_position
+    no_stamp = _missing("time", record.time)
+    record = replace(record, time=bridge_stamps(record.time, no_stamp))
     timing = time_faults(
         record.time, gap_factor=settings.gap_factor, rate_tolerance=settings.rate_tolerance
     )
-    _set(position_flag, _missing("time", record.time), Quality.MISSING)
+    _set(position_flag, no_stamp, Quality.MISSING)
     _set(position_flag, _missing("crosshead_position", position), Quality.MISSING)
     _set(position_flag, timing.gap, Quality.GAP)
     _set(position_flag, timing.backward, Quality.REPEATED_OR_BACKWARD_TIME)
     _set(position_flag, _spikes(position, settings), Quality.SPIKE)
+    if record.position_is_length:
+        _set(position_flag, _no_length(position, position_flag), Quality.SPIKE)
     if "crosshead_position" in resampled:
         position_flag |= np.uint16(Quality.RESAMPLED)
     for index, (name, load) in enumerate(zip(record.specimens, record.tension, strict=True)):
@@ -92,6 +99,13 @@ def flag_record(
         record, quality_flag=tension_flag, crosshead_position_quality_flag=position_flag
     )
     found = [*record.notes, *notes]
+    if no_stamp.any():
+        found.append(
+            f"{int(no_stamp.sum())} rows have no time, first sample {int(no_stamp.argmax()) + 1}: "
+            "their time is that of even steps between the rows beside them, and their position is "
+            "not used"
+        )
+    _check_usable(flagged)
     if timing.n_uneven:
         found.append(
             f"the sampling rate is not constant: {timing.n_uneven} of {record.n_samples - 1} time "
@@ -126,3 +140,39 @@ def _missing(name: str, values: Floats) -> Bools:
 def _spikes(values: Floats, settings: QualitySettings) -> Bools:
     noise, _ = noise_of(values)
     return find_spikes(values, noise=noise, factor=settings.spike_factor)
+
+
+def _no_length(position: Floats, flags: _Flags) -> Bools:
+    """Where a pin-to-pin length is zero or less although nothing else is known against it."""
+    if position.min() > 0:
+        return np.zeros(position.size, dtype=bool)
+    not_positive: Bools = (position <= 0) & (flags == 0)
+    share = float(np.mean(not_positive))
+    if share > _IMPOSSIBLE_SHARE:
+        raise DataError(
+            "a pin-to-pin length is not positive",
+            found=f"{share:.0%} of the samples at or below 0 m, least {np.nanmin(position):.4g} m",
+            needed="the distance between the pins",
+            hint='Set datum = "displacement", with a reference_length where one is known, or '
+            "correct zero and sign.",
+        )
+    return not_positive
+
+
+def _check_usable(record: Record) -> None:
+    """Refuse a tension that says nothing, whose flags would leave no sample."""
+    for name, load, flags in zip(
+        record.specimens, record.tension, record.quality_flag, strict=True
+    ):
+        if not load.any():
+            raise DataError(
+                f"tension of '{name}' is zero throughout",
+                found=f"{load.size} samples of 0 N",
+                needed="a load cell that is connected, or a test without this specimen",
+            )
+        if np.all(flags & (Quality.MISSING | Quality.STUCK)):
+            raise DataError(
+                f"tension of '{name}' has no sample that can be used",
+                found=f"{load.size} samples missing or stuck at {np.nanmean(load):.4g} N",
+                needed="a load that changes while the crosshead moves",
+            )

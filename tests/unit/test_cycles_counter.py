@@ -1,8 +1,10 @@
 """Cycles by the machine's counter, whatever is missing in them."""
 
 import numpy as np
+import pytest
 
 from reduction.cycles.counter import counted_cycles
+from reduction.errors import DataError
 
 
 def test_branches_lie_between_the_extremes_of_the_counted_samples():
@@ -30,3 +32,15 @@ def test_missing_samples_are_passed_over():
     position = np.array([np.nan, 0, 1, np.nan, 2, 1, np.nan])
     _, _, begin, end, _ = counted_cycles(np.ones(7, dtype=int), position)
     assert begin.tolist() == [[1, 4]] and end.tolist() == [[4, 5]]
+
+
+def test_a_count_that_runs_backward_is_refused():
+    counter = np.array([0, 1, 1, 3, 3, 2, 2, 4, 3])
+    with pytest.raises(DataError, match="counter runs backward 2 times; found 2 after 3"):
+        counted_cycles(counter, np.arange(9.0))
+
+
+def test_a_count_may_begin_again_with_one_and_stand_at_zero_between():
+    counter = np.array([1, 1, 1, 2, 2, 2, 0, 0, 1, 1, 1, -1])
+    *_, number = counted_cycles(counter, np.tile([0.0, 1, 0], 4))
+    assert number.tolist() == [1, 2, 1]

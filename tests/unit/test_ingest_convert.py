@@ -313,3 +313,14 @@ def test_the_record_cannot_be_written_to():
     record = convert((log(), layout()))
     with pytest.raises(ValueError, match="read-only"):
         record.tension[0, 0] = 0.0
+
+
+def test_numbers_that_no_machine_measures_are_refused_with_their_row():
+    position = POSITION.copy()
+    position[[7, 9]] = 1e300
+    with pytest.raises(DataError, match=r"crosshead_position has 2 values .* row 11 of T-1\.csv"):
+        convert((log({"crosshead_position": position}), layout()))
+    load = LOAD.copy()
+    load[3], load[5] = np.nan, -3e9
+    with pytest.raises(DataError, match=r"tension\.2 has 1 values .* row 9 of T-1\.csv"):
+        convert((log({"tension.2": load}), layout()))

@@ -96,3 +96,38 @@ def test_a_channel_without_a_number_is_refused():
         flagged(record(position=empty))
     with pytest.raises(DataError, match="time holds no number"):
         flagged(record(time=empty))
+
+
+def test_missing_stamps_are_bridged_and_position_is_not_used_there():
+    time = TIME.copy()
+    time[[0, 1, 500, 501, 502, -1]] = np.nan
+    result = flagged(record(time=time))
+    np.testing.assert_allclose(result.time, TIME, atol=1e-9)
+    along = result.crosshead_position_quality_flag
+    assert where(along, Quality.MISSING) == [0, 1, 500, 501, 502, TIME.size - 1]
+    assert result.notes[0].startswith("6 rows have no time, first sample 1: ")
+
+
+def test_a_gap_among_missing_stamps_is_seen():
+    time = TIME.copy()
+    time[500:] += 30.0
+    time[500:502] = np.nan
+    assert where(flagged(record(time=time)).crosshead_position_quality_flag, Quality.GAP)
+
+
+def test_a_length_of_zero_is_flagged_where_it_is_rare_and_refused_where_it_is_not():
+    position = 6.0 + 0.1 * WAVE + RANDOM.normal(0, 1e-3, TIME.size)
+    position[100:115] = 0.0
+    along = flagged(record(position=position)).crosshead_position_quality_flag
+    assert where(along, Quality.SPIKE) == list(range(100, 115))
+    with pytest.raises(DataError, match=r"length is not positive; found 100% .* least -\d"):
+        flagged(record(position=position - 9.0))
+    shifted = record(position=position - 9.0, position_is_length=False)
+    assert not where(flagged(shifted).crosshead_position_quality_flag, ~np.uint16(0))
+
+
+def test_a_load_cell_that_says_nothing_is_refused():
+    with pytest.raises(DataError, match="tension of 'new' is zero throughout; found 2000 samples"):
+        flagged(record(load=np.zeros(TIME.size)))
+    with pytest.raises(DataError, match="'new' has no sample that can be used; .* stuck at 5 N"):
+        flagged(record(load=np.full(TIME.size, 5.0)))
