@@ -158,6 +158,11 @@ def _plan(
             path, f"test '{name}' names no known specimen", found=", ".join(unknown) or "none",
             needed="one of [specimens]: " + ", ".join(file.specimens),
         )  # fmt: skip
+    if len(set(specimens)) < len(specimens):
+        raise _in_toml(
+            path, f"test '{name}' names a specimen twice", found=", ".join(specimens),
+            needed="each specimen once, in the order of the tension channels",
+        )  # fmt: skip
     strain = given("strain")
     settings = ReductionSettings(
         strain=StrainSettings(method=strain.method),

@@ -117,6 +117,7 @@ def test_a_test_in_both_places_is_refused(folder):
         (BASE + '[tests."a/b"]\nfile = "T.csv"\n', "cannot be used"),
         (BASE + TEST + "layout = 'm'\n", "test 'T' has no layout; found 'm'; needed one of"),
         (BASE + TEST + "specimens = ['b']\n", "names no known specimen; found b"),
+        (BASE + TEST + "specimens = ['a', 'a']\n", "names a specimen twice; found a, a"),
         (BASE + '[tests.T]\nfile = "../T.csv"\n', "lies outside the campaign folder"),
         (BASE + '[tests.T]\nfile = "/etc/passwd"\n', "lies outside the campaign folder"),
         (BASE + TEST + "part_of = 'U'\n", "is part of a test that the campaign lacks"),
