@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from reduction.cycles.product import Cycles, Loops
-from reduction.holds.product import HoldResult
+from reduction.holds.product import HoldResult, hold_numbers
 from reduction.moduli.product import (
     AmplitudeSummary,
     CycleIdentity,
@@ -129,6 +129,7 @@ class ReducedTest:
         stages = (
             ("cycles", self.cycles),
             ("moduli", self.curves),
+            ("identity", self.identity),
             ("first loading", self.first_loading),
             ("slips", self.slips),
             ("stepwise", self.stepwise),
@@ -140,7 +141,7 @@ class ReducedTest:
             yield from (("comparison", text) for text in ratio.notes)
         for fit in self.elastomers:
             yield from ((f"{fit.law} {fit.specimen}", text) for text in fit.notes)
-        for number, hold in enumerate(self.holds, start=1):
+        for number, hold in zip(hold_numbers(self.holds), self.holds, strict=True):
             stage = f"hold {number} {hold.specimen}"
             yield from ((stage, text) for text in hold.notes)
             yield from ((stage, f"refused: {text}") for text in hold.refusals)

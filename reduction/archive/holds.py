@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from reduction.archive.values import Values, numbers, pad, texts
-from reduction.holds.product import HoldResult
+from reduction.holds.product import HoldResult, hold_numbers
 from reduction.phases.standstill import Standstills
 from reduction.record import Floats
 
@@ -52,6 +52,7 @@ def hold_values(holds: Sequence[HoldResult]) -> Values:
     """Return one row a hold and specimen, ragged parts padded with NaN."""
     values: Values = {
         "hold": np.arange(1, len(holds) + 1),
+        "hold_number": hold_numbers(holds),
         "hold_specimen": texts([one.specimen for one in holds]),
         "hold_kind": texts([one.kind for one in holds]),
         "hold_criterion": texts([one.criterion for one in holds]),

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from reduction.record import Floats, freeze_arrays
+import numpy as np
 
-__all__ = ["HoldResult"]
+from reduction.record import Floats, Integers, freeze_arrays
+
+__all__ = ["HoldResult", "hold_numbers"]
 
 
 @dataclass(frozen=True)
@@ -74,3 +77,40 @@ class HoldResult:
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze_arrays(self)
+
+
+def hold_numbers(holds: Sequence[HoldResult]) -> Integers:
+    """Number of each hold in its test, by time from 1; one for all specimens that stand.
+
+    Parameters
+    ----------
+    holds : sequence of HoldResult
+        Of one test.
+
+    Returns
+    -------
+    numbers : ndarray of int, shape (n_holds,)
+        Equal where the holds begin together. [1]
+
+    Raises
+    ------
+    AttributeError
+        If an entry is no hold.
+
+    Notes
+    -----
+    Nothing is computed from a report here ([1]_ does not number its holds).
+
+    Examples
+    --------
+    >>> hold_numbers([]).size
+    0
+
+    References
+    ----------
+    .. [1] WHOI-2005-10, sec. 4.1.
+    """
+    if not holds:
+        return np.empty(0, dtype=np.int64)
+    _, place = np.unique([hold.hold_start_time for hold in holds], return_inverse=True)
+    return np.asarray(place + 1)

@@ -33,7 +33,6 @@ _WARNING = re.compile(
     re.IGNORECASE,
 )
 # an archive counts the holds of each specimen apart, the page goes by time
-_HOLD = re.compile(r"^hold (\d+)(?= )")
 _NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
 
 
@@ -85,8 +84,7 @@ def find_faults(
 def all_notes(view: TestView) -> list[str]:
     """Return every note of a test, with the stage that gave it where the note does not say."""
     notes = []
-    for own, text in zip(view.texts("note_stage"), view.texts("note"), strict=True):
-        stage = _HOLD.sub(lambda found: f"hold {view.hold_numbers[int(found[1]) - 1]}", own)
+    for stage, text in zip(view.texts("note_stage"), view.texts("note"), strict=True):
         room = stage.split(" ")[-1]
         is_said = text.startswith((f"{stage}:", f"{room}:", f"{room},"))
         notes.append(text if is_said else f"{stage}: {text}")

@@ -116,11 +116,8 @@ class TestView:
     @property
     def hold_numbers(self) -> tuple[int, ...]:
         """Number of each hold in time, from 1: specimens that stand still together share one."""
-        start = self.array("hold_start_time")
-        if start is None:
-            return ()
-        _, place = np.unique(start, return_inverse=True)
-        return tuple(int(number) + 1 for number in place)
+        number = self.array("hold_number")
+        return () if number is None else tuple(int(value) for value in number)
 
     def text(self, name: str) -> str:
         """Value of a text variable without dimensions."""

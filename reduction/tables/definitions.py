@@ -112,6 +112,7 @@ TABLES = (
         ("hold",),
         (
             "specimen=hold_specimen",
+            "hold_number",
             "hold_kind",
             "hold_start_time",
             "hold_duration",
@@ -130,13 +131,13 @@ TABLES = (
     Table(
         "relaxation_times",
         ("hold", "hold_time"),
-        ("specimen=hold_specimen", "hold_kind", "tension_at_time", "strain_at_time"),
+        ("specimen=hold_specimen", "hold_number", "hold_kind", "tension_at_time", "strain_at_time"),
         ("tension_at_time", "strain_at_time"),
     ),
     Table(
         "prony",
         ("hold", "prony_term"),
-        ("specimen=hold_specimen", "hold_kind", "prony_tension", "prony_time"),
+        ("specimen=hold_specimen", "hold_number", "hold_kind", "prony_tension", "prony_time"),
         ("prony_tension",),
     ),
     Table(
@@ -183,6 +184,13 @@ TABLES = (
         ("slip_cycle",),
     ),
     Table("identity", ("specimen", "cycle"), _IDENTITY, _IDENTITY),
+    Table(
+        "mean_identity",
+        ("specimen",),
+        ("mean_identity_residual", "n_cycles"),
+        ("mean_identity_residual",),
+        _with_cycle_count,
+    ),
     Table(
         "history",
         ("specimen",),
