@@ -101,6 +101,11 @@ _ROWS = (
     Quantity(
         "identity_residual", "1", "closed-cycle identity residual over the stroke-mean modulus"
     ),
+    Quantity(
+        "mean_identity_residual",
+        "1",
+        "closed-cycle identity residual over the stroke-mean modulus, mean over the cycles",
+    ),
     Quantity("dissipation_spring_constant", "N", "dissipation spring constant", "003 K1"),
     Quantity("relaxation_time", "s", "relaxation time of the three-parameter line", "003 tau"),
     Quantity("quasi_static_spring_constant", "N", "slope of the slow pull", "003 K0"),
@@ -241,7 +246,8 @@ _ROWS = (
     ),
     Quantity("slack_tension", "N", "tension at or below which a standstill is a rest"),
     # holds
-    Quantity("hold", "1", "number of the hold, each specimen counted"),
+    Quantity("hold", "1", "row of the holds, each specimen counted"),
+    Quantity("hold_number", "1", "number of the hold in the test, by time, one for all specimens"),
     Quantity("hold_specimen", "", "specimen of the hold"),
     Quantity("hold_kind", "", "relaxation or creep"),
     Quantity("hold_criterion", "", "how the number of Prony terms was chosen"),

@@ -76,7 +76,9 @@ def end_modulus_values(moduli: EndModuli) -> Values:
 
 def identity_values(identity: CycleIdentity) -> Values:
     """Return both sides of the closed-cycle identity and what is left."""
-    return {item.name: getattr(identity, item.name) for item in fields(identity)}
+    return {
+        item.name: getattr(identity, item.name) for item in fields(identity) if item.name != "notes"
+    }
 
 
 def trend_values(trend: PeakTrend) -> Values:

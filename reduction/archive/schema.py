@@ -236,6 +236,7 @@ _ROWS = chain(
     stated("stroke_mean_modulus_difference", _C, "one side of a check"),
     stated("tension_loss_modulus", _C, "one side of a check"),
     stated("identity_residual", _C, CHECK),
+    measured("mean_identity_residual", _S),
     chain.from_iterable(
         measured(name, _S)
         for name in (
@@ -295,6 +296,7 @@ _ROWS = chain(
     measured("elastomer_modulus", ("elastomer_parameter",)),
     measured("elastomer_exponent", ("elastomer_parameter",)),
     # holds
+    count("hold_number", ("hold",)),
     label("hold_specimen", ("hold",)),
     label("hold_kind", ("hold",)),
     stated("hold_start_time", ("hold",), CLOCK),

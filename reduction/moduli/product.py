@@ -120,6 +120,9 @@ class EndModuli:
 class CycleIdentity:
     """Closed-cycle identity, checked on every cycle; arrays (n_specimens, n_cycles).
 
+    ``mean_identity_residual`` is the mean over the cycles, shape (n_specimens,), with its
+    standard error from their scatter; ``notes`` say where it is more than noise.
+
     Stroke-mean modulus ascending minus descending is minus the tension lost over
     the cycle, over area and strain stroke: what is lost was given back on the way down
     and not taken up again.
@@ -128,6 +131,9 @@ class CycleIdentity:
     stroke_mean_modulus_difference: Floats
     tension_loss_modulus: Floats
     identity_residual: Floats
+    mean_identity_residual: Floats
+    mean_identity_residual_standard_uncertainty: Floats
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

@@ -53,7 +53,9 @@ def parts_of_cycles(
         "curves": curves,
         "segments": find_segments(curves, area=area, settings=settings.modulus),
         "end_moduli": end_moduli(strain, tension, area=area, cycles=cycles),
-        "identity": check_identity(strain, tension, area=area, cycles=cycles),
+        "identity": check_identity(
+            strain, tension, area=area, cycles=cycles, names=record.specimens
+        ),
         "amplitude": summarise_amplitude(loops, area=area, break_in_cycles=break_in),
         "trend": fit_peak_trend(loops, area=area, break_in_cycles=break_in),
     }

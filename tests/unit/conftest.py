@@ -307,7 +307,12 @@ def rich_test():
             array(rng, 2, N_CYCLES, 2),
         ),
         identity=CycleIdentity(
-            array(rng, *per_cycle), array(rng, *per_cycle), array(rng, *per_cycle)
+            array(rng, *per_cycle),
+            array(rng, *per_cycle),
+            array(rng, *per_cycle),
+            array(rng, 2),
+            array(rng, 2),
+            ("new: the identity leaves 2 %",),
         ),
         amplitude=AmplitudeSummary(
             **{name: array(rng, 2) for name in of_test},

@@ -98,3 +98,80 @@ def test_dead_specimen_is_nan_and_leaves_the_other_alone(triangle):
     checked = check_identity(np.stack([strain, strain]), both, area=[AREA, AREA], cycles=cycles)
     assert np.isfinite(checked.identity_residual[0]).all()
     assert np.isnan(checked.identity_residual[1]).all()
+
+
+def sampled(lag, *, per_cycle=100, n_cycles=40, noise=0.05, bend=30.0):
+    """Two specimens on one triangle, the second one's tension sampled late, in periods."""
+    time = np.arange(n_cycles * per_cycle + 1) / per_cycle
+    rng = np.random.default_rng(4)
+
+    def strain(when):
+        return 1.0 + np.abs((when + 0.5) % 1 * 2 - 1)
+
+    stretch = strain(time)
+    loads = [
+        200 * strain(time - late)
+        + bend * strain(time - late) ** 3
+        + rng.normal(0, noise, time.size)
+        for late in (0, lag)
+    ]
+    return np.stack([stretch, stretch]), np.stack(loads)
+
+
+def judged(lag, triangle, **options):
+    strain, tension = sampled(lag, **options)
+    _, cycles = triangle(
+        n_cycles=options.get("n_cycles", 40), per_cycle=options.get("per_cycle", 100)
+    )
+    return check_identity(
+        strain, tension, area=[AREA, AREA], cycles=cycles, names=("sound", "late")
+    )
+
+
+def test_tension_sampled_late_is_noted_and_sound_channels_are_not(triangle):
+    found = judged(0.005, triangle)
+    assert found.mean_identity_residual[1] == pytest.approx(
+        found.identity_residual[1].mean(), rel=1e-12
+    )
+    assert found.mean_identity_residual_standard_uncertainty[1] == pytest.approx(
+        found.identity_residual[1].std(ddof=1) / np.sqrt(40)
+    )
+    assert abs(found.mean_identity_residual[0]) < 0.001
+    assert -0.011 < found.mean_identity_residual[1] < -0.007
+    (note,) = found.notes
+    assert note.startswith("late: the closed-cycle identity leaves -0.")
+    assert "may not be sampled together (lag)" in note
+    assert "few samples" not in note
+
+
+def test_what_noise_explains_or_is_below_half_a_percent_is_not_noted(triangle):
+    # as late as before, and as far off: but the scatter of ten cycles hides it
+    assert judged(0.005, triangle, n_cycles=10, noise=8.0).notes == ()
+    found = judged(0.001, triangle)
+    error = found.mean_identity_residual_standard_uncertainty[1]
+    assert found.mean_identity_residual[1] < -3 * error
+    assert found.notes == ()
+
+
+def test_few_samples_a_branch_are_named_among_the_causes(triangle):
+    (note,) = judged(0.02, triangle, per_cycle=20).notes
+    assert "few samples for its curvature" in note
+
+
+def test_one_cycle_has_a_mean_and_no_error_and_no_note(triangle):
+    found = judged(0.02, triangle, n_cycles=1)
+    assert np.isfinite(found.mean_identity_residual).all()
+    assert np.isnan(found.mean_identity_residual_standard_uncertainty).all()
+    assert found.notes == ()
+
+
+def test_cycles_without_a_residual_are_left_out_of_the_mean(triangle):
+    strain, tension = sampled(0.0)
+    _, cycles = triangle(n_cycles=40, per_cycle=100)
+    tension[0, cycles.first[5]] = np.nan
+    tension[1] = np.nan
+    found = check_identity(strain, tension, area=[AREA, AREA], cycles=cycles)
+    assert np.isnan(found.identity_residual[0]).sum() == 2
+    assert found.mean_identity_residual[0] == pytest.approx(np.nanmean(found.identity_residual[0]))
+    assert np.isnan(found.mean_identity_residual[1])
+    assert found.notes == ()
