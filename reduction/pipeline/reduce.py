@@ -21,6 +21,7 @@ from reduction.phases.standstill import Standstills
 from reduction.pipeline.cyclic import parts_of_cycles
 from reduction.pipeline.loading import parts_of_first_loading
 from reduction.pipeline.locate import HELD, Located
+from reduction.pipeline.plausibility import plausibility_notes
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
 from reduction.record import Floats, Quality, Record, Specimen, StepReadings
@@ -99,6 +100,11 @@ def reduce_test(
     notes += parts.pop("notes", [])
     if description.kind in HELD and not holds:
         notes.append(_no_hold(standstills, settings))
+    notes += plausibility_notes(
+        strain, specimens=record.specimens, slack_tension=standstills.slack_tension,
+        waveform=settings.cycles.waveform, cycles=cycles, loops=parts.get("loops"),
+        curves=parts.get("curves"),
+    )  # fmt: skip
     notes += [
         f"{name}: {text}" for name, text in zip(record.specimens, remarks, strict=True) if text
     ]

@@ -1,0 +1,117 @@
+"""Numbers of a reduced test that no test gives unless its layout or campaign is wrong.
+
+Each is computed all the same, and named: the reader is the one who knows the machine.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from reduction.cycles.product import Cycles, Loops
+from reduction.moduli.product import ModulusCurves
+from reduction.record import Floats
+
+__all__ = ["plausibility_notes"]
+
+_GREATEST_STRAIN = 10.0  # no rubber is stretched to eleven times its length
+_TRIANGULAR_SHARE = 0.6  # of samples at a constant rate; a sine has a half
+_FEWEST_SAMPLES = 10  # of a branch: below, its two ends are a good part of it
+
+
+def plausibility_notes(
+    strain: Floats,
+    *,
+    specimens: tuple[str, ...],
+    slack_tension: float,
+    waveform: Literal["triangular", "sinusoidal", "other"],
+    cycles: Cycles | None,
+    loops: Loops | None,
+    curves: ModulusCurves | None,
+) -> tuple[str, ...]:
+    """Name what is hardly so: sign, unit of position, slack in cycles, waveform.
+
+    Parameters
+    ----------
+    strain : ndarray, shape (n_specimens, n_samples)
+        NaN where it is not known. [1]
+    specimens : tuple of str, length n_specimens
+        Their names.
+    slack_tension : float
+        At or below it a specimen is slack. [N]
+    waveform : {"triangular", "sinusoidal", "other"}
+        As declared. [-]
+    cycles : Cycles or None
+        None where the test has none.
+    loops : Loops or None
+        Likewise.
+    curves : ModulusCurves or None
+        Likewise.
+
+    Returns
+    -------
+    notes : tuple of str
+        Empty for a test that is as tests are.
+    """
+    notes = []
+    for name, one in zip(specimens, np.fmax.reduce(strain, axis=1), strict=True):
+        if one > _GREATEST_STRAIN:
+            notes.append(
+                f"{name}: strain reaches {one:.4g}, which no specimen does; is the unit of "
+                "position, or the length that strain refers to, right?"
+            )
+    if cycles is None or loops is None:
+        return tuple(notes)
+    for index, name in enumerate(specimens):
+        slopes = None if curves is None else curves.tangent_modulus[index]
+        # of a channel of the wrong sign a valley says nothing about slack
+        notes += _sign(name, loops.mean_tension[index], slopes) or _slack(
+            name, loops.valley_tension[index], slack_tension
+        )
+    return (*notes, *_waveform(cycles, waveform))
+
+
+def _sign(name: str, mean_tension: Floats, slopes: Floats | None) -> list[str]:
+    """Tension that pushes, or falls with stretch."""
+    level = _median(mean_tension)
+    slope = np.nan if slopes is None else _median(slopes)
+    what = []
+    if level < 0:
+        what.append(f"mean tension of the cycles is negative ({level:.4g} N)")
+    if slope <= 0:
+        what.append(f"tension falls with stretch (median tangent modulus {slope:.4g} Pa)")
+    if not what:
+        return []
+    hint = "does the log count compression positive? Then set sign = -1 for this channel"
+    return [f"{name}: {' and '.join(what)}; {hint}"]
+
+
+def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[str]:
+    """Cycles that go slack: strain below it is no strain of the specimen."""
+    slack = int(np.count_nonzero(valley_tension <= slack_tension))
+    if not slack:
+        return []
+    return [
+        f"{name}: slack within {slack} of {valley_tension.size} cycles (tension at or below "
+        f"{slack_tension:.4g} N): amplitudes and energies of these include the slack part"
+    ]
+
+
+def _waveform(cycles: Cycles, waveform: str) -> list[str]:
+    """A triangular test of which little runs at a constant rate."""
+    n_samples = cycles.branch_last - cycles.branch_first + 1
+    if waveform != "triangular" or np.median(n_samples) < _FEWEST_SAMPLES:
+        return []
+    share = np.count_nonzero(cycles.is_constant_rate) / int(n_samples.sum())
+    if share >= _TRIANGULAR_SHARE:
+        return []
+    return [
+        f"declared triangular, but only {share:.0%} of the branches run at a constant rate; is "
+        'waveform = "sinusoidal" right?'
+    ]
+
+
+def _median(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else float("nan")

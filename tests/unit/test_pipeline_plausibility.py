@@ -1,0 +1,77 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from reduction.cycles.loops import close_loops
+from reduction.moduli.tangent import tangent_curves
+from reduction.pipeline.plausibility import plausibility_notes
+from reduction.settings import ModulusSettings
+
+AREA = np.array([3e-4])
+
+
+@pytest.fixture
+def notes_of(triangle):
+    strain, cycles = triangle(low=0.5, high=1.5)
+
+    def notes(tension=1000 * strain, *, stretch=strain, waveform="triangular", share=None):
+        one = cycles
+        if share is not None:
+            within = np.arange(strain.size) % 50 < 50 * share  # a branch has 51 samples
+            one = replace(cycles, is_constant_rate=within)
+        load, stretch = np.atleast_2d(tension), np.atleast_2d(stretch)
+        curves = tangent_curves(
+            stretch, load, area=AREA, cycles=one, settings=ModulusSettings(), break_in_cycles=0
+        )
+        return plausibility_notes(
+            stretch, specimens=("new",), slack_tension=20.0, waveform=waveform, cycles=one,
+            loops=close_loops(0.1 * np.arange(strain.size), load, stretch, one), curves=curves,
+        )  # fmt: skip
+
+    notes.strain = strain
+    return notes
+
+
+def test_a_test_as_tests_are_gets_no_note(notes_of):
+    assert notes_of() == ()
+
+
+def test_a_channel_that_counts_compression_positive_is_named(notes_of):
+    (note,) = notes_of(-1000 * notes_of.strain)
+    assert note.startswith(
+        "new: mean tension of the cycles is negative (-1000 N) and tension falls"
+    )
+    assert note.endswith("Then set sign = -1 for this channel")
+
+
+def test_tension_that_falls_with_stretch_is_named_where_it_is_positive(notes_of):
+    (note,) = notes_of(3000 - 1000 * notes_of.strain)
+    # -1000 N / 3e-4 m2
+    assert note.startswith("new: tension falls with stretch (median tangent modulus -3.333e+06 Pa)")
+
+
+def test_a_strain_no_specimen_reaches_asks_for_the_unit_of_position(notes_of):
+    (note,) = notes_of(stretch=1000 * notes_of.strain)
+    assert note.startswith("new: strain reaches 1500, which no specimen does")
+
+
+def test_cycles_that_go_slack_are_counted(notes_of):
+    (note,) = notes_of(np.maximum(1000 * (notes_of.strain - 0.7), 0))
+    assert note.startswith("new: slack within 10 of 10 cycles (tension at or below 20 N)")
+
+
+@pytest.mark.parametrize(("share", "n_notes"), [(0.5, 1), (0.7, 0)])
+def test_little_at_a_constant_rate_asks_for_the_waveform(notes_of, share, n_notes):
+    notes = notes_of(share=share)
+    assert len(notes) == n_notes
+    assert all("only 49% of the branches run at a constant rate" in note for note in notes)
+    assert notes_of(share=share, waveform="sinusoidal") == ()
+
+
+def test_a_test_without_cycles_is_judged_by_its_strain_alone():
+    notes = plausibility_notes(
+        np.array([[0.0, np.nan, 12.0], [0.0, 1.0, 2.0]]), specimens=("new", "used"),
+        slack_tension=20.0, waveform="triangular", cycles=None, loops=None, curves=None,
+    )  # fmt: skip
+    assert [note.split(":")[0] for note in notes] == ["new"]
