@@ -101,7 +101,8 @@ def without_parabola(rows: Floats) -> Floats:
     base = _parabola(rows.shape[-1])
     # einsum, not matrix products: their last digits depend on the number of threads
     share = np.einsum("...i,ij->...j", rows, base)
-    return rows - np.einsum("...j,ij->...i", share, base)
+    level: Floats = rows - np.einsum("...j,ij->...i", share, base)
+    return level
 
 
 def without_background(values: Floats, ramps: Floats | None = None) -> Floats:
