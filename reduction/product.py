@@ -72,7 +72,8 @@ class ReducedTest:
     """One reduced test with all its specimens.
 
     ``record`` is None for a stepwise test, which has readings (`stepwise`) and no log.
-    ``strain`` has shape (n_specimens, n_samples) [1].  Parts that the kind of test
+    ``strain`` has shape (n_specimens, n_samples) [1], its standard uncertainty one value a
+    specimen.  Parts that the kind of test
     does not give are None (or empty); `notes` are the quality notes a reader must see,
     `steps` the history lines, `settings_json` every setting that was in force.
     """
@@ -88,6 +89,7 @@ class ReducedTest:
     standstills: Standstills | None = None
     phase: Integers | None = None
     strain: Floats | None = None
+    strain_standard_uncertainty: Floats | None = None
     strain_models: tuple[StrainModel, ...] = ()
     cycles: Cycles | None = None
     loops: Loops | None = None

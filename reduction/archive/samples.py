@@ -7,7 +7,7 @@ import numpy as np
 from reduction.archive.schema import QUALITY_MASKS
 from reduction.archive.values import Values, texts
 from reduction.product import ReducedTest
-from reduction.record import Floats, Record, Specimen
+from reduction.record import Record
 
 __all__ = ["kept_samples", "row_account", "sample_values"]
 
@@ -41,19 +41,21 @@ def sample_values(test: ReducedTest, record: Record) -> Values:
         values["machine_cycle_number"] = record.cycle_counter[kept]
     if test.strain is not None:
         values["strain"] = test.strain[:, kept]
+    if test.strain_standard_uncertainty is not None:
+        values["strain_standard_uncertainty"] = test.strain_standard_uncertainty
     if any(specimen.diameter for specimen in test.specimens):
-        values["nominal_stress"] = _nominal_stress(record.tension[:, kept], test.specimens)
+        area = np.array([one.area if one.diameter else np.nan for one in test.specimens])
+        values["nominal_stress"] = record.tension[:, kept] / area[:, np.newaxis]
+        if record.tension_standard_uncertainty:
+            values["nominal_stress_standard_uncertainty"] = (
+                np.array(record.tension_standard_uncertainty) / area
+            )
     if test.phase is not None:
         values["phase"] = test.phase[kept]
     if test.cycles is not None:
         values["cycle_number"] = test.cycles.cycle_number[kept]
         values["branch"] = test.cycles.branch[kept]
     return values
-
-
-def _nominal_stress(tension: Floats, specimens: tuple[Specimen, ...]) -> Floats:
-    area = np.array([one.area if one.diameter else np.nan for one in specimens])
-    return np.asarray(tension / area[:, np.newaxis], dtype=np.float64)
 
 
 def row_account(record: Record) -> Values:

@@ -165,9 +165,11 @@ _ROWS = chain(
     mask("crosshead_position_quality_flag", ("sample",), QUALITY_MASKS),
     measured("tension", ("specimen", "sample"), uncertainty_dims=_S, ancillary=("quality_flag",)),
     mask("quality_flag", ("specimen", "sample"), QUALITY_MASKS),
-    stated("strain", ("specimen", "sample"), READING, ancillary=("quality_flag",)),
+    measured("strain", ("specimen", "sample"), uncertainty_dims=_S, ancillary=("quality_flag",)),
     stated("measured_strain", ("specimen", "sample"), READING),
-    stated("nominal_stress", ("specimen", "sample"), READING, ancillary=("quality_flag",)),
+    measured(
+        "nominal_stress", ("specimen", "sample"), uncertainty_dims=_S, ancillary=("quality_flag",)
+    ),
     flag("phase", ("sample",), PHASE_VALUES),
     count("cycle_number", ("sample",)),
     count("machine_cycle_number", ("sample",)),

@@ -22,6 +22,7 @@ from reduction.pipeline.cyclic import parts_of_cycles
 from reduction.pipeline.loading import parts_of_first_loading
 from reduction.pipeline.locate import HELD, Located
 from reduction.pipeline.plausibility import plausibility_notes
+from reduction.pipeline.spread import strain_spread
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
 from reduction.record import Floats, Quality, Record, Specimen, StepReadings
@@ -78,6 +79,7 @@ def reduce_test(
     record, standstills, cycles = located.record, located.standstills, located.cycles
     area = np.array([specimen.area for specimen in specimens])
     position, tension = located.position, located.tension
+    phase = label_phases(record.n_samples, standstills=standstills, cycles=cycles)
     strain = _strain(record, position, tension, models)
     parts = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings
@@ -118,8 +120,9 @@ def reduce_test(
         notes=tuple(dict.fromkeys(notes)),
         history=history,
         standstills=standstills,
-        phase=label_phases(record.n_samples, standstills=standstills, cycles=cycles),
+        phase=phase,
         strain=strain,
+        strain_standard_uncertainty=strain_spread(located, models, phase=phase),
         strain_models=tuple(models),
         cycles=cycles,
         holds=holds,
