@@ -10,7 +10,7 @@ from numpydoc.docscrape import FunctionDoc
 
 import reduction
 
-PHYSICS = {"phases", "strain", "cycles", "moduli", "holds"}
+PHYSICS = {"phases", "strain", "cycles", "moduli", "holds", "line", "surface", "outcomes"}
 UNIT = re.compile(r"\[[^\]]+\]\.?$")
 
 

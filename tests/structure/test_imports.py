@@ -23,6 +23,9 @@ LAYER = {
     "cycles": 2,
     "moduli": 2,
     "holds": 2,
+    "line": 2,
+    "surface": 2,
+    "outcomes": 2,
     "product": 3,
     "pipeline": 4,
     "ingest": 4,
@@ -34,7 +37,8 @@ LAYER = {
     "cli": 7,
     "__main__": 8,
 }
-STAGES = ["phases", "strain", "cycles", "moduli", "holds"]  # data flow, left to right
+# data flow, left to right
+STAGES = ["phases", "strain", "cycles", "moduli", "holds", "line", "surface", "outcomes"]
 EDGES = {"ingest", "archive", "campaign", "tables", "report", "batch", "cli", "__main__"}
 UNITS_AT = EDGES  # pint stands at the edges only
 # numpy everywhere; scipy where the mathematics is

@@ -1,0 +1,1 @@
+"""The three-parameter line: slow pull, forward model, inversion, programmes of a rope laboratory."""

@@ -1,0 +1,1 @@
+"""Outcomes without a log: strength, fatigue, abrasion, exposure."""

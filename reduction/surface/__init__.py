@@ -1,0 +1,1 @@
+"""Designs of experiments, response surfaces over their runs, screening."""
