@@ -1,1 +1,1 @@
-"""The three-parameter line: slow pull, forward model, inversion, programmes of a rope laboratory."""
+"""Stage: the three-parameter line from loops and a slow pull; programmes of a rope laboratory."""

@@ -1,1 +1,1 @@
-"""Outcomes without a log: strength, fatigue, abrasion, exposure."""
+"""Stage: outcomes without a log: strength, fatigue, abrasion, exposure."""

@@ -1,1 +1,1 @@
-"""Designs of experiments, response surfaces over their runs, screening."""
+"""Stage: designs of experiments, response surfaces over their runs, screening."""
