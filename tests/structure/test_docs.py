@@ -5,9 +5,11 @@ import shutil
 import tomllib
 from dataclasses import fields
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
+from reduction.batch.status import Status, status_csv
 from reduction.campaign import model, numbers
 from reduction.campaign.load import load_campaign
 from reduction.ingest.layout import Channel, Layout
@@ -16,7 +18,7 @@ from reduction.settings import ReductionSettings
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-PAGES = sorted(DOCS.rglob("*.md"))
+PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CAMPAIGN, LAYOUTS = (
     (DOCS / name).read_text(encoding="utf-8") for name in ("campaign.md", "layouts.md")
@@ -37,8 +39,7 @@ def keys(models):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_toml_is_toml(page):
-    for body in blocks(page.read_text(encoding="utf-8"), "toml"):
-        tomllib.loads(body)
+    assert all(tomllib.loads(body) for body in blocks(page.read_text(encoding="utf-8"), "toml"))
 
 
 def test_the_complete_campaign_loads(tmp_path):
@@ -54,12 +55,21 @@ def test_the_complete_campaign_loads(tmp_path):
 
 def test_parts_of_a_campaign_are_valid():
     whole, *parts = (tomllib.loads(body) for body in blocks(CAMPAIGN, "toml"))
+    seen = set()
     for part in parts:
         for test in part.get("tests", {}).values():
             test.setdefault("file", "log.csv")
         file = model.CampaignFile.model_validate(whole | part)
         for section in (file.defaults, *(file.tests.values() if "tests" in part else ())):
-            numbers.apply_numbers(ReductionSettings(), section.reduction, control="position")
+            changed = numbers.apply_numbers(
+                ReductionSettings(), section.reduction, control="position"
+            )
+            seen.update(
+                group.name
+                for group in fields(changed)
+                if getattr(changed, group.name) != getattr(ReductionSettings(), group.name)
+            )
+    assert seen == {"cycles", "modulus", "holds"}
 
 
 @pytest.mark.parametrize("part", re.split(r"^## ", LAYOUTS, flags=re.M), ids=lambda part: part[:9])
@@ -97,6 +107,13 @@ def test_every_number_is_listed_with_its_default():
         values = default if isinstance(default, tuple) else (default,)
         shown = "found" if default is None else ", ".join(f"{value:g}" for value in values)
         assert listed[name] == shown, name
+
+
+def test_columns_and_answers_of_the_status_table_are_explained():
+    part = CAMPAIGN.partition("## status.csv")[2].partition("\n## ")[0]
+    listed = dict(re.findall(r"^\| `(\w+)` \| ?\w* \| (.*) \|$", part, re.M))
+    assert list(listed) == status_csv([]).strip().split(",")
+    assert all(f"`{one}`" in listed["status"] for one in get_args(Status))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
