@@ -118,7 +118,7 @@ def test_no_row_of_the_new_tether_fits_the_printed_diameter():
 
 @pytest.mark.parametrize("table", [5, 6])
 def test_segments_of_a_branch_meet(table):
-    before = {}
+    before, n_joints = {}, 0
     for parameter in rows(table):
         _, row, key = parameter.values
         value, _ = numbers(row)
@@ -127,4 +127,6 @@ def test_segments_of_a_branch_meet(table):
         branch = (row["test"], row["tether"])
         if branch in before:
             assert (value["strain_min"], value["load_min"]) == before[branch]
+            n_joints += 1
         before[branch] = (value["strain_max"], value["load_max"])
+    assert n_joints == {5: 15, 6: 6}[table]

@@ -155,6 +155,7 @@ def test_companions_that_are_there_are_named_and_others_are_not(rich_test, bare_
 
 def test_covariance_of_the_coefficients_can_be_had_back(rich_test):
     dataset = build(rich_test)
+    assert rich_test.strain_models
     for row, model in enumerate(rich_test.strain_models):
         names = list(dataset["coefficient_name"].values)
         spread = np.array([dataset[f"{n}_standard_uncertainty"].values[row] for n in names])

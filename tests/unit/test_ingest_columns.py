@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -77,13 +78,23 @@ def test_a_number_is_refused_where_columns_have_no_order():
         find_column(PATH, Wanted("tension.1", 1, "kN", "force"), ["a", "b"], in_order=False)
 
 
-@pytest.mark.parametrize("stated", ["kN", " [kN] ", "(kN)", "kilonewton", "", "-"])
-def test_other_spellings_of_the_declared_unit_agree(stated):
+@pytest.mark.parametrize("stated", ["kN", " [kN] ", "(kN)", "kilonewton"])
+def test_other_spellings_of_the_declared_unit_agree_with_it_alone(stated):
     check_unit(PATH, LOAD, stated)
+    with pytest.raises(LogError, match="the unit in the file is not the declared one"):
+        check_unit(PATH, replace(LOAD, unit="N"), stated)
+
+
+@pytest.mark.parametrize("unit", ["kN", "N"])
+@pytest.mark.parametrize("stated", ["", "-"])
+def test_a_unit_that_is_not_stated_contradicts_none(stated, unit):
+    assert check_unit(PATH, replace(LOAD, unit=unit), stated) is None
 
 
 def test_pounds_of_a_force_are_pound_force():
-    check_unit(PATH, Wanted("tension.1", "load", "lbf", "force"), "lb")
+    check_unit(PATH, replace(LOAD, unit="lbf"), "lb")
+    with pytest.raises(LogError, match="found 'lb'; needed 'kN'"):
+        check_unit(PATH, LOAD, "lb")
 
 
 @pytest.mark.parametrize(
@@ -106,7 +117,9 @@ def test_another_unit_is_refused(stated, problem):
 
 
 def test_a_unit_is_not_compared_where_the_file_has_volts():
-    check_unit(PATH, Wanted("tension.1", "load", "kN", "force", is_compared=False), "V")
+    check_unit(PATH, replace(LOAD, is_compared=False), "V")
+    with pytest.raises(LogError, match="not a unit of force"):
+        check_unit(PATH, LOAD, "V")
 
 
 def test_columns_of_one_length_have_that_many_rows():

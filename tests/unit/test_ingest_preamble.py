@@ -51,22 +51,30 @@ def check(tmp_path, column, unit, *, unit_row=None, stated="", **channel):
     )
 
 
+def passes(tmp_path, column, unit):
+    try:
+        check(tmp_path, column, unit)
+    except LogError:
+        return False
+    return True
+
+
 @pytest.mark.parametrize(
-    ("column", "unit"),
+    ("column", "units"),
     [
-        ("Force (kN)", "kN"),
-        ("Load [lb]", "lbf"),
-        ("Total Force (Linear Waveform)", "N"),
-        ("Force (1)", "N"),
-        ("Force (mm)", "N"),
-        ("Force", "N"),
-        (1, "N"),
+        ("Force (kN)", {"kN"}),
+        ("Load [lb]", {"lbf"}),
+        ("Total Force (Linear Waveform)", {"N", "kN", "lbf"}),
+        ("Force (1)", {"N", "kN", "lbf"}),
+        ("Force (mm)", {"N", "kN", "lbf"}),
+        ("Force", {"N", "kN", "lbf"}),
+        (1, {"N", "kN", "lbf"}),
     ],
 )
 def test_words_in_brackets_are_a_unit_only_where_they_are_one_of_the_channel(
-    tmp_path, column, unit
+    tmp_path, column, units
 ):
-    check(tmp_path, column, unit)
+    assert {unit for unit in ("N", "kN", "lbf") if passes(tmp_path, column, unit)} == units
 
 
 @pytest.mark.parametrize(("column", "unit"), [("Force (kN)", "N"), ("Load [lb]", "kgf")])
@@ -83,18 +91,21 @@ def test_volts_with_a_factor_are_not_compared(tmp_path):
         check(tmp_path, "Force (V)", "N", unit_row=2, stated="V")
 
 
+def check_unit_row(tmp_path, place, units, **channels):
+    one = Layout(format="delimited", channels=channels)
+    wanted = [(wanted_columns(one)[0], place)]
+    names = [""] * place + ["F"]
+    check_units(tmp_path / "log.csv", wanted, names=names, units=units, unit_row=2)
+
+
 def test_a_counter_may_have_any_word_for_its_unit(tmp_path):
-    one = Layout(format="delimited", channels={"cycle_counter": {"column": "n"}})
-    check_units(
-        tmp_path / "log.csv",
-        [(wanted_columns(one)[0], 0)],
-        names=["n"],
-        units=["cycles"],
-        unit_row=2,
-    )
+    check_unit_row(tmp_path, 0, ["cycles"], cycle_counter={"column": "n"})
+    with pytest.raises(LogError, match="'cycles' is not a unit of force"):
+        check_unit_row(tmp_path, 0, ["cycles"], **{"tension.1": {"column": "F", "unit": "N"}})
 
 
 def test_a_unit_row_that_ends_early_says_nothing(tmp_path):
-    one = Layout(format="delimited", channels={"tension.1": {"column": "F", "unit": "N"}})
-    wanted = [(wanted_columns(one)[0], 3)]
-    check_units(tmp_path / "x", wanted, names=["", "", "", "F"], units=["s"], unit_row=2)
+    tension = {"tension.1": {"column": "F", "unit": "N"}}
+    check_unit_row(tmp_path, 3, ["s"], **tension)
+    with pytest.raises(LogError, match="found 'kN'; needed 'N'"):
+        check_unit_row(tmp_path, 3, ["s", "s", "s", "kN"], **tension)

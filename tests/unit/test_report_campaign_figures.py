@@ -59,7 +59,9 @@ def test_forty_tests_have_forty_looks_and_a_legend_entry_each(forty, draw):
 
 
 def test_the_amplitude_figures_name_each_test_and_each_specimen_once(forty):
-    for figure in draw_amplitude_pairs(forty):
+    figures = draw_amplitude_pairs(forty)
+    assert figures
+    for figure in figures:
         assert sorted(entries(figure)) == sorted([f"T-{k}" for k in range(1, 41)] + ["new", "used"])
         assert len({look[:2] for look in looks(figure)}) == 80
 
@@ -67,7 +69,9 @@ def test_the_amplitude_figures_name_each_test_and_each_specimen_once(forty):
 def test_a_test_of_the_second_specimen_alone_has_a_legend_entry(forty):
     only = forty[0].data.isel(specimen=[1])
     tests = [forty[1], replace(forty[0], data=only)]
-    for figure in draw_amplitude_pairs(tests):
+    figures = draw_amplitude_pairs(tests)
+    assert figures
+    for figure in figures:
         assert set(entries(figure)) == {"T-1", "T-2", "new", "used"}
 
 
@@ -75,7 +79,9 @@ def test_a_test_without_an_ascending_branch_has_a_legend_entry(forty):
     modulus = forty[0].data["tangent_modulus"].copy()
     modulus[:, 0] = np.nan
     tests = [forty[1], replace(forty[0], data=forty[0].data.assign(tangent_modulus=modulus))]
-    for figure in draw_all_moduli(tests):
+    figures = draw_all_moduli(tests)
+    assert figures
+    for figure in figures:
         assert "T-1, descending" not in entries(figure)
         assert {"T-1", "T-2"} <= set(entries(figure))
 
@@ -83,5 +89,8 @@ def test_a_test_without_an_ascending_branch_has_a_legend_entry(forty):
 def test_a_part_keeps_the_look_that_it_has_in_the_other_figures(forty):
     parts = [replace(view, data=view.data.assign_attrs(part_of="T-1")) for view in forty[8:10]]
     tests = [*forty[:8], *parts]
-    for whole, own in zip(draw_all_moduli(tests), draw_parts(tests), strict=True):
+    figures = draw_all_moduli(tests)
+    assert figures
+    for whole, own in zip(figures, draw_parts(tests), strict=True):
+        assert looks(own)
         assert looks(own) <= looks(whole)

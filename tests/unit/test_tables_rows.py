@@ -112,10 +112,14 @@ def test_an_archive_without_the_subject_gives_no_row(table, holds_only_test):
 
 def test_a_table_has_as_many_cells_as_columns(rich_test):
     dataset = to_dataset(rich_test, version="1", command="reduction run")
-    for table in TABLES:
-        assert {len(row) for row in table_rows(dataset, table)} <= {len(table.columns)}
+    filled = {table: rows for table in TABLES if (rows := table_rows(dataset, table))}
+    assert len(filled) > len(TABLES) // 2
+    for table, rows in filled.items():
+        assert {len(row) for row in rows} == {len(table.columns)}
 
 
 def test_numbers_are_plain_numbers(rich_test):
-    for row in rows_of(rich_test, "cycles"):
+    rows = rows_of(rich_test, "cycles")
+    assert rows
+    for row in rows:
         assert not any(isinstance(cell, np.generic) for cell in row.values())
