@@ -45,16 +45,20 @@ class _Variables(Mapping[str, Any]):
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
-            self.names = [name for name, _, _ in scipy.io.whosmat(str(path), appendmat=False)]
+            held = scipy.io.whosmat(str(path), appendmat=False)
         except _NOT_MATLAB as error:
             raise LogError(
                 path, "the file is not a MATLAB file that can be read", found=str(error)[:200],
                 needed="a .mat file of version 4 to 7.3",
             ) from error  # fmt: skip
+        self.names = [name for name, _, _ in held]
+        self.sparse = {name for name, _, kind in held if kind == "sparse"}
 
     def __getitem__(self, name: str) -> Any:
         if name not in self.names:
             raise KeyError(name)
+        if name in self.sparse:  # not read: what class it comes as depends on the release of scipy
+            raise _no_array(self.path, name, "a sparse matrix")
         try:
             # mat_dtype keeps true/false apart from numbers
             return scipy.io.loadmat(
@@ -162,12 +166,15 @@ def _scope(path: Path, scope: Mapping[str, Any], name: str) -> Mapping[str, Any]
     return fields
 
 
+def _no_array(path: Path, name: str, found: str) -> LogError:
+    return LogError(
+        path, f"'{name}' is not an array", found=found, needed="an array of numbers", hint=_HINT
+    )
+
+
 def _array(path: Path, name: str, value: Any) -> NDArray[Any]:
     if not isinstance(value, np.ndarray) or isinstance(value, _OWN_CLASSES):
-        raise LogError(
-            path, f"'{name}' is not an array", found=type(value).__name__,
-            needed="an array of numbers", hint=_HINT,
-        )  # fmt: skip
+        raise _no_array(path, name, type(value).__name__)
     return value
 
 

@@ -195,7 +195,7 @@ def test_an_array_of_structs_is_refused(tmp_path):
 def test_a_sparse_matrix_is_refused(tmp_path):
     sparse = scipy.sparse.eye(3).tocsc()
     scipy.io.savemat(tmp_path / "log.mat", {"t": TIME, "F": sparse})
-    with pytest.raises(LogError, match="'F' is not an array"):
+    with pytest.raises(LogError, match="'F' is not an array; found a sparse matrix"):
         read(tmp_path / "log.mat")
 
 
