@@ -25,6 +25,7 @@ from reduction.settings import QualitySettings
 __all__ = ["flag_record"]
 
 _Flags = NDArray[np.uint16]
+_NO_READING = np.uint16(Quality.MISSING | Quality.STUCK)
 _IMPOSSIBLE_SHARE = 0.01  # of a record in lengths of zero or less: the datum is wrong
 
 
@@ -170,7 +171,7 @@ def _check_usable(record: Record) -> None:
                 found=f"{load.size} samples of 0 N",
                 needed="a load cell that is connected, or a test without this specimen",
             )
-        if np.all(flags & (Quality.MISSING | Quality.STUCK)):
+        if np.all(flags & _NO_READING):
             raise DataError(
                 f"tension of '{name}' has no sample that can be used",
                 found=f"{load.size} samples missing or stuck at {np.nanmean(load):.4g} N",

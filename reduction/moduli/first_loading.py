@@ -38,38 +38,50 @@ _WIDEST = 0.25  # of the rise: a log so slow that its window is wider gives no c
 _BINS = 200  # of the rise, the finest grid
 
 
-def _without_single_spikes(strain: Floats) -> Floats:
-    """Median of each sample and its neighbours; the ends as they are."""
-    smooth = strain.copy()
-    for low in range(1, strain.size - 1, _CACHED):
-        high = min(low + _CACHED, strain.size - 1)
-        before, here, after = (
-            strain[low - 1 : high - 1],
-            strain[low:high],
-            strain[low + 1 : high + 1],
-        )
-        smooth[low:high] = np.maximum(
-            np.minimum(before, here), np.minimum(np.maximum(before, here), after)
-        )
+def _without_single_spikes(strain: Floats, low: int, high: int) -> Floats:
+    """Median of each sample of a part and its neighbours; the ends of the record as they are."""
+    first = max(low, 1)
+    stop = max(min(high, strain.size - 1), first)
+    before, here, after = (
+        strain[first - 1 : stop - 1],
+        strain[first:stop],
+        strain[first + 1 : stop + 1],
+    )
+    smooth = strain[low:high].copy()
+    smooth[first - low : stop - low] = np.maximum(
+        np.minimum(before, here), np.minimum(np.maximum(before, here), after)
+    )
     return smooth
 
 
 def _end_of_rise(strain: Floats, start: float) -> int:
-    """First sample near the greatest strain, single spikes left out."""
-    is_copy = False
+    """First sample near the greatest strain, spikes left out; block by block in the cache."""
+    left_out: list[int] = []
+
+    def part(low: int, high: int) -> Floats:
+        low, high = max(low, 0), min(high, strain.size)
+        smooth = _without_single_spikes(strain, low, high)
+        smooth[[place - low for place in left_out if low <= place < high]] = np.nan
+        return smooth
+
+    blocks = range(0, strain.size, _CACHED)
+    greatest = np.array([np.fmax.reduce(part(low, low + _CACHED)) for low in blocks])
     while True:
-        top = int(np.nanargmax(strain))
-        tolerance = _BAND / 2 * (strain[top] - start)
-        near = strain[max(top - _NEIGHBOURS, 0) : top + _NEIGHBOURS + 1]
-        steps = np.abs(np.diff(near))
+        block = int(np.nanargmax(greatest))
+        low = blocks[block]
+        top = low + int(np.nanargmax(part(low, low + _CACHED)))
+        tolerance = _BAND / 2 * (greatest[block] - start)
+        steps = np.abs(np.diff(part(top - _NEIGHBOURS, top + _NEIGHBOURS + 1)))
         steps = steps[np.isfinite(steps)]
-        beside = np.append(strain[max(top - 1, 0) : top], strain[top + 1 : top + 2])
+        beside = np.append(part(top - 1, top), part(top + 1, top + 2))
         beside = beside[np.isfinite(beside)]
         usual = _SPIKE_STEPS * float(np.median(steps)) if steps.size else 0.0
-        if beside.size == 0 or strain[top] - beside.max() <= max(usual, tolerance):
-            return int(np.argmax(strain >= strain[top] - tolerance))
-        strain = strain if is_copy else strain.copy()
-        strain[top], is_copy = np.nan, True
+        if beside.size == 0 or greatest[block] - beside.max() <= max(usual, tolerance):
+            level = greatest[block] - tolerance
+            low = blocks[int(np.argmax(greatest >= level))]
+            return low + int(np.argmax(part(low, low + _CACHED) >= level))
+        left_out.append(top)
+        greatest[block] = np.fmax.reduce(part(low, low + _CACHED))
 
 
 def _rising_pieces(strain: Floats, tension: Floats, is_still: Bools) -> NDArray[np.int64]:
@@ -81,9 +93,8 @@ def _rising_pieces(strain: Floats, tension: Floats, is_still: Bools) -> NDArray[
     if not is_known.any():
         return np.empty(0, dtype=np.int64)
     start = float(strain[is_known.argmax()])
-    smooth = _without_single_spikes(strain)
-    end = _end_of_rise(smooth, start) + 1
-    smooth = smooth[:end]
+    end = _end_of_rise(strain, start) + 1
+    smooth = _without_single_spikes(strain, 0, end)
     highest = np.fmax.accumulate(smooth)
     floor = highest - _BAND * (highest[-1] - start)
     is_still, tension = is_still[:end], tension[:end]

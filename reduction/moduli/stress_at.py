@@ -82,19 +82,16 @@ def stress_at_strain(
     known = np.isfinite(stretch) & np.isfinite(load)
     if is_still is not None:
         known &= ~is_still
-    moving = np.flatnonzero(known)
-    stretch, load = stretch[moving], load[moving]
     stress, uncertainty = np.full((2, len(levels)), np.nan)
     reasons = [""] * len(levels)
     for index, level in enumerate(levels):
-        reached = stretch >= level
-        if not reached.any() or reached[0]:
+        reached = known & (stretch >= level)
+        if not reached.any() or reached.argmax() == known.argmax():
             continue
-        at = int(np.argmax(reached)) + 1
-        used = slice(max(at - _SAMPLES, 0), at)
+        used = np.flatnonzero(known[: reached.argmax() + 1])[-_SAMPLES:]
         near = stretch[used] >= level - _SPAN
         # a gap in the samples ends the line: a hold, or a reading that was left out
-        joined = np.concatenate([np.cumsum(np.diff(moving[used])[::-1] > 1)[::-1] == 0, [True]])
+        joined = np.concatenate([np.cumsum(np.diff(used)[::-1] > 1)[::-1] == 0, [True]])
         x, y = stretch[used][near & joined] - level, load[used][near & joined]
         if x.size < _FEWEST:
             reasons[index] = f"{x.size} samples within 10 % before it; needed {_FEWEST}"

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from reduction.blocks import run_blocks
 from reduction.errors import DataError, FitError
 from reduction.moduli.elastomer import fit_elastomers
 from reduction.moduli.first_loading import first_loading_curves
@@ -47,8 +48,8 @@ def parts_of_first_loading(
     history: History | None,
 ) -> dict[str, Any]:
     """The first rise of a record that begins slack: curve, stress at elongation, laws."""
-    begins = [force[np.isfinite(force)][:1] for force in tension]
-    if not any(np.all(start <= located.standstills.slack_tension) for start in begins):
+    begins = [force[np.isfinite(force).argmax()] for force in tension]
+    if all(start > located.standstills.slack_tension for start in begins):
         return {}
     curves = first_loading_curves(
         strain, tension, area=area, settings=settings.modulus, standstills=located.standstills
@@ -59,10 +60,12 @@ def parts_of_first_loading(
     names = located.record.specimens
     levels = settings.modulus.stress_at_strain
     is_still = located.standstills.covers(located.record.n_samples)
-    stresses = [
-        stress_at_strain(stretch, force, area=section, levels=levels, is_still=is_still)
-        for stretch, force, section in zip(strain, tension, area, strict=True)
-    ]
+    stresses = run_blocks(
+        lambda row: stress_at_strain(
+            strain[row], tension[row], area=area[row], levels=levels, is_still=is_still
+        ),
+        range(area.size),
+    )
     notes = [
         f"{name}: stress at {100 * level:g} % not given: {reason}"
         for name, (_, _, reasons) in zip(names, stresses, strict=True)

@@ -21,27 +21,23 @@ CYCLIC = ("cyclic", "fatigue")
 PULLED = ("quasi-static", "tensile")
 HELD = ("relaxation", "creep")
 _REPEATS = Quality.SATURATED | Quality.STUCK
-_UNUSABLE = Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE
+# of the width of a flag, lest a sum with it is wider
+_UNUSABLE = np.uint16(Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE)
 
 
 @dataclass(frozen=True)
 class Located:
-    """A record with its standstills and, where the test has them, its cycles."""
+    """A record with its standstills and, where the test has them, its cycles.
+
+    ``position`` (n_samples,) [m] and ``tension`` (n_specimens, n_samples) [N] are those of
+    the record, NaN where they are not usable.
+    """
 
     record: Record
+    position: Floats
+    tension: Floats
     standstills: Standstills
     cycles: Cycles | None
-
-    @property
-    def position(self) -> Floats:
-        """Crosshead position, NaN where it is not usable, shape (n_samples,). [m]."""
-        record = self.record
-        return usable(record.crosshead_position, record.crosshead_position_quality_flag)
-
-    @property
-    def tension(self) -> Floats:
-        """Tension, NaN where it is not usable, shape (n_specimens, n_samples). [N]."""
-        return usable(self.record.tension, self.record.quality_flag)
 
 
 def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located:
@@ -55,20 +51,21 @@ def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located
     position = usable(record.crosshead_position, record.crosshead_position_quality_flag)
     if kind == "creep" or (settings.cycles.control == "load" and kind != "relaxation"):
         record, standstills = _held_on_tension(record, position, settings)
+        tension = usable(record.tension, record.quality_flag)
     else:
         tension = usable(record.tension, record.quality_flag)
         standstills = find_standstills(record.time, position, tension, settings=settings.phases)
     if kind not in CYCLIC:
-        return Located(record, standstills, None)
+        return Located(record, position, tension, standstills, None)
     cycles = find_cycles(
         record.time,
         position,
-        usable(record.tension, record.quality_flag),
+        tension,
         standstills,
         settings=settings.cycles,
         cycle_counter=record.cycle_counter,
     )
-    return Located(record, standstills, cycles)
+    return Located(record, position, tension, standstills, cycles)
 
 
 def _held_on_tension(
