@@ -16,7 +16,9 @@ __all__ = ["history_of", "history_remarks"]
 
 
 def _greatest_strain(survey: Survey, name: str, model: StrainModel) -> float:
-    """Greatest strain, which stands at one of the samples at the greatest position."""
+    """Greatest strain: measured, or at one of the samples at the greatest position."""
+    if model.method == "extensometer":
+        return survey.greatest_measured_strain.get(name, float("nan"))
     position, tension, _ = survey.greatest[name]
     return float(np.nanmax(free_length_strain_of(model, position=position, tension=tension)))
 

@@ -35,6 +35,7 @@ class Survey:
     ``mark_tension`` holds, by specimen, one tension [N] for each pooled mark that was
     read in this test, in the order of the marks.  ``greatest`` holds, by specimen, position
     [m] and tension [N] of the samples at the greatest position, and the greatest tension [N];
+    ``greatest_measured_strain`` that of the extensometer [1], where there is one;
     ``first_rise`` position [m] and tension [N] of the samples up to half of its peak.
     """
 
@@ -49,6 +50,7 @@ class Survey:
     zero_strain_position: float | None = None
     has_extensometer: bool = False
     greatest: dict[str, tuple[Floats, Floats, float]] = field(default_factory=dict)
+    greatest_measured_strain: dict[str, float] = field(default_factory=dict)
     first_rise: dict[str, tuple[Floats, Floats]] = field(default_factory=dict)
     slack_tension: float = float("nan")
     error: ReductionError | None = None
@@ -180,6 +182,12 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
     survey.has_extensometer = record.measured_strain is not None
     survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
     survey.greatest = _greatest(located)
+    if record.measured_strain is not None:
+        survey.greatest_measured_strain = {
+            name: float(np.nanmax(strain))
+            for name, strain in zip(record.specimens, record.measured_strain, strict=True)
+            if np.isfinite(strain).any()
+        }
     survey.slack_tension = located.standstills.slack_tension
     position = located.position
     for name, tension in zip(record.specimens, located.tension, strict=True):

@@ -27,7 +27,7 @@ from reduction.checks import as_same_shape
 from reduction.errors import DataError
 from reduction.record import Floats, Integers
 
-__all__ = ["loop_energy", "sums_over_cycles"]
+__all__ = ["loop_energy", "sums_over_cycles", "without_drift"]
 
 _EIGHTH_ORDER = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 
@@ -130,7 +130,8 @@ def loop_energy(
 
     Notes
     -----
-    An open loop is closed by the straight line from its last sample to its first.
+    An open loop is closed by the straight line from its last sample to its first; `without_drift`
+    then takes out what the line adds.
     Independent noise of tension and strain leaves the energy unbiased, since no
     product of a reading with itself enters.
 
@@ -173,3 +174,68 @@ def loop_energy(
         energy -= closing * (stretch[last] - stretch[first])
     np.multiply(step, step, out=step)
     return energy, np.sqrt(sums_over_cycles(step, first, last))
+
+
+def without_drift(
+    energy: Floats,
+    *,
+    end_tension: ArrayLike,
+    mean_tension: ArrayLike,
+    tension_drift: ArrayLike,
+    end_strain: ArrayLike,
+    mean_strain: ArrayLike,
+    strain_drift: ArrayLike,
+) -> Floats:
+    r"""Energy that the loop would lose if neither tension nor strain drifted over the cycle.
+
+    .. math:: H = H_c + (T_e - \bar T) \, d_\varepsilon - (\varepsilon_e - \bar\varepsilon) \, d_T
+
+    Parameters
+    ----------
+    energy : ndarray, shape (n_cycles,)
+        Of the loop closed by a straight line, from `loop_energy`. [J m-1]
+    end_tension : array_like, shape (n_cycles,)
+        Mean of the first and the last sample of the cycle. [N]
+    mean_tension : array_like, shape (n_cycles,)
+        Mean over time. [N]
+    tension_drift : array_like, shape (n_cycles,)
+        Change over the cycle, from `reduction.cycles.harmonic.mean_drift`. [N]
+    end_strain, mean_strain, strain_drift : array_like, shape (n_cycles,)
+        The same of strain. [1]
+
+    Returns
+    -------
+    energy : ndarray, shape (n_cycles,)
+        Of the steady loop. [J m-1]
+
+    Raises
+    ------
+    ValueError
+        If the arrays do not broadcast.
+
+    Notes
+    -----
+    A cycle begins at a reversal, so its closing line lies at an extreme: while a rope still
+    creeps by d a cycle under a tension amplitude, that line adds the amplitude times d to
+    the area, which in a narrow loop is several per cent.  Both series are taken as a steady
+    cycle and a drift that is linear in time; with y = y_s + d t / P the work of the drift,
+    integrated by parts, is the correction.  Means of cycles carry little noise, so it adds none
+    to speak of.
+
+    Examples
+    --------
+    The ellipse of 31.416 J/m whose strain grows by 0.01 a cycle, begun at its least tension:
+    the closed loop has 50 N * 0.01 = 0.5 J/m too much.
+
+    >>> turn = np.linspace(0, 1, 401)
+    >>> tension = 1000 - 50 * np.cos(2 * np.pi * turn)
+    >>> strain = 0.01 * turn - 0.2 * np.sin(2 * np.pi * turn)
+    >>> closed, _ = loop_energy(tension, strain, np.array([0]), np.array([400]))
+    >>> steady = without_drift(closed, end_tension=950.0, mean_tension=1000.0,
+    ...     tension_drift=0.0, end_strain=0.005, mean_strain=0.005, strain_drift=0.01)
+    >>> print(closed.round(2), steady.round(2))
+    [31.91] [31.41]
+    """
+    force = np.subtract(end_tension, mean_tension)
+    stretch = np.subtract(end_strain, mean_strain)
+    return np.asarray(energy + force * strain_drift - stretch * tension_drift)

@@ -199,7 +199,10 @@ def find_cycles(
             f"{jumps.size} jumps of the control channel and back are no reversals, first at "
             f"{time[jumps[0]]:g} s"
         )
-    halves = find_half_cycles(time, values, reversals, standstills, band=band)
+    halves = find_half_cycles(
+        time, values, reversals, standstills, band=band,
+        is_sinusoidal=settings.waveform == "sinusoidal",
+    )  # fmt: skip
     branch_first, branch_last = _whole_cycles(halves)
     first, last = branch_first[:, 0], branch_last[:, 1]
     counted_by = "reversals"

@@ -21,6 +21,7 @@ from reduction.record import Bools, Floats, Integers
 __all__ = ["HalfCycles", "find_half_cycles"]
 
 _DIFFERENT = 0.3  # share by which ranges of neighbouring half cycles may differ
+_PACE = 0.25  # share by which a half cycle at the end of a run may last longer or shorter
 _FEWEST_DWELLS = 3
 _DWELL_RATIO = 2.0
 _GAP_SHARE = 0.3  # of a half cycle
@@ -180,25 +181,43 @@ def _passing(values: Floats, turn: int, end: int, level: float) -> int:
     return turn + step * int(np.argmax(beyond))
 
 
-def _fit_ends(values: Floats, run: _Run) -> tuple[Indices, list[int], list[int]]:
-    """Extremes of a run that cycles, with ends that ran on (second) and fell short (third)."""
+def _keeps_pace(turns: Floats, end: int, turn: int, beside: int, at_edge: bool) -> bool:
+    """Whether an end half cycle takes the time of its neighbour, as every one of a sine does."""
+    lasts, usual = np.abs(turns[[end, beside]] - turns[turn])
+    return not at_edge or bool(abs(lasts - usual) <= _PACE * usual)
+
+
+def _fit_ends(
+    time: Floats, values: Floats, run: _Run, *, is_sinusoidal: bool
+) -> tuple[Indices, list[int], list[int], list[int]]:
+    """Extremes of a run that cycles; ends that ran on, fell short, or kept another pace."""
     nodes = run.nodes
     ranges = np.abs(np.diff(values[nodes]))
-    cut, short = [], []
-    for end, turn, beside, at_edge in (
-        (0, 1, 2, run.begins_at_edge),
-        (-1, -2, -3, run.ends_at_edge),
+    cut, short, paced = [], [], []
+    left_out = [0, 0]
+    for side, (end, turn, beside, at_edge) in enumerate(
+        ((0, 1, 2, run.begins_at_edge), (-1, -2, -3, run.ends_at_edge))
     ):
         own, neighbour = ranges[end], ranges[-2 if end else 1]
-        if own > (1 + _DIFFERENT) * neighbour:
+        ran_on = own > (1 + _DIFFERENT) * neighbour
+        # a machine that begins or ends a sine at its mean moves half a range, then away
+        is_fragment = ranges.size > 4 and neighbour < (1 - _DIFFERENT) * ranges[beside]
+        if is_fragment and (ran_on or at_edge):
+            left_out[side] = 2
+            short.append(int(nodes[turn]))
+            continue
+        if is_sinusoidal and (ran_on or not _keeps_pace(time[nodes], end, turn, beside, at_edge)):
+            left_out[side] = 1
+            paced.append(int(nodes[turn]))
+        elif ran_on:
             cut.append(int(nodes[turn]))
             nodes[end] = _passing(values, nodes[turn], nodes[end], values[nodes[beside]])
             ranges[end] = neighbour
         # a short one between true reversals is whole: an amplitude that grows or decays
         elif at_edge and own < (1 - _DIFFERENT) * neighbour:
-            short.append(end)
-    kept = nodes[1 if 0 in short else 0 : nodes.size - (-1 in short)]
-    return kept, cut, [int(nodes[end]) for end in short]
+            left_out[side] = 1
+            short.append(int(nodes[end]))
+    return nodes[left_out[0] : nodes.size - left_out[1]], cut, short, paced
 
 
 def find_half_cycles(
@@ -208,6 +227,7 @@ def find_half_cycles(
     standstills: Standstills,
     *,
     band: float,
+    is_sinusoidal: bool = False,
 ) -> HalfCycles:
     """Keep the half cycles of runs that cycle, ends cut or left out.
 
@@ -223,6 +243,8 @@ def find_half_cycles(
         They end a run, unless they are dwells. [SI]
     band : float
         With which the reversals were found. [m] or [N]
+    is_sinusoidal : bool
+        Whether every half cycle takes the same time.
 
     Returns
     -------
@@ -247,7 +269,9 @@ def find_half_cycles(
     *Ends.* A first or last half cycle with a range over 1.3 times its neighbour's is cut
     where it passes the neighbour's level, cf. the return to slack after the tenth peak
     in [1]_.  One below 0.7 times that begins or ends with the record, at a standstill or
-    at a gap is incomplete and left out; between two reversals it is whole.
+    at a gap is incomplete and left out; between two reversals it is whole, but for one
+    beside a move away: a sine that begins or ends at its mean has moved half a range there.
+    In a sinusoidal test an end that ran on, or takes 25 % more or less time, is left out.
 
     Examples
     --------
@@ -274,18 +298,23 @@ def find_half_cycles(
     runs: list[Indices] = []
     cut: list[int] = []
     short: list[int] = []
+    paced: list[int] = []
     for stretch in _stretches(values, reversals, breaks, band):
         for run in _parts(values, stretch):
             if _is_cycling(np.abs(np.diff(values[run.nodes]))):
-                nodes, ran_on, fell_short = _fit_ends(values, run)
+                nodes, ran_on, fell_short, other_pace = _fit_ends(
+                    time, values, run, is_sinusoidal=is_sinusoidal
+                )
                 runs.append(nodes)
                 cut += ran_on
                 short += fell_short
+                paced += other_pace
 
     notes = []
     for samples, what in (
         (cut, "half cycles at the end of a run, cut where they pass their neighbours' level"),
         (short, "half cycles at the end of a run, 30 % short of their neighbours, not counted"),
+        (paced, "half cycles at the end of a run that are no part of the sine, not counted"),
         (gap_before, "gaps of the record longer than 30 % of a half cycle, each the end of a run"),
     ):
         if len(samples):

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from reduction.blocks import run_blocks
-from reduction.cycles.energy import loop_energy, sums_over_cycles
+from reduction.cycles.energy import loop_energy, sums_over_cycles, without_drift
 from reduction.cycles.harmonic import CycleBasis, cycle_basis, fundamental, mean_drift
 from reduction.cycles.product import Cycles, Loops
 from reduction.record import Bools, Floats, Integers
@@ -31,7 +31,7 @@ _BLOCK = 1 << 17
 _REACH = 4
 _MEASURED = (
     "peak", "valley", "high", "low", "energy", "strain_step_norm", "force_cosine", "force_sine",
-    "force_mean", "strain_cosine", "strain_sine", "strain_mean",
+    "force_mean", "strain_cosine", "strain_sine", "strain_mean", "force_end", "strain_end",
 )  # fmt: skip
 _FIELDS = (
     "frequency", "cycle_start_time", "mean_tension", "tension_amplitude", "mean_strain",
@@ -116,6 +116,8 @@ def _measure(tension: Floats, strain: Floats, basis: CycleBasis, waveform: Wavef
             *loop_energy(force, stretch, first, last, waveform=waveform),
             *fundamental(force, basis),
             *fundamental(stretch, basis),
+            (force[first] + force[last]) / 2,
+            (stretch[first] + stretch[last]) / 2,
         ]
     )
     measured[:, lost_force | lost_stretch] = np.nan
@@ -128,13 +130,22 @@ def _derive(
     """Quantities of each cycle of one specimen, and their standard uncertainties."""
     row = dict(zip(_MEASURED, measured, strict=True))
     n_samples = (cycles.last - cycles.first).astype(np.float64)
-    peak, valley, energy = row["peak"], row["valley"], row["energy"]
+    peak, valley = row["peak"], row["valley"]
     amplitude = (peak - valley) / 2
     strain_amplitude = (row["high"] - row["low"]) / 2
     force_cos, strain_cos = row["force_cosine"], row["strain_cosine"]
-    force_sin = row["force_sine"] + mean_drift(row["force_mean"], cycles.first, cycles.last) / np.pi
-    strain_sin = (
-        row["strain_sine"] + mean_drift(row["strain_mean"], cycles.first, cycles.last) / np.pi
+    force_drift = mean_drift(row["force_mean"], cycles.first, cycles.last)
+    strain_drift = mean_drift(row["strain_mean"], cycles.first, cycles.last)
+    force_sin = row["force_sine"] + force_drift / np.pi
+    strain_sin = row["strain_sine"] + strain_drift / np.pi
+    energy = without_drift(
+        row["energy"],
+        end_tension=row["force_end"],
+        mean_tension=row["force_mean"],
+        tension_drift=force_drift,
+        end_strain=row["strain_end"],
+        mean_strain=row["strain_mean"],
+        strain_drift=strain_drift,
     )
     with np.errstate(divide="ignore", invalid="ignore"):
         # a series a cos + b sin is the real part of (a - ib) exp(i omega t)
@@ -239,7 +250,8 @@ def close_loops(
     sample.  Uncertainties are of one cycle: the noise of a reading (`reading_noise`)
     carried through and, for extremes, the turn between two samples; nothing else.  K_ap
     by amplitudes is one of three readings of "slope of the loop"; for an ellipse it is
-    hypot(K', K''), and K' itself is the slope of the regression of tension on strain.  A
+    hypot(K', K''), and K' itself is the slope of the regression of tension on strain.  An
+    open loop is closed by a straight line and freed of its drift (`without_drift`).  A
     cycle that lacks up to a tenth of its readings has them bridged by straight lines; one
     that lacks more is NaN throughout.
 

@@ -260,6 +260,24 @@ def test_control_by_load_finds_reversals_of_tension_and_its_rate(twenty):
     assert cycles.band == pytest.approx(0.1 * 90, rel=0.1)
 
 
+@pytest.mark.parametrize("amplitude", [8.0, 20.0])
+@pytest.mark.parametrize("from_below", [True, False])
+def test_a_sine_that_begins_and_ends_at_its_mean_counts_whole_cycles_only(amplitude, from_below):
+    # up to the mean of 20, ten cycles from there, away to zero: half a range at each end
+    time = np.arange(0, 130, 0.1)
+    angle = np.clip(time - 10, 0, 100) / 10 * 2 * np.pi
+    wave = amplitude * np.sin(angle) * (1 if from_below else -1)
+    mean = np.interp(time, [0, 10, 110, 120, 130], [0, 20, 20, 0, 0])
+    tension = mean + wave + np.random.default_rng(4).normal(0, 0.02, time.size)
+    stand = find_standstills(time, tension, tension[None], settings=PhaseSettings())
+    settings = CycleSettings(control="load", waveform="sinusoidal")
+    cycles = find_cycles(time, tension, tension, stand, settings=settings)
+    ranges = tension[cycles.branch_last[:, 0]] - tension[cycles.branch_first[:, 0]]
+    assert cycles.n_cycles == 9
+    assert ranges == pytest.approx(2 * amplitude, rel=0.01)
+    assert cycles.last - cycles.first == pytest.approx(100, abs=4)
+
+
 @pytest.mark.parametrize("control", ["position", "load"])
 @pytest.mark.parametrize("noise", [0.0, 0.002])
 def test_a_constant_channel_is_refused(control, noise):

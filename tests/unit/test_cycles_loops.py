@@ -85,6 +85,27 @@ def test_a_loop_that_stays_open_is_closed_by_a_straight_line():
     assert energy[0] == pytest.approx(-1.5)
 
 
+@pytest.mark.parametrize("which", ["creep at constant load", "relaxation at constant stroke"])
+@pytest.mark.parametrize("waveform", ["sinusoidal", "triangular"])
+def test_a_drift_from_cycle_to_cycle_leaves_the_energy_of_the_steady_loop(which, waveform):
+    # a narrow loop whose mean still moves by 2 % of its amplitude a cycle: the closing line
+    # at an extreme would add a tenth of the area
+    angle = 2 * np.pi * np.arange(6 * 200 + 1) / 200
+    strain = 1 - AMPLITUDE * np.cos(angle)
+    tension = 1000 + AMPLITUDE * (-STORAGE * np.cos(angle) + LOSS * np.sin(angle))
+    turns = angle / (2 * np.pi)
+    if which.startswith("creep"):
+        strain = strain + 0.02 * AMPLITUDE * turns
+    else:
+        tension = tension - 0.02 * AMPLITUDE * STORAGE * turns
+    cycles = cycles_of(200, 6, angle.size)
+    loops = close_loops(turns, tension[None], strain[None], cycles, waveform=waveform)
+    expected = np.pi * LOSS * AMPLITUDE**2
+    assert loops.hysteresis_energy == pytest.approx(expected, rel=5e-4)
+    closed, _ = loop_energy(tension, strain, cycles.first, cycles.last)
+    assert abs(closed[0] / expected - 1) > 0.05
+
+
 def test_a_short_series_is_refused():
     with pytest.raises(DataError, match="a loop is too short; found 2 samples"):
         loop_energy([1.0, 2.0], [0.0, 1.0], np.array([0]), np.array([1]))
@@ -139,6 +160,64 @@ def test_noise_moves_the_loss_factor_by_its_stated_uncertainty():
     assert loops.loss_factor[0].mean() == pytest.approx(LOSS / STORAGE, abs=4 * stated / 20)
 
 
+def test_noise_moves_a_large_loss_factor_by_its_stated_uncertainty():
+    # K'' = 2 K': the scatter of K' counts twice that of K''
+    rng = np.random.default_rng(12)
+    turn = 2 * np.pi * np.arange(400 * 50 + 1) / 50
+    strain = 1 - AMPLITUDE * np.cos(turn)
+    tension = 1000 + AMPLITUDE * (-100 * np.cos(turn) + 200 * np.sin(turn))
+    noisy = tension + rng.normal(0, 0.5, turn.size)
+    loops = close_loops(turn, noisy[None], strain[None], cycles_of(50, 400, turn.size))
+    stated = loops.uncertainty["loss_factor"][0].mean()
+    assert loops.loss_factor[0].mean() == pytest.approx(2, rel=0.01)
+    assert loops.loss_factor[0].std(ddof=1) == pytest.approx(stated, rel=0.15)
+
+
+def test_a_drift_does_not_turn_storage_into_loss():
+    turns = np.arange(5 * 200 + 1) / 200
+    angle = 2 * np.pi * turns
+    strain = 1 - AMPLITUDE * np.cos(angle) + 0.05 * AMPLITUDE * turns
+    tension = 1000 + AMPLITUDE * (-STORAGE * np.cos(angle) + LOSS * np.sin(angle))
+    tension = tension - 0.1 * AMPLITUDE * STORAGE * turns
+    loops = close_loops(turns, tension[None], strain[None], cycles_of(200, 5, turns.size))
+    assert loops.storage_spring_constant == pytest.approx(STORAGE, rel=1e-3)
+    assert loops.loss_spring_constant == pytest.approx(LOSS, rel=1e-2)
+
+
+@pytest.mark.parametrize("per_cycle", [20, 50])
+def test_an_extreme_is_uncertain_by_what_samples_miss_of_a_sharp_turn(per_cycle):
+    # one cycle a phase: the turn lies anywhere between two samples
+    rng = np.random.default_rng(13)
+    time = np.arange(per_cycle + 1.0)
+    missed, stated = [], []
+    for phase in rng.uniform(0, 1, 2000):
+        wave = 200 * (1 - np.abs((2 * (time + phase) / per_cycle) % 2 - 1))
+        strain = 1 + wave / 200
+        # of the highest order of noise a polygon shows nothing
+        loops = close_loops(time, wave[None], strain[None], cycles_of(per_cycle, 1, time.size))
+        missed.append(200 - loops.peak_tension[0, 0])
+        stated.append(loops.uncertainty["peak_tension"][0, 0])
+    assert np.mean(stated) == pytest.approx(np.sqrt(np.mean(np.square(missed))), rel=0.05)
+    assert loops.uncertainty["tension_amplitude"] == pytest.approx(stated[-1] / np.sqrt(2))
+    assert loops.uncertainty["mean_tension"] == pytest.approx(stated[-1] / np.sqrt(2))
+
+
+def test_a_frequency_is_uncertain_by_the_sampling_of_both_its_ends():
+    # cycles of 10.3 s by a clock of 1 s: each end is the sample nearest to the turn
+    rng = np.random.default_rng(14)
+    turn = np.sort(rng.uniform(0, 1, 4000)) + 10.3 * np.arange(4000)
+    at = np.round(turn).astype(int)
+    error = np.diff(at) - np.diff(turn)
+    time = np.arange(at[-1] + 1.0)
+    ends = np.column_stack([at[:-1], at[:-1] + 5])
+    cycles = Cycles(
+        at[:-1], at[1:], ends, ends, np.ones((at.size - 1, 2)), np.zeros(time.size, np.int32),
+        np.zeros(time.size, np.int8), np.zeros(time.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(time, np.sin(time)[None], np.cos(time)[None], cycles)
+    assert loops.uncertainty["frequency"].mean() == pytest.approx(error.std() / 10.3**2, rel=0.03)
+
+
 def test_a_cycle_without_time_is_refused():
     with pytest.raises(DataError, match="cycle 1 takes no time"):
         cycle_basis(np.zeros(5), np.array([0]), np.array([4]))
@@ -186,6 +265,15 @@ def test_few_missing_readings_are_bridged_and_many_make_the_cycle_nan():
     assert energy[0] == pytest.approx(np.pi * LOSS * AMPLITUDE**2, rel=1e-3)
     assert energy[1] == pytest.approx(np.pi * LOSS * AMPLITUDE**2, rel=0.05)
     assert np.isnan(energy[2]) and np.isnan(loops.peak_tension[0, 2])
+
+
+def test_a_tenth_of_the_readings_may_be_missing():
+    t, tension, strain = ellipse(50, 2)
+    tension = tension.copy()
+    tension[10:15] = np.nan  # 5 of 50
+    tension[60:66] = np.nan  # 6 of 50
+    loops = close_loops(t, tension[None], strain[None], cycles_of(50, 2, t.size))
+    assert np.isfinite(loops.hysteresis_energy[0]).tolist() == [True, False]
 
 
 def test_a_specimen_that_is_missing_throughout_is_nan():
