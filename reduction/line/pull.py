@@ -1,0 +1,341 @@
+r"""Slow pull of a line: load-strain cubic, and the quasi-static spring constant as its slope.
+
+.. math:: \varepsilon = A + B T + C T^2 + D T^3, \qquad
+          K_0(T) = \frac{d T}{d\varepsilon} = \frac{1}{B + 2 C T + 3 D T^2}
+
+As printed, and as computed.  [1]_ prints two forms that do not quite agree: cubics of strain
+(Tables 8 and 9) and cubics of K_0 (Tables 6 and 7).  Here the strain is fitted and K_0 is its
+slope; the cubic of K_0 is then fitted to that slope for those who need it, with its greatest
+distance from it.  Table 6 heads its form A + B T^2 + C T^3 + D T^4, times 1e-4; the form that
+gives its numbers is Table 7's A + B T + C T^2 + D T^3, times 1e4.  Signs and powers are lost
+in Tables 6, 7 and 9 (nylon double braid D 3.26 for 32.6, nylon plaited C, polyester C), and
+polyester plaited line has no K_0 row at all.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
+   R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2, 4.4.3, Tables 6-9, App. D.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.checks import as_same_shape
+from reduction.errors import DataError, FitError
+from reduction.line.loading import find_loading, greatest_fall
+from reduction.line.product import SlowPull
+from reduction.moduli.separable import lag_one_inflation
+from reduction.record import Floats, Integers
+
+__all__ = ["fit_pull", "slope_of_cubic"]
+
+_BLOCKS = 100
+_FEWEST_BLOCKS = 8
+_FALL_NOTED = 0.02
+_FALL_REFUSED = 0.25
+# a range of use below this share of the readings is no load-strain curve
+_SHORTEST_RANGE = 0.5
+_UNEVEN_RATE = 2.0
+
+
+def slope_of_cubic(tension: ArrayLike, coefficient: ArrayLike) -> Floats:
+    r"""Quasi-static spring constant of a load-strain cubic.
+
+    .. math:: K_0 = 1 / (B + 2 C T + 3 D T^2)
+
+    Parameters
+    ----------
+    tension : array_like, shape (...)
+        :math:`T`. [N]
+    coefficient : array_like, shape (4,)
+        A, B, C, D of strain = A + B T + C T^2 + D T^3. [N-k]
+
+    Returns
+    -------
+    quasi_static_spring_constant : ndarray, shape (...)
+        NaN where the slope of strain is not positive. [N]
+
+    Raises
+    ------
+    DataError
+        If there are not four coefficients.
+
+    Notes
+    -----
+    Source: [1]_, sec. 4.4.2, and Tables 8 and 9 for the cubic.
+
+    Examples
+    --------
+    Nylon double braid, 1/2 in, Table 8 of [1]_, at the mean loads of Table 1, in 1e4 lb:
+
+    >>> slope = slope_of_cubic([768.0, 1344.0, 1920.0], [-4.13e-4, 1.389e-4, -3.906e-8, 3.795e-12])
+    >>> print((slope / 1e4).round(3))
+    [1.168 1.836 3.238]
+    """
+    load, terms = np.asarray(tension, dtype=np.float64), np.asarray(coefficient, dtype=np.float64)
+    if terms.shape != (4,):
+        raise DataError("a cubic has four coefficients", found=str(terms.shape), needed="(4,)")
+    slope = terms[1] + load * (2 * terms[2] + load * 3 * terms[3])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse: Floats = np.where(slope > 0, 1 / slope, np.nan)
+    return inverse
+
+
+@dataclass(frozen=True)
+class _Blocks:
+    """Means over equal steps of tension; ``powers`` has shape (n_blocks, 4)."""
+
+    time: Floats
+    strain: Floats
+    tension: Floats
+    powers: Floats
+
+
+def _block_means(time: Floats, strain: Floats, tension: Floats) -> _Blocks:
+    """Means over equal steps of the greatest tension so far.
+
+    A hold, or a slow stretch, falls into one block and counts once, however many readings
+    it has; and the cubic is fitted to means of powers, so that blocks cost it nothing.
+    """
+    reached = np.maximum.accumulate(tension)
+    low, high = float(tension[0]), float(reached[-1])
+    share = np.clip((reached - low) / (high - low), 0, 1)
+    number = np.minimum((share * _BLOCKS).astype(np.intp), _BLOCKS - 1)
+    first = np.flatnonzero(np.diff(number, prepend=-1))
+    count = np.diff(first, append=number.size)
+
+    def mean(values: Floats) -> Floats:
+        total: Floats = np.add.reduceat(values, first) / count
+        return total
+
+    scaled = 2 * (tension - low) / (high - low) - 1
+    powers = np.stack([mean(scaled**power) for power in range(4)], axis=1)
+    return _Blocks(mean(time), mean(strain), mean(tension), powers)
+
+
+def _positive_range(coefficient: Floats) -> tuple[float, float]:
+    """Longest part of -1 to 1 in which the slope of the cubic is positive."""
+    roots = np.roots(coefficient[:0:-1] * np.array([3, 2, 1]))
+    inside = sorted(float(root.real) for root in roots if root.imag == 0 and -1 < root.real < 1)
+    edges = [-1.0, *inside, 1.0]
+    best = (0.0, 0.0)
+    for low, high in pairwise(edges):
+        middle = (low + high) / 2
+        slope = coefficient[1] + middle * (2 * coefficient[2] + middle * 3 * coefficient[3])
+        if slope > 0 and high - low > best[1] - best[0]:
+            best = (low, high)
+    return best
+
+
+def _printed_form(
+    coefficient: Floats, *, low: float, high: float, centre: float, half: float
+) -> tuple[Floats, float]:
+    """K_0 as a cubic of tension by least squares to the slope, and its greatest distance."""
+    load = np.linspace(low, high, 201)
+    scaled = (load - centre) / half
+    # an end of the range where the slope is just positive would rule the fit alone
+    slope = coefficient[1] + scaled * (2 * coefficient[2] + scaled * 3 * coefficient[3])
+    kept = slope > 0
+    exact = half / slope[kept]
+    # equal shares of the value count alike, since K_0 spans a factor of several
+    powers = scaled[kept, None] ** np.arange(4)
+    fit, *_ = np.linalg.lstsq(powers / exact[:, None], np.ones(exact.size), rcond=None)
+    deviation = float(np.max(np.abs(powers @ fit / exact - 1)))
+    series = np.polynomial.Polynomial(fit, domain=[centre - half, centre + half])
+    printed = np.zeros(4)
+    converted = series.convert().coef
+    printed[: converted.size] = converted
+    return printed, deviation
+
+
+def _rates(blocks: _Blocks) -> tuple[float, float, float, float]:
+    """Mean, slowest and fastest strain rate, and the mean rate of tension."""
+    duration = float(blocks.time[-1] - blocks.time[0])
+    if not duration > 0:
+        raise DataError(
+            "time does not rise over the slow pull", found=f"{duration:g} s", needed="above 0"
+        )
+    stretch = float(blocks.strain[-1] - blocks.strain[0])
+    load = blocks.tension
+    at = np.clip(np.searchsorted(load, np.linspace(load[0], load[-1], 5)), 0, load.size - 1)
+    ends = np.unique(at)
+    with np.errstate(divide="ignore"):
+        local = np.diff(blocks.strain[ends]) / np.diff(blocks.time[ends])
+    return (
+        stretch / duration,
+        float(local.min()),
+        float(local.max()),
+        float(load[-1] - load[0]) / duration,
+    )
+
+
+def _remarks(
+    *, fall: float, rates: tuple[float, ...], reference_length: float, waiting: bool, cut: bool
+) -> tuple[str, ...]:
+    remarks = []
+    if fall > _FALL_NOTED:
+        remarks.append(f"tension falls by {fall:.1%} of the rise on the way to the peak")
+    if rates[2] > _UNEVEN_RATE * rates[1]:
+        remarks.append(
+            f"the strain rate is uneven: from {rates[1]:.2g} to {rates[2]:.2g} 1/s over quarters "
+            "of the range"
+        )
+    if not np.isfinite(reference_length):
+        remarks.append("the length at which strain is zero is not stated")
+    if not waiting:
+        remarks.append("the time since the last dynamic test is not stated, and K_0 depends on it")
+    if cut:
+        remarks.append("the range of use ends where the slope of the cubic turns")
+    return tuple(remarks)
+
+
+def fit_pull(
+    time: ArrayLike,
+    strain: ArrayLike,
+    tension: ArrayLike,
+    *,
+    specimen: str = "",
+    reference_tension: float | None = None,
+    reference_length: float | None = None,
+    waiting_time: float | None = None,
+    waiting: str = "",
+) -> SlowPull:
+    r"""Load-strain cubic of the loading part of a slow pull.
+
+    .. math:: \varepsilon = A + B T + C T^2 + D T^3
+
+    Parameters
+    ----------
+    time : array_like, shape (n_samples,)
+        Elapsed time. [s]
+    strain : array_like, shape (n_samples,)
+        Nominal strain of the free length; NaN where missing. [1]
+    tension : array_like, shape (n_samples,)
+        Of one specimen; NaN where missing. [N]
+    specimen : str, optional
+        Name, kept with the result.
+    reference_tension : float, optional
+        Tension at which the reference length was read, from which the pull counts; left
+        out, the first rise out of slack. [N]
+    reference_length : float, optional
+        Length at which strain is zero. [m]
+    waiting_time : float, optional
+        Since the last dynamic test. [s]
+    waiting : str, optional
+        The same in the laboratory's words.
+
+    Returns
+    -------
+    pull : SlowPull
+        Cubic with covariance, range of use, rates and the conditions. [1], [N], [s-1]
+
+    Raises
+    ------
+    DataError
+        If series do not pair up, have too few readings, tension does not rise, or it falls
+        by more than a quarter of its rise on the way.
+    FitError
+        If fewer than eight steps of tension have a reading, or the slope of the cubic is
+        not positive over half of the range.
+
+    Notes
+    -----
+    Source: [1]_, sec. 4.4.2 and 4.4.3.  Readings are first averaged over a hundredth of the
+    tension range each, and the residuals of those means carry the uncertainty, widened by
+    their likeness to their neighbours: a cubic leaves waves that thousands of readings
+    would hide in a root of their number.  The standard uncertainty holds that and no
+    calibration.
+
+    App. D of [1]_ finds 4.22, 6.33 and 7.71e4 lb for K_0 of one line: at 0.071 per minute
+    a day after the dynamic test, at 0.23 per minute a day after, and at 0.23 per minute at
+    once, that is a factor of 1.5 to 1.8.  The rate and the waiting time stay with the
+    number for that reason, and it enters K_1 and tau in full.
+
+    Examples
+    --------
+    >>> load = np.linspace(0, 2000.0, 400)
+    >>> stretch = 1.389e-4 * load - 3.906e-8 * load**2 + 3.795e-12 * load**3
+    >>> pull = fit_pull(np.arange(400.0), stretch, load, waiting_time=86400.0)
+    >>> print((pull.strain_coefficient[1:] * [1e4, 1e8, 1e12]).round(3))
+    [ 1.389 -3.906  3.795]
+    """
+    clock, stretch, load = as_same_shape(time=time, strain=strain, tension=tension)
+    rows: Integers = find_loading(load, stretch, reference_tension=reference_tension)
+    rows = rows[np.isfinite(clock[rows])]
+    clock, stretch, load = clock[rows], stretch[rows], load[rows]
+    low, high = float(load[0]), float(load.max())
+    blocks = _block_means(clock, stretch, load)
+    # falls of single readings are noise; falls of block means are the machine's or the line's
+    fall = greatest_fall(blocks.tension) / (high - low)
+    if fall > _FALL_REFUSED:
+        raise DataError(
+            f"tension falls by {fall:.0%} of its rise on the way to the peak",
+            needed="a loading in one direction",
+            hint="Give the slow pull alone, by a step with its own from and to.",
+        )
+    n_blocks = blocks.strain.size
+    if n_blocks < _FEWEST_BLOCKS:
+        raise FitError(
+            "too few steps of tension for a cubic",
+            found=f"{n_blocks} of {_BLOCKS} with a reading",
+            needed=f"{_FEWEST_BLOCKS} or more",
+        )
+    solution, *_ = np.linalg.lstsq(blocks.powers, blocks.strain, rcond=None)
+    coefficient = solution.astype(np.float64)
+    residual = blocks.strain - blocks.powers @ coefficient
+    variance = float((residual**2).sum()) / (n_blocks - 4)
+    inflation = lag_one_inflation(residual)
+    normal = np.linalg.inv(blocks.powers.T @ blocks.powers).astype(np.float64)
+    covariance = variance * inflation * normal
+    start, stop = _positive_range(coefficient)
+    if stop - start < 2 * _SHORTEST_RANGE:
+        raise FitError(
+            "the load-strain cubic does not rise",
+            found=f"a positive slope over {(stop - start) / 2:.0%} of the range of tension",
+            needed=f"{_SHORTEST_RANGE:.0%} or more",
+            hint="Check the signs of strain and tension.",
+        )
+    centre, half = (low + high) / 2, (high - low) / 2
+    use = (centre + half * start, centre + half * stop)
+    polynomial, deviation = _printed_form(
+        coefficient, low=use[0], high=use[1], centre=centre, half=half
+    )
+    rates = _rates(blocks)
+    length = np.nan if reference_length is None else reference_length
+    return SlowPull(
+        specimen=specimen,
+        tension_centre=centre,
+        tension_half_range=half,
+        coefficient=coefficient,
+        covariance=covariance,
+        tension_low=use[0],
+        tension_high=use[1],
+        residual_deviation=float(np.sqrt(variance)),
+        variance_inflation=inflation,
+        n_samples=rows.size,
+        n_blocks=n_blocks,
+        first_sample=int(rows[0]),
+        last_sample=int(rows[-1]),
+        strain_rate=rates[0],
+        strain_rate_slowest=rates[1],
+        strain_rate_fastest=rates[2],
+        tension_rate=rates[3],
+        waiting_time=np.nan if waiting_time is None else waiting_time,
+        waiting=waiting,
+        reference_length=length,
+        reference_tension=np.nan if reference_tension is None else reference_tension,
+        polynomial_coefficient=polynomial,
+        polynomial_deviation=deviation,
+        notes=_remarks(
+            fall=fall,
+            rates=rates,
+            reference_length=length,
+            waiting=waiting_time is not None or bool(waiting),
+            cut=stop - start < 2,
+        ),
+    )
