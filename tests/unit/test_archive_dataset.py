@@ -100,6 +100,17 @@ def test_every_row_is_accounted_for_by_channel_and_mask(rich_test):
     assert dataset["n_rows_kept"].item() == 60
 
 
+def test_cycles_count_from_one_and_curves_are_under_their_own_names(rich_test):
+    dataset = build(rich_test)
+    assert dataset["cycle"].values.tolist() == list(range(1, rich_test.cycles.n_cycles + 1))
+    first = rich_test.first_loading
+    for name in ("tangent_modulus", "branch_tension"):
+        for suffix in ("", "_standard_uncertainty"):
+            np.testing.assert_array_equal(
+                dataset[f"{name}_first_loading{suffix}"], getattr(first, f"{name}{suffix}")
+            )
+
+
 def test_stress_is_tension_over_the_area_at_zero_tension(rich_test):
     dataset = build(rich_test)
     area = np.pi / 4 * np.array([0.02645, 0.0239]) ** 2
@@ -238,6 +249,8 @@ def test_a_rate_of_creep_is_not_a_rate_of_relaxation(rich_test):
 def test_an_exponent_is_not_stored_as_a_modulus(rich_test):
     dataset = build(rich_test)
     assert dataset["elastomer_parameter_name"].values.tolist()[-1] == "exponent_1"
+    # the law that each parameter is of: one of the first, two of the second
+    assert dataset["elastomer_parameter_fit"].values.tolist() == [1, 2, 2]
     assert dataset["elastomer_exponent"].values[-1] == 1.4
     assert np.isnan(dataset["elastomer_modulus"].values[-1])
 

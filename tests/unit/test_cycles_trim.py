@@ -63,6 +63,14 @@ def test_a_higher_threshold_keeps_less(threshold):
     assert time[begin] - time[first] == pytest.approx(threshold * 0.5, abs=0.011)
 
 
+def test_a_window_is_at_most_a_quarter_of_a_branch():
+    # eight steps at half the rate: a window of ten passes 0.97 only without any of them,
+    # a wider one would take some of them along
+    position = np.concatenate([0.5 * np.arange(9.0), 4 + np.arange(1.0, 33.0)])
+    begin, end, rate = span(np.arange(41.0), position, np.array([0]), np.array([40]), noise=100.0)
+    assert (begin.tolist(), end.tolist(), rate.tolist()) == ([8], [40], [1.0])
+
+
 def test_rates_differ_from_branch_to_branch():
     time = np.arange(61.0)
     position = np.interp(time, [0, 20, 60], [0, 20, 0])

@@ -1,5 +1,7 @@
 """What speaks against numbers from a hold: each reason alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -112,6 +114,28 @@ def test_the_drop_carries_the_noise_of_both_ends():
     found = np.array([one.drop for one in drops])
     stated = np.mean([one.drop_uncertainty for one in drops])
     assert stated == pytest.approx(found.std(), rel=0.2)
+
+
+def test_the_drop_of_a_deep_relaxation_carries_the_start_by_what_is_left():
+    # 400 N fall to 100 N: drop = 1 - final / initial, so the start counts little over a quarter
+    rng = np.random.default_rng(7)
+    level = np.linspace(400, 100, TIME.size)
+    ends = []
+    for _ in range(300):
+        one = hold(level, noise=0.0)
+        one.tension[:] += rng.standard_normal(TIME.size)
+        ends.append(hold_ends(one))
+    found = np.array([one.drop for one in ends])
+    stated = np.mean([one.drop_uncertainty for one in ends])
+    assert stated == pytest.approx(found.std(), rel=0.15)
+
+
+def test_the_first_stretch_is_a_tenth_of_the_ramp_where_that_is_longer():
+    # ten samples a second: 0.5 % of 179.9 s is less than nine of them, a tenth of 40 s is 40
+    for ramp, n_initial in ((None, 8), (RAMP, 8), (replace(RAMP, duration=40.0), 40)):
+        one = hold(ramp=ramp)
+        hold_ends(one)
+        assert f"the mean of the first {n_initial}, " in one.notes[0]
 
 
 def test_a_hold_without_samples_is_refused():

@@ -70,9 +70,10 @@ def test_fit_equals_polyfit_on_the_samples_of_the_window():
         assert fits.tension[0, at] == pytest.approx(level, rel=1e-10)
 
 
-def test_stated_variances_are_those_of_many_noisy_branches():
+@pytest.mark.parametrize("per_curve", [20, 60])  # 6 and 17 samples in a window
+def test_stated_variances_are_those_of_many_noisy_branches(per_curve):
     rng = np.random.default_rng(2)
-    n_curves, per_curve = 2000, 60
+    n_curves = 2000
     strain = np.tile(np.linspace(1, 1.5, per_curve), n_curves)
     tension = 1000 * strain + rng.normal(0, 2.0, strain.size)
     fits = fits_of(

@@ -122,6 +122,14 @@ def test_slips_are_listed_by_specimen_and_creep_is_not():
     np.testing.assert_allclose(slips.creep_per_cycle, -4 / 450, atol=0.004)
 
 
+def test_creep_is_that_of_the_last_half():
+    count = np.arange(1.0, 601)
+    series = 700 - 30 * np.exp(-count / 15) - 0.01 * count
+    series += 1e-3 * np.random.default_rng(3).standard_normal(600)
+    slips = find_slips(loops_of([series]), specimens=("new",), settings=SlipSettings())
+    assert slips.creep_per_cycle == pytest.approx([-0.01], abs=1e-5)
+
+
 def test_without_a_slope_the_length_is_not_given():
     slips = find_slips(
         loops_of([peaks([(201, -9.0)])]), specimens=("new",), settings=SlipSettings()

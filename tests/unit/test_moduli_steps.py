@@ -88,6 +88,16 @@ def test_a_step_is_dated_and_sized(extent, size):
         assert steps[0].end <= steps[0].end_high
 
 
+def test_the_stated_range_of_an_onset_holds_it_nineteen_times_of_twenty():
+    rng = np.random.default_rng(15)
+    step = -0.7 * ramp_of(300, onset=150, extent=1)
+    found = [find_steps(step + NOISE * white(rng, 300), false_alarm=1e-3) for _ in range(120)]
+    ranges = np.array([(one[0].onset_low, one[0].onset_high) for one in found if len(one) == 1])
+    assert len(ranges) > 50
+    holds = (ranges[:, 0] <= 150) & (ranges[:, 1] >= 150)
+    assert 0.9 <= holds.mean() <= 1
+
+
 def test_several_steps_come_in_order():
     rng = np.random.default_rng(8)
     onsets = [120, 260, 700]
@@ -105,6 +115,14 @@ def test_the_recovery_after_a_step_is_not_a_step():
     series = -3 * (count >= 300) + 1.2 * (1 - np.exp(-lag / 12)) * (count >= 300)
     steps = find_steps(series + 0.1 * white(rng, 600), false_alarm=1e-3)
     assert [step.size < 0 for step in steps] == [True]
+
+
+@pytest.mark.parametrize(("back", "found"), [(1.2, [-1]), (2.0, [-1, 1])])
+def test_a_change_back_by_more_than_half_is_a_step_of_its_own(back, found):
+    rng = np.random.default_rng(9)
+    series = -3 * ramp_of(600, onset=300, extent=1) + back * ramp_of(600, onset=330, extent=1)
+    steps = find_steps(series + 0.1 * white(rng, 600), false_alarm=1e-3)
+    assert [np.sign(step.size) for step in steps] == found
 
 
 def test_a_single_wild_sample_is_not_a_step():
@@ -133,6 +151,13 @@ def test_the_size_of_a_step_in_another_series_is_free_of_its_neighbours():
     size, uncertainty = step_sizes(series + 0.01 * np.arange(300), steps)
     np.testing.assert_allclose(size, [-2, -5], atol=1e-9)
     np.testing.assert_allclose(uncertainty, 0, atol=1e-9)
+
+
+def test_a_size_is_uncertain_by_the_share_that_the_shape_is():
+    step = Step(100, 1, 100, 100, 100, 2.0, 0.5, 0.0)
+    size, uncertainty = step_sizes(-8.0 * ramp_of(200, onset=100, extent=1), (step,))
+    assert size == pytest.approx([-8])
+    assert uncertainty == pytest.approx([8 * 0.5 / 2])
 
 
 def test_a_series_too_short_is_refused():

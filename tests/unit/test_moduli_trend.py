@@ -40,6 +40,12 @@ def test_the_stated_uncertainty_is_the_scatter_of_repeated_series():
     assert 0.95 < uncertainty.mean() / slope.std() < 1.35
 
 
+def test_change_takes_at_most_ten_cycles_at_each_end():
+    peak = np.where(np.arange(2000) < 10, 700.0, 650.0)[None]
+    change = fit_peak_trend(loops_of(peak), area=[1.0]).peak_tension_change
+    assert change == pytest.approx(650 / 700 - 1)
+
+
 def test_change_is_last_over_first():
     peak = np.array([[100.0, 98, 97, 96, 95]])
     assert fit_peak_trend(loops_of(peak), area=[1.0]).peak_tension_change == pytest.approx(-0.05)
