@@ -26,6 +26,7 @@ __all__ = [
     "Specimen",
     "SpliceMarks",
     "StepReadings",
+    "areas_of",
     "freeze_arrays",
 ]
 
@@ -111,6 +112,19 @@ class Specimen:
     def area(self) -> float:
         """Cross-sectional area at zero tension (WHOI-2005-10, eq. 2). [m2]."""
         return pi * self.mean_diameter**2 / 4
+
+    @property
+    def is_rubber(self) -> bool:
+        """Whether laws of rubber apply: not to a rope or a wire."""
+        return self.kind not in ("rope", "wire")
+
+
+def areas_of(specimens: tuple[Specimen, ...]) -> Floats:
+    """Cross-sectional area of each specimen; NaN for a rope or a wire without diameter. [m2].
+
+    A rope is known by its spring constants, which need no area; rubber without one is refused.
+    """
+    return np.array([one.area if one.diameter or one.is_rubber else np.nan for one in specimens])
 
 
 @dataclass(frozen=True)

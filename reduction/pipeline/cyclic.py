@@ -19,7 +19,7 @@ from reduction.moduli.trend import fit_peak_trend
 from reduction.pipeline.comparison import compare_specimens
 from reduction.pipeline.locate import Located
 from reduction.product import History
-from reduction.record import Floats, Specimen
+from reduction.record import Floats, Specimen, areas_of
 from reduction.settings import ReductionSettings
 
 __all__ = ["parts_of_cycles"]
@@ -41,9 +41,11 @@ def parts_of_cycles(
     record, cycles = located.record, located.cycles
     if cycles is None:
         return {}
-    area = np.array([specimen.area for specimen in specimens])
+    area = areas_of(specimens)
     break_in = settings.cycles.break_in_cycles
     loops = close_loops(record.time, tension, strain, cycles, waveform=settings.cycles.waveform)
+    if np.isnan(area).any():
+        return {"loops": loops}  # a rope without a diameter has spring constants alone
     curves = tangent_curves(
         strain, tension, area=area, cycles=cycles, settings=settings.modulus,
         break_in_cycles=break_in,

@@ -15,7 +15,7 @@ from reduction.moduli.product import ElastomerFit
 from reduction.moduli.stress_at import stress_at_strain
 from reduction.pipeline.locate import Located
 from reduction.product import History
-from reduction.record import Floats
+from reduction.record import Floats, Specimen, areas_of
 from reduction.settings import ReductionSettings
 
 __all__ = ["parts_of_first_loading"]
@@ -43,7 +43,7 @@ def parts_of_first_loading(
     located: Located,
     strain: Floats,
     tension: Floats,
-    area: Floats,
+    specimens: tuple[Specimen, ...],
     settings: ReductionSettings,
     history: History | None,
 ) -> dict[str, Any]:
@@ -51,6 +51,9 @@ def parts_of_first_loading(
     begins = [force[np.isfinite(force).argmax()] for force in tension]
     if all(start > located.standstills.slack_tension for start in begins):
         return {}
+    area = areas_of(specimens)
+    if np.isnan(area).any():
+        return {}  # the slow pull of a rope is `reduction.line`'s, without an area
     curves = first_loading_curves(
         strain, tension, area=area, settings=settings.modulus, standstills=located.standstills
     )
@@ -83,6 +86,7 @@ def parts_of_first_loading(
     found = [
         _elastomers(name, curves.strain_bin, rise[index] / area[index], float(earlier[index]))
         for index, name in enumerate(names)
+        if specimens[index].is_rubber
     ]
     parts["elastomers"] = tuple(fit for fits, _ in found for fit in fits)
     notes += [reason for _, reason in found if reason]

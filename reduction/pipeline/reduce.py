@@ -77,14 +77,13 @@ def reduce_test(
         If the record cannot support a stage that its kind needs.
     """
     record, standstills, cycles = located.record, located.standstills, located.cycles
-    area = np.array([specimen.area for specimen in specimens])
     position, tension = located.position, located.tension
     phase = label_phases(record.n_samples, standstills=standstills, cycles=cycles)
     strain = _strain(record, position, tension, models)
     parts = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings
     )
-    parts |= parts_of_first_loading(located, strain, tension, area, settings, history)
+    parts |= parts_of_first_loading(located, strain, tension, specimens, settings, history)
     holds = reduce_holds(
         record.time, position, tension, strain, standstills,
         specimens=record.specimens, settings=settings.holds,
@@ -100,6 +99,11 @@ def reduce_test(
     )
     notes = [note for specimen in specimens for note in check_constant_volume(specimen)]
     notes += parts.pop("notes", [])
+    notes += [
+        f"{specimen.name}: no diameter is stated: spring constants, but no stress and no modulus"
+        for specimen in specimens
+        if not specimen.diameter
+    ]
     if description.kind in HELD and not holds:
         notes.append(_no_hold(standstills, settings))
     notes += plausibility_notes(

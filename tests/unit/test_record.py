@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError
-from reduction.record import Record, Specimen, SpliceMarks
+from reduction.record import Record, Specimen, SpliceMarks, areas_of
 
 
 def record(**changed):
@@ -40,6 +40,14 @@ def test_area_uses_the_mean_of_the_readings():
 def test_a_specimen_without_a_diameter_has_no_area():
     with pytest.raises(DataError, match=r"specimen 'a' has no diameter.*specimens\.a\.diameter"):
         _ = Specimen("a").area
+
+
+def test_a_rope_without_a_diameter_has_no_area_and_rubber_is_refused():
+    rope = Specimen("a", kind="rope")
+    assert np.isnan(areas_of((rope,))).all()
+    assert areas_of((Specimen("b", kind="rope", diameter=(2.0,)),)) == pytest.approx(math.pi)
+    with pytest.raises(DataError, match="'c' has no diameter"):
+        areas_of((rope, Specimen("c", kind="stretch hose")))
 
 
 def test_a_mark_row_that_contradicts_itself_is_refused_with_its_test_and_hold():
