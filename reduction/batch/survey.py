@@ -100,7 +100,7 @@ def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
     note = {"step": step.name} | ({"step_note": step.note} if step.note else {})
     return replace(
         plan,
-        id=f"{plan.id}.{step.name.replace(' ', '-')}",
+        id=step.product(plan.id),
         kind=step.kind,
         target_strain=step.target_strain or plan.target_strain,
         settings=replace(plan.settings, cycles=cycles),

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from reduction.campaign.experiments import plan_experiment
 from reduction.campaign.faults import faults_of, listed, open_questions
 from reduction.campaign.marks import read_marks
 from reduction.campaign.model import (
@@ -294,14 +295,17 @@ def load_campaign(path: Path) -> Campaign:
     }
     if file.campaign.synthetic or "synthetic" in file.campaign.source.lower():
         attributes["synthetic"] = "yes"
+    specimens = {name: _specimen(path, name, section) for name, section in file.specimens.items()}
     return Campaign(
         path=path,
         id=file.campaign.id,
         attributes=attributes,
-        specimens={
-            name: _specimen(path, name, section) for name, section in file.specimens.items()
-        },
+        specimens=specimens,
         layouts=file.layouts,
         tests=plans,
         marks=marks,
+        experiments={
+            name: plan_experiment(path, name, section, tests=plans, specimens=specimens)
+            for name, section in file.experiments.items()
+        },
     )

@@ -6,16 +6,18 @@ them into SI.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from reduction.ingest.layout import Layout
+from reduction.settings import StrainMethod
 
 __all__ = [
     "CampaignFile",
     "CampaignSection",
     "Defaults",
+    "ExperimentSection",
     "FilePiece",
     "Identifier",
     "SpecimenSection",
@@ -31,6 +33,23 @@ TestKind = Literal[
 # a name becomes a file name, so it may hold nothing that a path or a shell reads
 Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_\-]{0,99}$")]
 StepName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_ \-]{0,99}$")]
+RunName = Annotated[
+    str,
+    StringConstraints(
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_\-]{0,99}(/[A-Za-z0-9][A-Za-z0-9_ \-]{0,99})?$"
+    ),
+]
+Response = Literal[
+    "apparent_spring_constant",
+    "hysteresis_energy",
+    "dissipation_spring_constant",
+    "relaxation_time",
+    "storage_spring_constant",
+    "loss_spring_constant",
+    "loss_factor",
+    "dashpot_coefficient",
+]
+"""What a surface may be fitted to; the first four are those of CG-D-39-80."""
 Text = Annotated[str, StringConstraints(max_length=2000)]
 
 
@@ -75,17 +94,7 @@ class SpecimenSection(_Section):
 class StrainSection(_Section):
     """``strain = { method = "...", marks = "marks.csv" }``."""
 
-    method: (
-        Literal[
-            "marks",
-            "strain-ratio",
-            "tension-driven",
-            "constant-fraction",
-            "extensometer",
-            "gauge-length",
-        ]
-        | None
-    ) = None
+    method: StrainMethod | None = None
     marks: Text = ""
 
 
@@ -159,6 +168,22 @@ class TestSection(_Kept):
     steps: tuple[StepSection, ...] = ()
 
 
+class ExperimentSection(_Section):
+    """``[experiments.NAME]``: cyclic tests or steps that make one set of response surfaces."""
+
+    kind: Literal["box-behnken", "plackett-burman"]
+    factors: dict[Identifier, tuple[str, str]]
+    """Low and high level by factor: ``"0.1 Hz"``, ``"12 %RBS"``, ``"40 % of mean"``."""
+    runs: dict[RunName, tuple[float, ...]]
+    """Coded levels as planned, by test or test/step; the achieved ones come from the logs."""
+    quasi_static: dict[Identifier, Text] = Field(default_factory=dict)
+    """Test (or test/step) with the slow pull, by specimen."""
+    responses: tuple[Response, ...] = get_args(Response)[:4]
+    transform: dict[Response, Literal["none", "log", "box-cox"]] = Field(default_factory=dict)
+    specimens_as: Literal["blocks", "random"] = "blocks"
+    """How several specimens of one line enter: a mean of each, or a draw from many."""
+
+
 class CampaignFile(_Section):
     """The whole of campaign.toml."""
 
@@ -167,3 +192,4 @@ class CampaignFile(_Section):
     layouts: dict[Identifier, Layout] = Field(default_factory=dict)
     defaults: Defaults = Defaults()
     tests: dict[Identifier, TestSection] | Text = Field(default_factory=dict)
+    experiments: dict[Identifier, ExperimentSection] = Field(default_factory=dict)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 from reduction.ingest.layout import Layout
 from reduction.record import Specimen, SpliceMarks
 from reduction.settings import ReductionSettings
+from reduction.surface.levels import FactorLevels
 
-__all__ = ["Campaign", "StepPlan", "TestPlan"]
+__all__ = ["Campaign", "ExperimentPlan", "StepPlan", "TestPlan"]
 
 
 @dataclass(frozen=True)
@@ -23,6 +25,10 @@ class StepPlan:
     expected_cycles: int | None
     target_strain: tuple[float, ...] = ()
     note: str = ""
+
+    def product(self, test: str) -> str:
+        """Id of the step's product in a test."""
+        return f"{test}.{self.name.replace(' ', '-')}"
 
 
 @dataclass(frozen=True)
@@ -53,6 +59,25 @@ class TestPlan:
 
 
 @dataclass(frozen=True)
+class ExperimentPlan:
+    """Tests or steps whose loops make one set of response surfaces.
+
+    ``runs`` holds the coded levels as planned, by the id of the test or step; levels beyond
+    the factors are those of dummy columns.  ``quasi_static`` is the test with the slow pull
+    of each specimen, ``transform`` that of each response that has one.
+    """
+
+    name: str
+    kind: Literal["box-behnken", "plackett-burman"]
+    factors: tuple[FactorLevels, ...]
+    runs: dict[str, tuple[float, ...]]
+    quasi_static: dict[str, str]
+    responses: tuple[str, ...]
+    transform: dict[str, str]
+    specimens_as: Literal["blocks", "random"]
+
+
+@dataclass(frozen=True)
 class Campaign:
     """One campaign.toml with everything that it names, resolved."""
 
@@ -63,6 +88,7 @@ class Campaign:
     layouts: dict[str, Layout]
     tests: dict[str, TestPlan]
     marks: dict[str, SpliceMarks]
+    experiments: dict[str, ExperimentPlan] = field(default_factory=dict)
 
     @property
     def folder(self) -> Path:

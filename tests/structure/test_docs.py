@@ -26,6 +26,7 @@ CAMPAIGN, LAYOUTS = (
 SECTIONS = (
     model.CampaignFile, model.CampaignSection, model.SpecimenSection, model.StrainSection,
     model.FilePiece, model.Defaults, model.TestSection, model.StepSection,
+    model.ExperimentSection,
 )  # fmt: skip
 
 

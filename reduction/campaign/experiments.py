@@ -1,0 +1,182 @@
+"""Experiments of a campaign: levels with their units, runs and slow pulls that exist."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NoReturn
+
+from reduction.campaign.model import ExperimentSection
+from reduction.campaign.plan import ExperimentPlan, TestPlan
+from reduction.errors import SettingsError
+from reduction.record import Specimen
+from reduction.surface.levels import FactorLevels, LevelBasis
+from reduction.units import Dimension, parse_quantity
+
+__all__ = ["parse_factor", "plan_experiment"]
+
+_DIMENSIONS: dict[str, Dimension] = {
+    "frequency": "frequency",
+    "mean_tension": "force",
+    "tension_amplitude": "force",
+    "mean_strain": "strain",
+    "strain_amplitude": "strain",
+    "temperature": "temperature",
+    "duration": "number",
+    "diameter": "length",
+}
+_SHARE = re.compile(r"^\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*%\s*(RBS|MBS|MBL|of mean)\s*$")
+_BASIS: dict[str, LevelBasis] = {
+    "RBS": "rated_break_strength",
+    "MBS": "rated_break_strength",
+    "MBL": "rated_break_strength",
+    "of mean": "mean_tension",
+}
+_DYNAMIC = ("cyclic", "fatigue", "snap")
+_PULLS = ("quasi-static", "tensile")
+
+
+def parse_factor(name: str, levels: tuple[str, str]) -> FactorLevels:
+    """Levels of a factor from text with units.
+
+    Parameters
+    ----------
+    name : str
+        Of the factor; one that is not known takes plain numbers.
+    levels : tuple of str
+        Low and high: ``"0.1 Hz"``, ``"12 %RBS"``, ``"40 % of mean"``.
+
+    Returns
+    -------
+    levels : FactorLevels
+        In SI, or as a share with its basis.
+
+    Raises
+    ------
+    SettingsError
+        If a unit is missing or wrong, the two levels have different bases, or do not rise.
+
+    Examples
+    --------
+    >>> parse_factor("mean_tension", ("12 %RBS", "30 %RBS"))
+    FactorLevels(name='mean_tension', low=0.12, high=0.3, basis='rated_break_strength')
+    """
+    shares = [_SHARE.match(text) for text in levels]
+    bases = {_BASIS[share[2]] if share else "absolute" for share in shares}
+    if len(bases) > 1:
+        raise SettingsError(
+            f"the two levels of {name} are not given in one way",
+            found=" and ".join(levels),
+            needed="both in a unit, both in %RBS, or both in % of mean",
+        )
+    low, high = (
+        float(share[1]) / 100 if share else parse_quantity(text, _DIMENSIONS.get(name, "number"))
+        for share, text in zip(shares, levels, strict=True)
+    )
+    basis: LevelBasis = _BASIS[shares[0][2]] if shares[0] else "absolute"
+    return FactorLevels(name, low, high, basis)
+
+
+def plan_experiment(
+    path: Path,
+    name: str,
+    section: ExperimentSection,
+    *,
+    tests: Mapping[str, TestPlan],
+    specimens: Mapping[str, Specimen],
+) -> ExperimentPlan:
+    """An experiment with every name in it resolved.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        campaign.toml, for the messages.
+    name : str
+        Of the experiment.
+    section : ExperimentSection
+        As written.
+    tests : mapping of str to TestPlan
+        Of the campaign.
+    specimens : mapping of str to Specimen
+        Of the campaign.
+
+    Returns
+    -------
+    plan : ExperimentPlan
+        Runs and pulls named as their products are.
+
+    Raises
+    ------
+    SettingsError
+        If a run, a pull or a specimen is not in the campaign or of the wrong kind, the
+        levels do not pair up with the factors, or a share has no break strength.
+    """
+
+    def refuse(problem: str, *, found: str | None = None, needed: str | None = None) -> NoReturn:
+        raise SettingsError(f"{path}: experiment '{name}': {problem}", found=found, needed=needed)
+
+    try:
+        factors = tuple(parse_factor(key, levels) for key, levels in section.factors.items())
+    except SettingsError as error:
+        raise SettingsError(f"{path}: experiment '{name}': {error}") from error
+    runs: dict[str, tuple[float, ...]] = {}
+    for run, coded in section.runs.items():
+        product, kind = _resolve(run, tests) or refuse(
+            "a run is no test of the campaign", found=run,
+            needed="a test, or test/step: " + ", ".join(tests),
+        )  # fmt: skip
+        if kind not in _DYNAMIC:
+            refuse(f"run '{run}' has no cycles", found=kind, needed="a cyclic test or step")
+        is_short = len(coded) < len(factors)
+        if is_short or (section.kind == "box-behnken" and len(coded) != len(factors)):
+            refuse(
+                f"run '{run}' has {len(coded)} coded levels", needed=f"{len(factors)}, one a factor"
+            )
+        runs[product] = coded
+    if len({len(coded) for coded in runs.values()}) > 1:
+        refuse("the runs differ in the number of coded levels")
+    pulls: dict[str, str] = {}
+    for specimen, pull in section.quasi_static.items():
+        product, kind = _resolve(pull, tests) or refuse(
+            f"the slow pull of '{specimen}' is no test of the campaign", found=pull,
+            needed="a test, or test/step: " + ", ".join(tests),
+        )  # fmt: skip
+        if kind not in _PULLS:
+            refuse(f"'{pull}' is no slow pull", found=kind, needed=" or ".join(_PULLS))
+        if specimen not in tests[pull.partition("/")[0]].specimens:
+            refuse(f"the slow pull '{pull}' does not pull '{specimen}'")
+        pulls[specimen] = product
+    if any(factor.basis == "rated_break_strength" for factor in factors):
+        pulled = {one for run in section.runs for one in tests[run.partition("/")[0]].specimens}
+        bare = sorted(one for one in pulled if specimens[one].rated_break_strength is None)
+        if bare:
+            refuse(
+                "a level is a share of the break strength, which is not stated",
+                found="no rated_break_strength of " + ", ".join(bare),
+                needed='specimens.NAME.rated_break_strength = "6400 lbf"',
+            )
+    return ExperimentPlan(
+        name=name,
+        kind=section.kind,
+        factors=factors,
+        runs=runs,
+        quasi_static=pulls,
+        responses=section.responses,
+        transform={key: value for key, value in section.transform.items() if value != "none"},
+        specimens_as=section.specimens_as,
+    )
+
+
+def _resolve(run: str, tests: Mapping[str, TestPlan]) -> tuple[str, str] | None:
+    """Id of the product and kind of a test or test/step; None where there is none."""
+    test, _, step = run.partition("/")
+    plan = tests.get(test)
+    if plan is None:
+        return None
+    if not step:
+        return None if plan.steps else (plan.id, plan.kind)
+    for known in plan.steps:
+        if known.name == step:
+            return known.product(plan.id), known.kind
+    return None
