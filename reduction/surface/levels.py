@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError, SettingsError
 from reduction.record import Floats
+from reduction.surface.coding import engineering_from_coded
 
 __all__ = ["FactorLevels", "LevelBasis", "engineering_levels"]
 
@@ -157,7 +158,7 @@ def engineering_levels(
     names = [factor.name for factor in factors]
     low = np.array([factor.low for factor in factors])
     high = np.array([factor.high for factor in factors])
-    levels: Floats = (high + low) / 2 + runs * ((high - low) / 2)
+    levels = engineering_from_coded(runs, low=low, high=high)
     strength = None
     if rated_break_strength is not None:
         strength = as_positive("rated_break_strength", rated_break_strength)
