@@ -20,19 +20,19 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
 from reduction.errors import DataError, FitError
+from reduction.line.cubic import positive_range, printed_form
 from reduction.line.loading import find_loading, greatest_fall
 from reduction.line.product import SlowPull
 from reduction.moduli.separable import lag_one_inflation
 from reduction.record import Floats, Integers
 
-__all__ = ["fit_pull", "slope_of_cubic"]
+__all__ = ["fit_pull"]
 
 _BLOCKS = 100
 _FEWEST_BLOCKS = 8
@@ -41,49 +41,6 @@ _FALL_REFUSED = 0.25
 # a range of use below this share of the readings is no load-strain curve
 _SHORTEST_RANGE = 0.5
 _UNEVEN_RATE = 2.0
-
-
-def slope_of_cubic(tension: ArrayLike, coefficient: ArrayLike) -> Floats:
-    r"""Quasi-static spring constant of a load-strain cubic.
-
-    .. math:: K_0 = 1 / (B + 2 C T + 3 D T^2)
-
-    Parameters
-    ----------
-    tension : array_like, shape (...)
-        :math:`T`. [N]
-    coefficient : array_like, shape (4,)
-        A, B, C, D of strain = A + B T + C T^2 + D T^3. [N-k]
-
-    Returns
-    -------
-    quasi_static_spring_constant : ndarray, shape (...)
-        NaN where the slope of strain is not positive. [N]
-
-    Raises
-    ------
-    DataError
-        If there are not four coefficients.
-
-    Notes
-    -----
-    Source: [1]_, sec. 4.4.2, and Tables 8 and 9 for the cubic.
-
-    Examples
-    --------
-    Nylon double braid, 1/2 in, Table 8 of [1]_, at the mean loads of Table 1, in 1e4 lb:
-
-    >>> slope = slope_of_cubic([768.0, 1344.0, 1920.0], [-4.13e-4, 1.389e-4, -3.906e-8, 3.795e-12])
-    >>> print((slope / 1e4).round(3))
-    [1.168 1.836 3.238]
-    """
-    load, terms = np.asarray(tension, dtype=np.float64), np.asarray(coefficient, dtype=np.float64)
-    if terms.shape != (4,):
-        raise DataError("a cubic has four coefficients", found=str(terms.shape), needed="(4,)")
-    slope = terms[1] + load * (2 * terms[2] + load * 3 * terms[3])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse: Floats = np.where(slope > 0, 1 / slope, np.nan)
-    return inverse
 
 
 @dataclass(frozen=True)
@@ -116,41 +73,6 @@ def _block_means(time: Floats, strain: Floats, tension: Floats) -> _Blocks:
     scaled = 2 * (tension - low) / (high - low) - 1
     powers = np.stack([mean(scaled**power) for power in range(4)], axis=1)
     return _Blocks(mean(time), mean(strain), mean(tension), powers)
-
-
-def _positive_range(coefficient: Floats) -> tuple[float, float]:
-    """Longest part of -1 to 1 in which the slope of the cubic is positive."""
-    roots = np.roots(coefficient[:0:-1] * np.array([3, 2, 1]))
-    inside = sorted(float(root.real) for root in roots if root.imag == 0 and -1 < root.real < 1)
-    edges = [-1.0, *inside, 1.0]
-    best = (0.0, 0.0)
-    for low, high in pairwise(edges):
-        middle = (low + high) / 2
-        slope = coefficient[1] + middle * (2 * coefficient[2] + middle * 3 * coefficient[3])
-        if slope > 0 and high - low > best[1] - best[0]:
-            best = (low, high)
-    return best
-
-
-def _printed_form(
-    coefficient: Floats, *, low: float, high: float, centre: float, half: float
-) -> tuple[Floats, float]:
-    """K_0 as a cubic of tension by least squares to the slope, and its greatest distance."""
-    load = np.linspace(low, high, 201)
-    scaled = (load - centre) / half
-    # an end of the range where the slope is just positive would rule the fit alone
-    slope = coefficient[1] + scaled * (2 * coefficient[2] + scaled * 3 * coefficient[3])
-    kept = slope > 0
-    exact = half / slope[kept]
-    # equal shares of the value count alike, since K_0 spans a factor of several
-    powers = scaled[kept, None] ** np.arange(4)
-    fit, *_ = np.linalg.lstsq(powers / exact[:, None], np.ones(exact.size), rcond=None)
-    deviation = float(np.max(np.abs(powers @ fit / exact - 1)))
-    series = np.polynomial.Polynomial(fit, domain=[centre - half, centre + half])
-    printed = np.zeros(4)
-    converted = series.convert().coef
-    printed[: converted.size] = converted
-    return printed, deviation
 
 
 def _rates(blocks: _Blocks) -> tuple[float, float, float, float]:
@@ -292,7 +214,7 @@ def fit_pull(
     inflation = lag_one_inflation(residual)
     normal = np.linalg.inv(blocks.powers.T @ blocks.powers).astype(np.float64)
     covariance = variance * inflation * normal
-    start, stop = _positive_range(coefficient)
+    start, stop = positive_range(coefficient)
     if stop - start < 2 * _SHORTEST_RANGE:
         raise FitError(
             "the load-strain cubic does not rise",
@@ -302,7 +224,7 @@ def fit_pull(
         )
     centre, half = (low + high) / 2, (high - low) / 2
     use = (centre + half * start, centre + half * stop)
-    polynomial, deviation = _printed_form(
+    polynomial, deviation = printed_form(
         coefficient, low=use[0], high=use[1], centre=centre, half=half
     )
     rates = _rates(blocks)
