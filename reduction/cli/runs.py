@@ -52,19 +52,31 @@ def _show(outcome: Outcome, table: Table) -> None:
 
 
 def _status_table(tests: Sequence[TestStatus]) -> Table:
-    table = Table(box=None, pad_edge=False)
-    for heading in ("test", "status", "rows", "rate [Hz]", "gaps", "cycles", "message"):
-        is_count = heading not in ("test", "status", "message")
-        table.add_column(escape(heading), justify="right" if is_count else "left")
+    rows = []
     for test in tests:
         message = escape(test.message)  # text from files of strangers: no markup is read in it
         # nothing is reduced in a check: what can be read and located is ready for a run
         status = "ready" if test.status == "no_work" else test.status
         rate = test.found.get("rate", {}).get("value")
-        table.add_row(
-            test.test, status, str(test.n_rows), "" if rate is None else f"{rate:.4g}",
-            str(test.found.get("gaps", "")), str(test.n_cycles), message,
-        )  # fmt: skip
+        rows.append(
+            {
+                "test": test.test,
+                "status": status,
+                "rows": str(test.n_rows),
+                "rate [Hz]": "" if rate is None else f"{rate:.4g}",
+                "gaps": str(test.found.get("gaps", "")),
+                "cycles": str(test.n_cycles),
+                "message": message,
+            }
+        )
+    table = Table(box=None, pad_edge=False)
+    # weights hung by hand have no rate, and of a log that was reduced a run keeps none
+    shown = [name for name in rows[0] if any(row[name] for row in rows)] if rows else []
+    for name in shown:
+        is_count = name not in ("test", "status", "message")
+        table.add_column(escape(name), justify="right" if is_count else "left")
+    for row in rows:
+        table.add_row(*(row[name] for name in shown))
     return table
 
 

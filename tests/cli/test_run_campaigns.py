@@ -167,8 +167,10 @@ def test_a_check_lists_strain_models_where_there_are_some(command):
     stepwise = command("check", ROOT / "raw" / "buoy-technology-1997" / "campaign.toml")
     assert (stepwise.returncode, "static" in stepwise.stdout) == (0, True)
     assert "strain method" not in stepwise.stdout
+    assert "rate [Hz]" not in stepwise.stdout
     cyclic = command("check", ROOT / "raw" / "tmt-synthetic" / "campaign.toml", "--test", "T-1")
     assert "strain method" in cyclic.stdout
+    assert "rate [Hz]" in cyclic.stdout
     assert "tension-driven" in cyclic.stdout
 
 
