@@ -18,6 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from reduction.errors import DataError
 from reduction.moduli.cells import sums_by_cell
@@ -172,26 +173,19 @@ def accumulate_moments(
     ), n_outside
 
 
-def _plus_later(row: Floats, later: Floats, by: int) -> Floats:
-    """Each value and the one ``by`` places on in the other row, nothing beyond its end."""
-    total = row.copy()
-    total[:-by] += later[by:]
-    return total
-
-
 def _window_sums(sums: Floats, n_window: int) -> Floats:
     """Sums over every run of an odd number of neighbours, by doubling: no cancellation."""
     n_out = sums.shape[-1] - n_window + 1
     windows = np.empty((*sums.shape[:-1], n_out))
     for of_curves, window in zip(sums, windows, strict=True):
-        # curves end to end are one long row; windows over the end of a curve are left out below
+        # curves end to end are one long row; windows over the end of a curve are left out
         total = run = of_curves.ravel()
         covered = width = 1
         while covered < n_window:
-            run, width = _plus_later(run, run, width), 2 * width
+            run, width = run[:-width] + run[width:], 2 * width
             if n_window & width:
-                total, covered = _plus_later(total, run, covered), covered + width
-        window[:] = total.reshape(of_curves.shape)[:, :n_out]
+                total, covered = total[: run.size - covered] + run[covered:], covered + width
+        window[:] = sliding_window_view(total, n_out)[:: sums.shape[-1]]
     return windows
 
 

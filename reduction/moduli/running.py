@@ -51,11 +51,13 @@ class RunningStatistics:
         known = np.isfinite(values)
         n_curves = known.sum(axis=0).astype(np.float64)
         mean = np.where(known, values, 0.0).sum(axis=0) / np.maximum(n_curves, 1)
+        step = np.where(known, values - mean, 0.0)
+        step *= step
         return cls(
             count=np.where(known, weight.reshape(-1, *[1] * (values.ndim - 1)), 0.0).sum(axis=0),
             n_curves=n_curves,
             mean=mean,
-            squares=(np.where(known, values - mean, 0.0) ** 2).sum(axis=0),
+            squares=step.sum(axis=0),
             minimum=np.where(known, values, np.inf).min(axis=0, initial=np.inf),
             maximum=np.where(known, values, -np.inf).max(axis=0, initial=-np.inf),
             variance=np.where(known, variance, 0.0).sum(axis=0),

@@ -27,7 +27,7 @@ from reduction.moduli.groups import CycleGroups, select_cycles
 from reduction.moduli.moments import accumulate_moments, fit_windows
 from reduction.moduli.product import ModulusCurves
 from reduction.moduli.running import RunningStatistics
-from reduction.record import Bools, Floats, Integers
+from reduction.record import Floats, Integers
 from reduction.settings import ModulusSettings
 
 __all__ = ["tangent_curves"]
@@ -99,10 +99,10 @@ def _reduce_block(
     grid: StrainGrid,
     minimum_count: int,
     weight: Floats,
-    later: Bools,
+    n_break_in: int,
     chosen: Integers,
 ) -> _SpecimenCurves:
-    """Curves of one block and specimen; ``later`` are the groups after break-in."""
+    """Curves of one block and specimen; its first ``n_break_in`` groups are in no mean."""
     n_groups = weight.size
     moments, n_outside = accumulate_moments(
         strain,
@@ -120,9 +120,9 @@ def _reduce_block(
 
     def statistics(values: Floats, variance: Floats, which: int) -> RunningStatistics:
         return RunningStatistics.of(
-            values.reshape(shape)[which, later],
-            variance.reshape(shape)[which, later],
-            weight=weight[later],
+            values.reshape(shape)[which, n_break_in:],
+            variance.reshape(shape)[which, n_break_in:],
+            weight=weight[n_break_in:],
         )
 
     return _SpecimenCurves(
@@ -160,7 +160,7 @@ def _reduce_specimens(
                 grid=grid,
                 minimum_count=minimum_count,
                 weight=sizes[start:stop],
-                later=~groups.is_break_in[start:stop],
+                n_break_in=int(np.count_nonzero(groups.is_break_in[start:stop])),
                 chosen=selected[(selected >= start) & (selected < stop)] - start,
             )
             for row, reference in enumerate(references)
