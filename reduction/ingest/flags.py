@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from reduction.blocks import run_blocks
 from reduction.errors import DataError
 from reduction.ingest.constant import find_saturated, find_stuck, find_stuck_position
 from reduction.ingest.quality import (
@@ -81,9 +82,10 @@ def flag_record(
         _set(position_flag, _no_length(position, position_flag), Quality.SPIKE)
     if "crosshead_position" in resampled:
         position_flag |= np.uint16(Quality.RESAMPLED)
-    for index, (name, load) in enumerate(zip(record.specimens, record.tension, strict=True)):
-        flags = tension_flag[index]
-        _set(flags, _missing(f"tension of '{name}'", load), Quality.MISSING)
+
+    def flag_tension(index: int) -> None:
+        load, flags = record.tension[index], tension_flag[index]
+        _set(flags, _missing(f"tension of '{record.specimens[index]}'", load), Quality.MISSING)
         saturated = find_saturated(load, position)
         stuck = find_stuck(load, position, samples=settings.stuck_samples)
         _set(flags, saturated, Quality.SATURATED)
@@ -91,6 +93,8 @@ def flag_record(
         _set(flags, _spikes(load, settings), Quality.SPIKE)
         if f"tension.{index + 1}" in resampled:
             flags |= np.uint16(Quality.RESAMPLED)
+
+    run_blocks(flag_tension, range(len(record.specimens)))
     for (index, start, stop), (low, high) in (verified or {}).items():
         outside = find_outside_range(record.tension[index, start:stop], low, high)
         _set(tension_flag[index, start:stop], outside, Quality.OUTSIDE_VERIFIED_RANGE)

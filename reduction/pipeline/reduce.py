@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from reduction.blocks import run_blocks
 from reduction.cycles.label import label_phases
 from reduction.errors import DataError
 from reduction.holds.reduce import reduce_holds
@@ -32,6 +33,8 @@ from reduction.strain.model import StrainModel
 from reduction.strain.stress import check_constant_volume
 
 __all__ = ["reduce_steps", "reduce_test"]
+
+_BLOCK = 1 << 16  # samples that stay in the cache
 
 
 def reduce_test(
@@ -191,15 +194,21 @@ def _strain(
 ) -> Floats:
     """Strain of each specimen; NaN where position, or a tension that it needs, is not usable."""
     strain = np.empty_like(tension)
-    for index, model in enumerate(models):
-        strain[index] = free_length_strain_of(
-            model,
-            position=position,
-            tension=tension[index],
-            measured_strain=None
-            if record.measured_strain is None
-            else record.measured_strain[index],
+    measured = record.measured_strain
+
+    def fill(place: tuple[int, slice]) -> None:
+        index, part = place
+        strain[place] = free_length_strain_of(
+            models[index],
+            position=position[part],
+            tension=tension[place],
+            measured_strain=None if measured is None else measured[place],
         )
+
+    starts = range(0, record.n_samples, _BLOCK)
+    run_blocks(
+        fill, [(row, slice(low, low + _BLOCK)) for row in range(len(models)) for low in starts]
+    )
     return strain
 
 
