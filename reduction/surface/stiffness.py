@@ -280,6 +280,7 @@ def _form(
     with np.errstate(divide="ignore", invalid="ignore"):
         p_value = two_sided_p(fit.coefficient / uncertainty, freedom)
     n = len(names)
+    known = mean[np.isfinite(mean)] / strength
     return StiffnessForm(
         form=form,
         equation=equation,
@@ -294,7 +295,9 @@ def _form(
         stiffness_fitted=(fit.fitted * strength).reshape(*shape, mean.size),
         stiffness_residual=(fit.residual * strength).reshape(*shape, mean.size),
         quality=_quality((form,), [fit], shape),
-        mean_load_range=(float(np.nanmin(mean)) / strength, float(np.nanmax(mean)) / strength),
+        mean_load_range=(
+            (float(known.min()), float(known.max())) if known.size else (float("nan"), float("nan"))
+        ),
         rated_break_strength=strength,
         confidence=confidence,
     )

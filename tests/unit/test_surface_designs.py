@@ -1,11 +1,9 @@
 """Published designs: their moments, their counts, and what they refuse."""
 
-import csv
 from itertools import combinations
 
 import numpy as np
 import pytest
-from measured_logs import LOGS, needs_measured_logs
 
 from reduction.errors import SettingsError
 from reduction.surface.designs import FIRST_ROWS, TRIPLES, box_behnken, plackett_burman
@@ -140,28 +138,3 @@ def test_another_number_of_runs_is_refused():
         SettingsError, match="no Plackett-Burman design .* found 16; needed 12, 20 or 24"
     ):
         plackett_burman(5, n_runs=16)
-
-
-def pairings(columns):
-    """Inner products of three columns: what no order or sign of rows and columns changes."""
-    return sorted(
-        abs(int((columns[:, i] * columns[:, j] * columns[:, k]).sum()))
-        for i, j, k in combinations(range(columns.shape[1]), 3)
-    )
-
-
-@needs_measured_logs
-def test_twelve_runs_are_a_published_design_up_to_order_and_sign():
-    with (LOGS / "plackett-burman" / "PB12Des.csv").open() as file:
-        published = np.array(list(csv.reader(file))[1:], dtype=float)
-    ours = plackett_burman(11, n_runs=12).coded
-    assert pairings(ours) == pairings(published)
-    # and in fact: that file runs through the columns the other way round
-    rows = {tuple(row) for row in published}
-    found = [
-        (step, start)
-        for step in range(1, 11)
-        for start in range(11)
-        if {tuple(row) for row in ours[:, (start + step * np.arange(11)) % 11]} == rows
-    ]
-    assert found

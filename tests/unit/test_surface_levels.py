@@ -1,10 +1,7 @@
 """Levels in SI, in break strength, in mean tension; what cannot be a level."""
 
-import csv
-
 import numpy as np
 import pytest
-from measured_logs import LOGS, needs_measured_logs
 
 from reduction.errors import DataError, SettingsError
 from reduction.surface.designs import box_behnken, plackett_burman
@@ -44,19 +41,6 @@ def test_two_diameters_in_one_screening_each_have_their_break_strength():
     levels = engineering_levels(design.coded, factors, rated_break_strength=strength)
     assert set(levels[:, 0].round(1)) == {1038.0, 3460.0, 2629.5, 8765.0}
     assert set(levels[:, 1]) == {0.5, 0.8125}
-
-
-@needs_measured_logs
-def test_levels_of_the_reports_tables_come_back():
-    table = LOGS.parent / "reference" / "line" / "factor_levels.csv"
-    with table.open() as file:
-        rows = [row for row in csv.DictReader(file) if row["zero"] and row["unit"] == "%RBS"]
-    assert len(rows) == 6
-    for row in rows:
-        low, zero, high = (float(row[name]) / 100 for name in ("minus1", "zero", "plus1"))
-        factor = FactorLevels("mean_tension", low, high, "rated_break_strength")
-        levels = engineering_levels([[-1.0], [0.0], [1.0]], (factor,), rated_break_strength=1.0)
-        np.testing.assert_allclose(levels[:, 0], [low, zero, high], rtol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,7 @@
 """Screening: effects, their error by dummies or Lenth, half-normal points, confounding."""
 
-import csv
-
 import numpy as np
 import pytest
-from measured_logs import LOGS, needs_measured_logs
 from scipy import stats
 
 from reduction.errors import DataError, SettingsError
@@ -101,16 +98,6 @@ def test_lenths_error_of_nothing_is_nothing():
     found = screening_effects(design, np.stack([np.full(12, 3.0), np.arange(12.0)]))
     assert found.effect_standard_error[0] == 0
     assert found.reason.tolist() == ["every run has the same response", ""]
-
-
-@needs_measured_logs
-def test_cast_fatigue_effects_to_the_printed_digit():
-    with (LOGS / "plackett-burman" / "BM93.e2.data.csv").open() as file:
-        table = np.array(list(csv.reader(file))[1:], dtype=float)
-    design = Design("plackett-burman", table[:, :7], np.empty((12, 0)))
-    found = screening_effects(design, table[:, 7], names="ABCDEFG")
-    printed = [0.32583, 0.29383, -0.24583, -0.51617, 0.14983, 0.91517, 0.18317]
-    np.testing.assert_allclose(found.effect, printed, atol=5e-6)
 
 
 def test_half_normal_points_rise_and_keep_their_effect():

@@ -242,3 +242,10 @@ def test_shapes_that_do_not_fit_are_refused():
         compare_stiffness_forms(
             stiffness(), **LEVELS, coded=CODED[:14], rated_break_strength=STRENGTH
         )
+
+
+def test_runs_that_are_all_missing_say_so():
+    nothing = np.full(15, np.nan)
+    form = fit_mean_load_stiffness(nothing, mean_tension=nothing, rated_break_strength=STRENGTH)
+    assert np.isnan(form.coefficient).all() and np.isnan(form.mean_load_range).all()
+    assert form.quality.reason.tolist() == ["fewer runs with a value than terms"]
