@@ -21,8 +21,9 @@ from reduction.blocks import run_blocks
 from reduction.cycles.product import Loops
 from reduction.errors import DataError
 from reduction.moduli.product import Slips
-from reduction.moduli.steps import Step, find_steps, step_sizes
+from reduction.moduli.steps import find_steps
 from reduction.moduli.stepscan import ramp_of
+from reduction.moduli.stepsize import Step, step_sizes
 from reduction.record import Floats, Integers
 from reduction.settings import SlipSettings
 

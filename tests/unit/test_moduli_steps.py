@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from reduction.errors import DataError
-from reduction.moduli.steps import Step, find_steps, step_sizes
+from reduction.moduli.steps import find_steps
 from reduction.moduli.stepscan import ramp_of
 
 NOISE = 0.3
@@ -143,21 +143,6 @@ def test_an_uneven_step_is_one_step():
 
 def test_a_constant_series_has_no_step():
     assert find_steps(np.ones(100), false_alarm=1e-3) == ()
-
-
-def test_the_size_of_a_step_in_another_series_is_free_of_its_neighbours():
-    steps = tuple(Step(onset, 1, onset, onset, onset, 1.0, 0.0, 0.0) for onset in (100, 130))
-    series = -2.0 * ramp_of(300, onset=100, extent=1) - 5.0 * ramp_of(300, onset=130, extent=1)
-    size, uncertainty = step_sizes(series + 0.01 * np.arange(300), steps)
-    np.testing.assert_allclose(size, [-2, -5], atol=1e-9)
-    np.testing.assert_allclose(uncertainty, 0, atol=1e-9)
-
-
-def test_a_size_is_uncertain_by_the_share_that_the_shape_is():
-    step = Step(100, 1, 100, 100, 100, 2.0, 0.5, 0.0)
-    size, uncertainty = step_sizes(-8.0 * ramp_of(200, onset=100, extent=1), (step,))
-    assert size == pytest.approx([-8])
-    assert uncertainty == pytest.approx([8 * 0.5 / 2])
 
 
 def test_a_series_too_short_is_refused():
