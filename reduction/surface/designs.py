@@ -168,7 +168,7 @@ def plackett_burman(n_factors: int, *, n_runs: int | None = None) -> Design:
     Notes
     -----
     Every column is orthogonal to every other and half high, half low.  Two-factor
-    interactions fall on the main effects in part (`screening.alias_matrix`).
+    interactions fall on the main effects in part (`confounding.alias_matrix`).
 
     Examples
     --------

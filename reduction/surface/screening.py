@@ -12,9 +12,7 @@ References
    experiments," Biometrika 33(4), 1946.
 .. [3] R. V. Lenth, "Quick and easy analysis of unreplicated factorials,"
    Technometrics 31(4), 1989.
-.. [4] C. Daniel, "Use of half-normal plots in interpreting factorial two-level
-   experiments," Technometrics 1(4), 1959.
-.. [5] G. E. P. Box and R. D. Meyer, "Finding the active factors in fractionated
+.. [4] G. E. P. Box and R. D. Meyer, "Finding the active factors in fractionated
    screening experiments," Journal of Quality Technology 25(2), 1993 (cast fatigue).
 """
 
@@ -22,25 +20,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri, stdtrit
+from scipy.special import stdtrit
 
-from reduction.checks import as_finite
 from reduction.errors import DataError, SettingsError
-from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.record import Bools, Floats, freeze_arrays
+from reduction.surface.confounding import two_level_columns
 from reduction.surface.designs import Design
 from reduction.surface.fit import two_sided_p
 
 __all__ = [
     "EffectError",
-    "HalfNormal",
     "ScreeningEffects",
-    "alias_matrix",
-    "half_normal_coordinates",
     "screening_effects",
 ]
 
@@ -100,40 +94,6 @@ class ScreeningEffects:
         freeze_arrays(self)
 
 
-@dataclass(frozen=True)
-class HalfNormal:
-    """Points of a half-normal plot, smallest first.
-
-    Parameters
-    ----------
-    order : ndarray of int, shape (..., n_effects)
-        Which effect each point is, from 0.
-    quantile : ndarray, shape (n_effects,)
-        Half-normal quantile. [1]
-    size : ndarray, shape (..., n_effects)
-        Absolute effect; NaN last. [unit of the response]
-    """
-
-    order: Integers
-    quantile: Floats
-    size: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
-
-def _two_levels(name: str, columns: ArrayLike) -> Floats:
-    levels = as_finite(name, columns)
-    if levels.ndim != 2 or not np.all(np.abs(levels) == 1):
-        raise DataError(
-            f"{name} is not a table of two levels",
-            found=f"shape {levels.shape}, levels {sorted(set(levels.ravel().tolist()))[:5]}",
-            needed="-1 and +1, one row a run",
-        )
-    return levels
-
-
 def _pseudo_standard_error(effects: Floats) -> Floats:
     """Lenth's: 1.5 medians of the effects, taken again without the large ones [3]_."""
     size = np.abs(effects)
@@ -183,13 +143,13 @@ def screening_effects(
     -----
     With dummy columns the error is their root mean square, with as many degrees of
     freedom; without, Lenth's pseudo standard error with a third of the effects [3]_.
-    Both hold two-factor interactions beside noise (`alias_matrix`).  [1]_ prints neither
-    runs nor formula: this is the published method, with ``t(0.10, 6) = 1.943`` for its
+    Both hold two-factor interactions beside noise (`confounding.alias_matrix`).  [1]_
+    prints neither runs nor formula: this is the published method, with ``t(0.10, 6) = 1.943`` for its
     five factors and six dummies.
 
     Examples
     --------
-    Cast fatigue [5]_: the factor F has the greatest effect, 0.915.
+    Cast fatigue [4]_: the factor F has the greatest effect, 0.915.
 
     >>> rows = ["++-+++-", "+-+++--", "-+++---", "+++---+", "++---+-", "+---+-+",
     ...         "---+-++", "--+-++-", "-+-++-+", "+-++-++", "-++-+++", "-------"]
@@ -199,7 +159,7 @@ def screening_effects(
     >>> print(screening_effects(design, life, names="ABCDEFG").effect.round(5))
     [ 0.32583  0.29383 -0.24583 -0.51617  0.14983  0.91517  0.18317]
     """
-    columns = _two_levels("the design", np.hstack([design.coded, design.dummy]))
+    columns = two_level_columns("the design", np.hstack([design.coded, design.dummy]))
     n_runs, n_columns = columns.shape
     cross = np.abs(np.column_stack([np.ones(n_runs), columns]).T @ columns)
     np.fill_diagonal(cross[1:], 0)
@@ -272,93 +232,3 @@ def screening_effects(
             default="",
         ),
     )
-
-
-def half_normal_coordinates(effects: ArrayLike) -> HalfNormal:
-    r"""Coordinates of a half-normal plot: effects of noise alone lie on a line from zero.
-
-    .. math:: q_i = \Phi^{-1}\!\left(\tfrac12 + \tfrac12 \frac{i - \tfrac12}{m}\right)
-
-    Parameters
-    ----------
-    effects : array_like, shape (..., n_effects)
-        Of factors and dummies together. [unit of the response]
-
-    Returns
-    -------
-    points : HalfNormal
-        Sizes in rising order with their quantiles.
-
-    Raises
-    ------
-    DataError
-        If there is no effect.
-
-    Notes
-    -----
-    Source: [4]_.
-
-    Examples
-    --------
-    >>> points = half_normal_coordinates([0.3, -2.0, 0.1])
-    >>> print(points.size, points.order, points.quantile.round(3))
-    [0.1 0.3 2. ] [2 0 1] [0.21  0.674 1.383]
-    """
-    size = np.abs(np.asarray(effects, dtype=np.float64))
-    if size.ndim == 0 or size.shape[-1] == 0:
-        raise DataError("there is no effect to plot", found=f"shape {size.shape}", needed="one")
-    order = np.argsort(size, axis=-1, kind="stable")
-    m = size.shape[-1]
-    quantile = ndtri(0.5 + 0.5 * (np.arange(m) + 0.5) / m)
-    return HalfNormal(order, quantile, np.take_along_axis(size, order, axis=-1))
-
-
-def alias_matrix(coded: ArrayLike) -> tuple[tuple[tuple[int, int], ...], Floats]:
-    r"""Share of each two-factor interaction that stands in the mean and in each main effect.
-
-    .. math:: A = (X_1^T X_1)^{-1} X_1^T X_2, \qquad E[E_j] = E_j + \sum_{kl} A_{j,kl} E_{kl}
-
-    Parameters
-    ----------
-    coded : array_like, shape (n_runs, n_factors)
-        Columns of the factors, dummies not among them. [1]
-
-    Returns
-    -------
-    pairs : tuple of (int, int), length n_pairs
-        Factors of each interaction, from 0.
-    alias : ndarray, shape (1 + n_factors, n_pairs)
-        First row the mean, then one row a factor. [1]
-
-    Raises
-    ------
-    DataError
-        If the columns are not of two levels, or two factors always move together.
-
-    Notes
-    -----
-    Source: [2]_.  In twelve runs every interaction of two other factors stands in a main
-    effect with a third of its size, plus or minus: a factor that looks active may be
-    the sum of interactions.
-
-    Examples
-    --------
-    >>> from reduction.surface.designs import plackett_burman
-    >>> pairs, alias = alias_matrix(plackett_burman(3).coded)
-    >>> pairs[2], float(abs(alias[1, 2]))  # the second and third factor in the first
-    ((1, 2), 0.333)
-    """
-    levels = _two_levels("the design", coded)
-    pairs = tuple(combinations(range(levels.shape[1]), 2))
-    first = np.column_stack([np.ones(levels.shape[0]), levels])
-    second = np.empty((levels.shape[0], len(pairs)))
-    for column, (one, other) in enumerate(pairs):
-        second[:, column] = levels[:, one] * levels[:, other]
-    if np.linalg.matrix_rank(first) < first.shape[1]:
-        raise DataError(
-            "the factors of the design cannot be told apart",
-            found=f"rank {np.linalg.matrix_rank(first)}",
-            needed=f"{first.shape[1]}",
-        )
-    alias = np.linalg.lstsq(first, second, rcond=None)[0].astype(np.float64)
-    return pairs, alias

@@ -5,12 +5,9 @@ import pytest
 from scipy import stats
 
 from reduction.errors import DataError, SettingsError
+from reduction.surface.confounding import alias_matrix
 from reduction.surface.designs import Design, plackett_burman
-from reduction.surface.screening import (
-    alias_matrix,
-    half_normal_coordinates,
-    screening_effects,
-)
+from reduction.surface.screening import screening_effects
 
 FIVE = plackett_burman(5)
 RNG = np.random.default_rng(11)
@@ -100,31 +97,6 @@ def test_lenths_error_of_nothing_is_nothing():
     assert found.reason.tolist() == ["every run has the same response", ""]
 
 
-def test_half_normal_points_rise_and_keep_their_effect():
-    effects = RNG.standard_normal((4, 11))
-    points = half_normal_coordinates(effects)
-    assert np.all(np.diff(points.size, axis=-1) >= 0)
-    np.testing.assert_array_equal(
-        np.abs(np.take_along_axis(effects, points.order, -1)), points.size
-    )
-    np.testing.assert_allclose(points.quantile, stats.halfnorm.ppf((np.arange(11) + 0.5) / 11))
-
-
-def test_half_normal_points_need_an_effect():
-    with pytest.raises(DataError, match="no effect to plot"):
-        half_normal_coordinates([])
-
-
-def test_in_twelve_runs_each_interaction_is_a_third_of_every_other_main_effect():
-    pairs, alias = alias_matrix(plackett_burman(11, n_runs=12).coded)
-    assert len(pairs) == 55 and alias.shape == (12, 55)
-    np.testing.assert_allclose(alias[0], 0, atol=1e-12)
-    for column, pair in enumerate(pairs):
-        for factor in range(11):
-            expected = 0 if factor in pair else 1 / 3
-            assert abs(alias[1 + factor, column]) == pytest.approx(expected, abs=1e-12)
-
-
 @pytest.mark.parametrize("n_runs", [12, 20, 24])
 def test_an_interaction_moves_the_effects_by_its_aliases(n_runs):
     design = plackett_burman(6, n_runs=n_runs)
@@ -135,15 +107,7 @@ def test_an_interaction_moves_the_effects_by_its_aliases(n_runs):
         np.testing.assert_allclose(found.effect, alias[1:, column], atol=1e-12)
 
 
-def test_factors_that_move_together_have_no_aliases():
-    column = plackett_burman(1).coded
-    with pytest.raises(DataError, match="cannot be told apart; found rank 2; needed 3"):
-        alias_matrix(np.hstack([column, column]))
-
-
-def test_what_is_not_of_two_levels_is_refused():
-    with pytest.raises(DataError, match="not a table of two levels; found shape .* needed -1 and"):
-        alias_matrix([[0.0, 1.0], [1.0, -1.0]])
+def test_runs_that_are_not_a_whole_design_are_refused():
     with pytest.raises(DataError, match="not balanced and orthogonal; found .*Add the runs"):
         screening_effects(Design("plackett-burman", FIVE.coded[:11], FIVE.dummy[:11]), np.zeros(11))
 
