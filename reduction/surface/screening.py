@@ -144,8 +144,8 @@ def screening_effects(
     With dummy columns the error is their root mean square, with as many degrees of
     freedom; without, Lenth's pseudo standard error with a third of the effects [3]_.
     Both hold two-factor interactions beside noise (`confounding.alias_matrix`).  [1]_
-    prints neither runs nor formula: this is the published method, with ``t(0.10, 6) = 1.943`` for its
-    five factors and six dummies.
+    prints neither runs nor formula: this is the published method, with
+    ``t(0.10, 6) = 1.943`` for its five factors and six dummies.
 
     Examples
     --------
