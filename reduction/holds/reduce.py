@@ -19,25 +19,15 @@ from reduction.holds.blocks import logarithmic_blocks
 from reduction.holds.creep import creep_rate
 from reduction.holds.product import HoldResult
 from reduction.holds.prony import PronyFit, fit_prony
-from reduction.holds.ramp import find_ramp
 from reduction.holds.relaxation import Rate, rate_per_decade, value_at_times
+from reduction.holds.select import select_hold
 from reduction.holds.support import SIGNIFICANT, Ends, Hold, hold_ends, reasons_against
 from reduction.phases.standstill import Standstills
-from reduction.record import Floats, Integers
 from reduction.settings import HoldSettings
 
 __all__ = ["reduce_holds"]
 
 _EMPTY = np.empty(0)
-
-
-def _sound_rows(time: Floats, *series: Floats) -> Integers:
-    """Rows whose values are finite and whose time is later than all before."""
-    finite = np.isfinite(time)
-    for one in series:
-        finite &= np.isfinite(one)
-    rows = np.flatnonzero(finite)
-    return rows[np.diff(np.maximum.accumulate(time[rows]), prepend=-np.inf) > 0]
 
 
 def _rate(hold: Hold, ends: Ends) -> Rate | None:
@@ -110,39 +100,6 @@ def _creep(hold: Hold) -> Rate | None:
     except DataError as error:
         hold.refusals.append(f"rate per decade: {error.problem}")
         return None
-
-
-def _select(
-    time: Floats,
-    position: Floats,
-    tension: Floats,
-    strain: Floats,
-    standstills: Standstills,
-    index: int,
-) -> Hold:
-    """Samples of one specimen in one standstill, and the ramp that led to it."""
-    first, last = int(standstills.first[index]), int(standstills.last[index])
-    begin = int(standstills.first[index - 1]) if index else 0
-    inside = slice(first, last + 1)
-    rows = first + _sound_rows(time[inside], position[inside], tension[inside])
-    seconds, place, load, stretch = (one[rows] for one in (time, position, tension, strain))
-    # under load control the machine moves the tension, and the length answers
-    moved, answer, band = position, tension, standstills.position_tolerance
-    if standstills.tension_tolerance is not None:
-        moved, answer, band = tension, position, standstills.tension_tolerance
-    rows = begin + _sound_rows(*(one[begin : first + 1] for one in (time, moved, answer)))
-    before = [one[rows] for one in (time, moved, answer)]
-    ramp = find_ramp(*before, band=band) if before[0].size > 2 else None
-    return Hold(
-        time=seconds,
-        position=place,
-        tension=load,
-        strain=stretch,
-        start_time=float(standstills.start_time[index]),
-        ramp=ramp,
-        position_tolerance=standstills.position_tolerance,
-        slack_tension=standstills.slack_tension,
-    )
 
 
 def _describe(
@@ -321,7 +278,7 @@ def reduce_holds(
         earlier = bool(index) and not standstills.is_rest[index - 1]
         n_samples = int(standstills.last[index] - standstills.first[index]) + 1
         for name, load, stretch in zip(specimens, loads, stretches, strict=True):
-            hold = _select(seconds, place, load, stretch, standstills, int(index))
+            hold = select_hold(seconds, place, load, stretch, standstills, int(index))
             results.append(
                 _result(
                     hold,

@@ -1,4 +1,10 @@
-"""A step of an evenly sampled series, and the size of known steps in another series."""
+"""A step of an evenly sampled series, and the size of known steps in another series.
+
+References
+----------
+.. [1] M. Basseville and I. V. Nikiforov, "Detection of Abrupt Changes: Theory and
+   Application," Prentice-Hall, 1993, sec. 2.4 (size of a change at a known time).
+"""
 
 from __future__ import annotations
 

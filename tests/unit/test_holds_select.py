@@ -1,0 +1,76 @@
+"""Which samples of a record are a hold of one specimen, and which are its ramp."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from reduction.holds.select import select_hold
+from reduction.phases.standstill import Standstills
+
+TIME = np.arange(0.0, 100.0, 0.5)
+# 2 m/s up to 4 m, a hold to 40 s, on to 6 m, a hold to the end
+POSITION = np.interp(TIME, [0, 10, 12, 40, 41, 100], [0, 0, 4, 4, 6, 6])
+TENSION = 100 * POSITION
+STAND = Standstills(
+    first=np.array([24, 82]), last=np.array([79, 199]), start_time=np.array([12.0, 41.0]),
+    end_time=np.array([39.5, 99.5]), mean_position=np.array([4.0, 6.0]),
+    mean_tension=np.array([[400.0, 600.0]]), is_rest=np.array([False, False]),
+    position_tolerance=0.02, slack_tension=5.0,
+)  # fmt: skip
+
+
+def select(index=0, *, time=TIME, position=POSITION, tension=TENSION, stand=STAND):
+    return select_hold(time, position, tension, position / 4, stand, index)
+
+
+def test_a_hold_has_its_samples_and_the_ramp_before_it():
+    one = select()
+    assert (one.time[0], one.time[-1], one.time.size) == (12.0, 39.5, 56)
+    assert (one.start_time, one.slack_tension, one.position_tolerance) == (12.0, 5.0, 0.02)
+    assert one.ramp.centre_time == pytest.approx(11.0)
+    assert one.ramp.stiffness == pytest.approx(100.0)
+    assert (one.notes, one.refusals) == ([], [])
+
+
+def test_the_ramp_of_a_later_hold_begins_after_the_one_before():
+    ramp = select(1).ramp
+    assert ramp.centre_time == pytest.approx(40.5)
+    assert ramp.duration == pytest.approx(1.0)
+
+
+def test_samples_without_tension_or_out_of_time_are_left_out():
+    tension, time = TENSION.copy(), TIME.copy()
+    tension[30] = np.nan
+    time[40] = time[38]
+    one = select(tension=tension, time=time)
+    assert one.time.size == 54
+    assert not {TIME[30], TIME[40]} & set(one.time)
+
+
+def test_where_the_machine_keeps_the_tension_the_ramp_is_that_of_tension():
+    # the length follows 1 s behind the tension and does not date the ramp
+    position = np.interp(TIME, [0, 11, 13, 100], [0, 0, 4, 4])
+    stand = replace(STAND, tension_tolerance=2.0)
+    ramp = select(position=position, stand=stand).ramp
+    assert ramp.start_time == pytest.approx(10.0)
+    assert ramp.end_time == pytest.approx(12.0)
+    assert select(position=position).ramp.start_time == pytest.approx(11.0)
+
+
+def test_a_record_that_begins_in_the_hold_has_no_ramp():
+    inside = slice(24, None)
+    stand = replace(
+        STAND, first=STAND.first[:1] - 24, last=STAND.last[:1] - 24,
+        start_time=STAND.start_time[:1], end_time=STAND.end_time[:1],
+        mean_position=STAND.mean_position[:1], mean_tension=STAND.mean_tension[:, :1],
+        is_rest=STAND.is_rest[:1],
+    )  # fmt: skip
+    one = select(time=TIME[inside], position=POSITION[inside], tension=TENSION[inside], stand=stand)
+    assert one.ramp is None
+    assert one.time.size == 56
+
+
+def test_a_standstill_that_is_not_there_is_an_error():
+    with pytest.raises(IndexError):
+        select(2)
