@@ -145,9 +145,37 @@ def test_a_drift_linear_in_time_is_taken_off_by_the_means_of_the_cycles():
     assert sine + drift / np.pi == pytest.approx(2, abs=1e-3)
 
 
-def test_a_cycle_that_touches_no_other_has_no_drift():
-    mean, first = np.array([1.0, 5.0, 7.0]), np.array([0, 20, 30])
-    assert mean_drift(mean, first, np.array([10, 30, 40])).tolist() == [0.0, 2.0, 2.0]
+def test_drift_is_known_where_three_cycles_touch():
+    # runs of one, two and four cycles
+    first = np.array([0, 20, 30, 50, 60, 70, 80])
+    mean = np.array([1.0, 5.0, 7.0, 4.0, 3.0, 2.0, 1.0])
+    expected = [0.0, 0.0, 0.0, -1.0, -1.0, -1.0, -1.0]
+    assert mean_drift(mean, first, first + 10).tolist() == expected
+
+
+def test_a_transient_leaves_the_cycles_beside_it_alone():
+    # a standard linear solid, tau 0.5 s, held and then cycled by triangles of 8 s: only the
+    # first cycle holds the transient; from the second on the loop is that of the steady state
+    modulus, arm, tau, step = 800.0, 200.0, 0.5, 0.02
+    half = np.arange(1, 201) / 200
+    triangle = np.concatenate([half, 1 - half])
+    strain = np.concatenate([[0.2], 0.2 + 0.2 * np.tile(triangle, 4)])
+    viscous = np.zeros(strain.size)
+    decay = np.exp(-step / tau)
+    for place in range(1, strain.size):  # exact for straight strokes
+        rate = (strain[place] - strain[place - 1]) / step
+        viscous[place] = viscous[place - 1] * decay + arm * tau * rate * (1 - decay)
+    tension = modulus * strain + viscous
+    loops = close_loops(
+        step * np.arange(strain.size), tension[None], strain[None], cycles_of(400, 4, strain.size)
+    )
+    steady = loops.hysteresis_energy[0, 2]
+    assert loops.hysteresis_energy[0, 1] == pytest.approx(steady, rel=2e-4)
+    assert loops.loss_factor[0, 1] == pytest.approx(loops.loss_factor[0, 2], rel=2e-4)
+    # in closed form: the arm under strokes of duration h at the rate r
+    rate, h = 0.05, 4.0
+    expected = 2 * arm * tau * rate**2 * (h - 2 * tau * np.tanh(h / (2 * tau)))
+    assert steady == pytest.approx(expected, rel=5e-4)
 
 
 def test_noise_moves_the_loss_factor_by_its_stated_uncertainty():
