@@ -275,7 +275,7 @@ def fit_least_squares(
     [2.  1.5] [1.     0.7071]
     """
     columns, values = _checked(matrix, responses)
-    is_used, pattern = _patterns(np.isfinite(values))
+    is_used, pattern = patterns_of(np.isfinite(values))
     n_columns, n_patterns = columns.shape[1], is_used.shape[0]
     out = {
         name: np.full(shape, np.nan)
@@ -356,7 +356,7 @@ def _checked(matrix: ArrayLike, responses: ArrayLike) -> tuple[Floats, Floats]:
     return columns, values
 
 
-def _patterns(known: Bools) -> tuple[Bools, Integers]:
+def patterns_of(known: Bools) -> tuple[Bools, Integers]:
     """Different patterns of known runs, and which one each response has."""
     if (known == known[:1]).all():
         return known[:1].copy(), np.zeros(known.shape[0], dtype=np.intp)

@@ -265,6 +265,10 @@ class BlockEffects:
     ----------
     names : tuple of str, length n_blocks
         In the order of their first run.
+    index : ndarray of int, shape (n_runs,)
+        Block of each run.
+    columns : ndarray, shape (n_runs, n_blocks - 1)
+        Of the blocks in the model matrix: effects add up to nil. [1]
     treatment : str
         ``fixed`` or ``random``.
     effect : ndarray, shape (n_responses, n_blocks)
@@ -276,6 +280,8 @@ class BlockEffects:
     """
 
     names: tuple[str, ...]
+    index: Integers
+    columns: Floats
     treatment: str
     effect: Floats
     standard_deviation: Floats

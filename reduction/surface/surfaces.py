@@ -13,12 +13,13 @@ References
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.errors import DataError, SettingsError
+from reduction.errors import SettingsError
 from reduction.record import Floats, Integers
 from reduction.surface.anova import (
     anova_table,
@@ -26,8 +27,9 @@ from reduction.surface.anova import (
     replicate_cells,
     statistics_from_r2,
 )
+from reduction.surface.blocks import block_columns, fit_random_intercept
 from reduction.surface.canonical import canonical_analysis
-from reduction.surface.coding import coded_from_engineering, engineering_matrix
+from reduction.surface.coding import engineering_matrix
 from reduction.surface.diagnostics import diagnose
 from reduction.surface.fit import (
     covariance_factor,
@@ -35,15 +37,28 @@ from reduction.surface.fit import (
     two_sided_p,
     variance_factor,
 )
-from reduction.surface.product import LeastSquares, ResponseSurfaces
+from reduction.surface.product import BlockEffects, LeastSquares, ResponseSurfaces
+from reduction.surface.remarks import remarks
+from reduction.surface.runs import coded_levels, require_motion, require_names
 from reduction.surface.terms import model_matrix, quadratic_exponents, term_kinds, term_names
+from reduction.surface.transform import Transform, box_cox_exponent, transform
 
 __all__ = ["fit_surfaces"]
 
-_STILL = 1e-6
-"""Coded range below which a factor does not move."""
 _SEQUENCE = {"linear": "first order", "interaction": "interactions", "square": "squares"}
 """Order of the sources in the analysis of variance, that of R's rsm."""
+
+
+@dataclass(frozen=True)
+class _Estimates:
+    """Coefficients in printed order and what they are judged by."""
+
+    coefficient: Floats
+    covariance_factor: Floats
+    pattern: Integers
+    sigma: Floats
+    degrees_of_freedom: Floats
+    error_term: tuple[str, ...]
 
 
 def fit_surfaces(
@@ -56,6 +71,9 @@ def fit_surfaces(
     high: ArrayLike,
     units: Literal["engineering", "coded"] = "engineering",
     run_names: Sequence[str] | None = None,
+    blocks: Sequence[str] | None = None,
+    block_treatment: Literal["fixed", "random"] = "fixed",
+    transforms: Transform | Sequence[Transform] = "none",
     replicate_tolerance: float = 0.1,
 ) -> ResponseSurfaces:
     """Fit the quadratic surface of every response over the runs as they were done.
@@ -77,6 +95,12 @@ def fit_surfaces(
         Of ``levels``.
     run_names : sequence of str, length n_runs, optional
         1, 2, .. where not given.
+    blocks : sequence of str, length n_runs, optional
+        Specimen of each run, where there are several.
+    block_treatment : {'fixed', 'random'}
+        These specimens, or draws from those of their kind.
+    transforms : {'none', 'log', 'box-cox'} or one a response
+        Scale each response is fitted on.
     replicate_tolerance : float
         Runs count as repeats where no coded level differs by more. [1]
 
@@ -88,22 +112,26 @@ def fit_surfaces(
     Raises
     ------
     SettingsError
-        If names do not pair up, a run is named twice, or a high level is not above its low one.
+        If names or transforms do not pair up, a run is named twice, or a high level is not
+        above its low one.
     DataError
-        If a run has a value and no levels, a level or response is infinite, or a factor never
-        moves.
+        If a run has a value and no levels, a level or response is infinite, a factor never
+        moves, there is one block, or a response to be transformed is not above zero.
     FitError
         If there are fewer runs than terms, or the runs leave terms confounded.
 
     Notes
     -----
     Source: [1]_, eq. 5, with 9 and 5 degrees of freedom where its F statistic has 10 and 4
-    (`statistics_from_r2`).  Numbers are those of R's lm and rsm [3]_.  The coded plan is only
-    the plan: levels are used as they were met, so that fifteen runs are seldom orthogonal.
+    (`statistics_from_r2`).  Numbers are those of R's lm and rsm [3]_; with blocks r2 is about
+    their means, where R's is about the grand mean.  The coded plan is only the plan: levels
+    are used as they were met, so that fifteen runs are seldom orthogonal.  Responses are
+    fitted apart: K_1 and tau of runs that give E' and E'' are better derived from surfaces of
+    those two, which stay positive and smooth.
 
     Examples
     --------
-    Example 7.5 of [2]_ with two of its three factors left out: squares before linear terms.
+    One factor, six runs: squares before linear terms.
 
     >>> found = fit_surfaces([[-1.0], [-1.0], [0.0], [0.0], [1.0], [1.0]],
     ...     [[1.0, 2.0, 4.0, 5.0, 3.0, 4.0]], factor_names=["frequency"],
@@ -113,152 +141,125 @@ def fit_surfaces(
     >>> print(found.coefficient, found.sigma.round(4))
     [[ 4.5 -2.   1. ]] [0.7071]
     """
-    values = np.asarray(responses, dtype=np.float64)
-    coded = _coded_levels(levels, low=low, high=high, units=units, factor_names=factor_names)
+    coded = coded_levels(levels, low=low, high=high, units=units, factor_names=factor_names)
+    measured = np.array(responses, dtype=np.float64)
     n_runs, n_factors = coded.shape
-    names = tuple(run_names or (str(number + 1) for number in range(n_runs)))
-    _require_names(names, n_runs, "run")
-    _require_names(tuple(response_names), values.shape[0] if values.ndim else 0, "response")
-
+    runs = tuple(run_names or (str(number + 1) for number in range(n_runs)))
+    require_names(runs, n_runs, "run")
+    require_names(tuple(response_names), measured.shape[0] if measured.ndim else 0, "response")
     exponents = quadratic_exponents(n_factors)
     terms, kinds = term_names(exponents, factor_names), term_kinds(exponents)
+
+    baseline = np.ones((n_runs, 1))
+    grouping = None
+    if blocks is not None:
+        require_names(tuple(str(row) for row in range(len(blocks))), n_runs, "block")
+        grouping = block_columns(blocks)
+        baseline = np.hstack([baseline, grouping[2]])
     known = np.isfinite(coded).all(axis=1)
-    matrix = np.full((n_runs, len(terms)), np.nan)
-    matrix[known] = model_matrix(coded[known], exponents)
-    column, groups = _columns(kinds, n_baseline=1)
-    used = known & np.isfinite(values).any(axis=0)
-    _require_motion(coded[used], factor_names)
-    covariance_factor(matrix[used], names=terms)  # refuses runs that do not carry the terms
+    surface = np.full((n_runs, len(terms)), np.nan)
+    surface[known] = model_matrix(coded[known], exponents)
+    column, groups = _columns(kinds, n_baseline=baseline.shape[1])
+    matrix = np.hstack([baseline, surface[:, np.argsort(column)[1:]]])
+    used = known & np.isfinite(measured).any(axis=0)
+    require_motion(coded[used], factor_names)
+    own = [f"block {number + 1}" for number in range(baseline.shape[1] - 1)]
+    ordered = [terms[0], *own, *(terms[index] for index in np.argsort(column)[1:])]
+    covariance_factor(matrix[used], names=ordered)  # refuses runs that do not carry the terms
+    condition = float(np.linalg.cond(matrix[used]))
 
-    fit = fit_least_squares(matrix[:, np.argsort(column)], values)
-    coefficient = fit.coefficient[:, column]
-    factor = fit.covariance_factor[:, column[:, None], column]
-    one_each = np.arange(len(factor))
-    deviation = np.sqrt(np.einsum("ptt->pt", factor))[fit.pattern] * fit.sigma[:, None]
-    to_engineering = engineering_matrix(exponents, low=low, high=high)
-    engineering_rows = np.broadcast_to(to_engineering, factor.shape)
-    engineering_factor = variance_factor(engineering_rows, factor, pattern=one_each)
-
+    scale, power, interval = _scales(transforms, matrix, measured)
+    values = measured
+    if set(scale) != {"none"}:
+        bent = np.array([kind != "none" for kind in scale])
+        values[bent] = transform(measured[bent], power[bent, None])
+    fit = fit_least_squares(matrix, values, n_baseline=baseline.shape[1])
+    found = _fixed(fit, column)
+    effects = None
+    if grouping is not None:
+        names, index, columns = grouping
+        found, effects = _with_blocks(
+            found, fit, surface, values, names, index, columns, block_treatment
+        )
+    deviation, engineering_deviation, to_engineering = _deviations(found, exponents, low, high)
     judged = (fit.reason == 0)[:, None] & (deviation > 0)
-    t = np.divide(coefficient, deviation, out=np.full(deviation.shape, np.nan), where=judged)
-    freedom = np.where(fit.degrees_of_freedom > 0, fit.degrees_of_freedom, np.nan)
-    term_freedom = np.broadcast_to(freedom[:, None], t.shape).copy()
-    r2, adjusted, predicted = _shares(fit)
+    t = np.divide(found.coefficient, deviation, out=np.full(deviation.shape, np.nan), where=judged)
+    r2, adjusted, predicted = _shares(fit, baseline.shape[1])
     overall = statistics_from_r2(
         np.where(fit.reason == 0, r2, np.nan),
         n_runs=fit.degrees_of_freedom + len(terms),
         n_terms=len(terms),
     )
     cell = replicate_cells(coded, tolerance=replicate_tolerance)
-    lack = lack_of_fit(fit, cell, baseline=np.ones((n_runs, 1)), tolerance=replicate_tolerance)
+    lack = lack_of_fit(fit, cell, baseline=baseline, tolerance=replicate_tolerance)
     return ResponseSurfaces(
         response_names=tuple(response_names),
         factor_names=tuple(factor_names),
-        run_names=names,
+        run_names=runs,
         low=np.array(low, dtype=np.float64),
         high=np.array(high, dtype=np.float64),
         coded=coded,
         exponents=exponents,
         term_names=terms,
-        transform=("none",) * values.shape[0],
-        transform_exponent=np.ones(values.shape[0]),
-        transform_exponent_interval=np.full((values.shape[0], 2), np.nan),
-        coefficient=coefficient,
+        transform=scale,
+        transform_exponent=power,
+        transform_exponent_interval=interval,
+        coefficient=found.coefficient,
         coefficient_standard_uncertainty=deviation,
         t=t,
-        p_value=two_sided_p(t, term_freedom),
-        term_degrees_of_freedom=term_freedom,
-        error_term=("residuals",) * len(terms),
-        coefficient_engineering=coefficient @ to_engineering.T,
-        coefficient_engineering_standard_uncertainty=np.sqrt(engineering_factor)[fit.pattern]
-        * fit.sigma[:, None],
-        covariance_factor=factor,
+        p_value=two_sided_p(t, found.degrees_of_freedom),
+        term_degrees_of_freedom=found.degrees_of_freedom,
+        error_term=found.error_term,
+        coefficient_engineering=found.coefficient @ to_engineering.T,
+        coefficient_engineering_standard_uncertainty=engineering_deviation,
+        covariance_factor=found.covariance_factor,
         engineering_matrix=to_engineering,
-        pattern=fit.pattern,
-        is_used=fit.is_used,
-        sigma=fit.sigma,
+        pattern=found.pattern,
+        is_used=fit.is_used if found.pattern is fit.pattern else fit.is_used[fit.pattern],
+        sigma=found.sigma,
         degrees_of_freedom=fit.degrees_of_freedom,
         r2=r2,
         adjusted_r2=adjusted,
         predicted_r2=predicted,
         overall_f=overall.f,
         overall_p_value=overall.p_value,
-        printed_f=overall.printed_f,
+        # the report had one specimen a surface, or their mean
+        printed_f=overall.printed_f if effects is None else np.full(len(r2), np.nan),
         fitted=fit.fitted,
         residual=fit.residual,
         anova=anova_table(fit, groups, lack),
         lack_of_fit=lack,
         canonical=canonical_analysis(
-            coefficient,
+            found.coefficient,
             exponents,
-            covariance_factor=factor,
-            pattern=fit.pattern,
-            sigma=fit.sigma,
+            covariance_factor=found.covariance_factor,
+            pattern=found.pattern,
+            sigma=found.sigma,
             low=low,
             high=high,
         ),
         diagnostics=diagnose(fit),
-        blocks=None,
-        condition_number=float(np.linalg.cond(matrix[used])),
+        blocks=effects,
+        condition_number=condition,
         reason=fit.reason,
-        notes=(),
+        notes=remarks(
+            coded=coded,
+            responses=values,
+            fit=fit,
+            lack=lack,
+            blocks=effects,
+            factor_names=factor_names,
+            run_names=runs,
+            response_names=response_names,
+            condition=condition,
+        ),
     )
 
 
-def _coded_levels(
-    levels: ArrayLike,
-    *,
-    low: ArrayLike,
-    high: ArrayLike,
-    units: Literal["engineering", "coded"],
-    factor_names: Sequence[str],
-) -> Floats:
-    found = np.array(levels, dtype=np.float64)
-    if found.ndim != 2 or found.shape[1] != len(factor_names) or np.shape(low) != found.shape[1:]:
-        raise SettingsError(
-            "the levels do not pair up with the factors",
-            found=f"levels {found.shape}, {len(factor_names)} names, low {np.shape(low)}",
-            needed="one column, one name, one low and one high level a factor",
-        )
-    if np.isinf(found).any():
-        raise DataError(
-            "a level is infinite",
-            found=f"run {int(np.flatnonzero(np.isinf(found).any(axis=1))[0]) + 1}",
-            needed="numbers, or NaN for a run that was not done",
-        )
-    in_coded = coded_from_engineering(found, low=low, high=high)
-    return found if units == "coded" else in_coded
-
-
-def _require_names(names: tuple[str, ...], count: int, what: str) -> None:
-    twice = sorted({name for name in names if names.count(name) > 1}) if len(names) < 1000 else []
-    if len(names) != count or len(set(names)) != len(names):
-        raise SettingsError(
-            f"the names of the {what}s do not pair up with the {what}s",
-            found=f"{', '.join(twice)} more than once" if twice else f"{len(names)} names",
-            needed=f"{count} different names",
-            hint=f"A {what} entered twice is to be left out once.",
-        )
-
-
-def _require_motion(coded: Floats, factor_names: Sequence[str]) -> None:
-    if len(coded) == 0:
-        raise DataError("no run has a value", needed="runs with levels and responses")
-    still = np.flatnonzero(np.ptp(coded, axis=0) < _STILL)
-    if still.size:
-        first = int(still[0])
-        raise DataError(
-            f"{factor_names[first]} never moves",
-            found=f"{coded[0, first]:g} (coded) in all {len(coded)} runs",
-            needed="at least three levels",
-            hint="Leave the factor out, or add the runs that move it.",
-        )
-
-
 def _columns(kinds: tuple[str, ...], *, n_baseline: int) -> tuple[Integers, dict[str, slice]]:
-    """Column of each printed term, behind the baseline, in the order of the sources."""
+    """Column of each printed term, behind the baseline, and the columns of each source."""
     column = np.zeros(len(kinds), dtype=np.intp)
-    groups: dict[str, slice] = {}
+    groups = {"blocks": slice(1, n_baseline)} if n_baseline > 1 else {}
     start = n_baseline
     for kind, source in _SEQUENCE.items():
         members = [index for index, found in enumerate(kinds) if found == kind]
@@ -269,10 +270,103 @@ def _columns(kinds: tuple[str, ...], *, n_baseline: int) -> tuple[Integers, dict
     return column, groups
 
 
-def _shares(fit: LeastSquares) -> tuple[Floats, Floats, Floats]:
-    """r2, adjusted r2, predicted r2 of each response."""
+def _scales(
+    transforms: Transform | Sequence[Transform], matrix: Floats, measured: Floats
+) -> tuple[tuple[str, ...], Floats, Floats]:
+    """Scale of each response, its exponent, and the interval of an exponent that was found."""
+    count = measured.shape[0]
+    scale = (transforms,) * count if isinstance(transforms, str) else tuple(transforms)
+    strange = sorted(set(scale) - {"none", "log", "box-cox"})
+    if len(scale) != count or strange:
+        raise SettingsError(
+            "the transforms do not pair up with the responses",
+            found=", ".join(strange) or f"{len(scale)} transforms, {count} responses",
+            needed="none, log or box-cox, one for all or one a response",
+        )
+    power = np.array([0.0 if kind == "log" else 1.0 for kind in scale])
+    interval = np.full((count, 2), np.nan)
+    sought = np.flatnonzero([kind == "box-cox" for kind in scale])
+    if sought.size:
+        found = box_cox_exponent(matrix, measured[sought])
+        power[sought] = found.exponent
+        interval[sought] = np.stack([found.low, found.high], axis=1)
+    return scale, power, interval
+
+
+def _fixed(fit: LeastSquares, column: Integers) -> _Estimates:
+    """Least squares in printed order."""
+    freedom = np.where(fit.degrees_of_freedom > 0, fit.degrees_of_freedom, np.nan)
+    return _Estimates(
+        fit.coefficient[:, column],
+        fit.covariance_factor[:, column[:, None], column],
+        fit.pattern,
+        fit.sigma,
+        np.repeat(freedom[:, None], column.size, axis=1),
+        ("residuals",) * column.size,
+    )
+
+
+def _with_blocks(
+    fixed: _Estimates,
+    fit: LeastSquares,
+    surface: Floats,
+    values: Floats,
+    names: tuple[str, ...],
+    index: Integers,
+    columns: Floats,
+    treatment: Literal["fixed", "random"],
+) -> tuple[_Estimates, BlockEffects]:
+    """Estimates as the treatment of the blocks wants them, and the blocks' own levels."""
+    n_responses = len(values)
+    if treatment == "fixed":
+        free = fit.coefficient[:, 1 : len(names)]
+        effect = np.hstack([free, -free.sum(axis=1, keepdims=True)])
+        none, inside = np.full(n_responses, np.nan), np.zeros(n_responses, dtype=bool)
+        return fixed, BlockEffects(names, index, columns, treatment, effect, none, inside)
+    mixed = fit_random_intercept(surface, values, block=index)
+    terms = tuple("blocks" if between else "residuals" for between in mixed.is_between)
+    estimates = _Estimates(
+        mixed.coefficient,
+        mixed.covariance_factor,
+        np.arange(n_responses),
+        mixed.sigma,
+        mixed.degrees_of_freedom,
+        terms,
+    )
+    effects = BlockEffects(
+        names,
+        index,
+        columns,
+        treatment,
+        mixed.effect,
+        mixed.standard_deviation,
+        mixed.at_boundary,
+    )
+    return estimates, effects
+
+
+def _deviations(
+    found: _Estimates, exponents: Integers, low: ArrayLike, high: ArrayLike
+) -> tuple[Floats, Floats, Floats]:
+    """Standard uncertainties of coded and of engineering coefficients, and the way between."""
+    factor = found.covariance_factor
+    to_engineering = engineering_matrix(exponents, low=low, high=high)
+    rows = np.broadcast_to(to_engineering, factor.shape)
+    engineering = variance_factor(rows, factor, pattern=np.arange(len(factor)))
+    coded = np.einsum("ptt->pt", factor)
+    sigma = found.sigma[:, None]
+    return (
+        np.sqrt(coded)[found.pattern] * sigma,
+        np.sqrt(engineering)[found.pattern] * sigma,
+        to_engineering,
+    )
+
+
+def _shares(fit: LeastSquares, n_baseline: int) -> tuple[Floats, Floats, Floats]:
+    """r2, adjusted r2, predicted r2 of each response, about the baseline."""
     total = np.where(fit.reason == 4, np.nan, fit.total_sum_of_squares)
-    df, total_df = fit.degrees_of_freedom, fit.degrees_of_freedom + fit.coefficient.shape[1] - 1
+    df = fit.degrees_of_freedom
+    total_df = df + fit.coefficient.shape[1] - n_baseline
     left = fit.residual_sum_of_squares / total
     ratio = np.divide(total_df, df, out=np.full(df.shape, np.nan), where=df > 0)
     return 1 - left, 1 - left * ratio, 1 - fit.prediction_sum_of_squares / total

@@ -1,0 +1,256 @@
+r"""Values of response surfaces at points, with intervals and with what the runs say there.
+
+.. math::
+
+    \hat y \pm t_\nu\, s \sqrt{h(x)}, \qquad
+    \hat y \pm t_\nu\, s \sqrt{1 + h(x)}, \qquad
+    \hat y \pm \sqrt{p F_{p, \nu}}\, s \sqrt{h(x)}, \qquad h(x) = x^T C x
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
+   R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4 ("range of usefulness").
+.. [2] H. Working and H. Hotelling, "Applications of the Theory of Error to the Interpretation of
+   Trends," J. Am. Stat. Assoc., vol. 24, suppl., pp. 73-85, 1929.
+.. [3] H. Scheffe, The Analysis of Variance. New York: Wiley, 1959, sec. 3.5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import fdtri, stdtrit
+
+from reduction.checks import as_finite
+from reduction.errors import DataError, SettingsError
+from reduction.record import Bools, Floats, freeze_arrays
+from reduction.surface.coding import coded_from_engineering, engineering_from_coded
+from reduction.surface.fit import variance_factor
+from reduction.surface.product import ResponseSurfaces
+from reduction.surface.terms import model_matrix
+from reduction.surface.transform import back_transform, retransformed_mean
+
+__all__ = ["SurfaceValues", "evaluate_surfaces"]
+
+_EDGE = 1e-9
+"""Rounding of the change of units, by which a point on the edge may lie outside."""
+
+
+@dataclass(frozen=True)
+class SurfaceValues:
+    """Surfaces at points; shape (n_responses, n_points), intervals with a last axis of 2.
+
+    Values and intervals are of the response itself; a transformed one is brought back.
+
+    Parameters
+    ----------
+    coded, engineering : ndarray, shape (n_points, n_factors)
+        The points. [1], [SI unit of each factor]
+    value : ndarray
+        Of the surface; the median response where it was transformed. [unit of the response]
+    mean_value : ndarray
+        The mean response: the same where it was not transformed. [unit of the response]
+    fitted_standard_uncertainty : ndarray
+        Of the surface, on the scale it was fitted on. [unit of the fitted response]
+    variance_factor : ndarray
+        Leverage of the point. [1]
+    confidence_interval : ndarray
+        Of the surface at this point. [unit of the response]
+    prediction_interval : ndarray
+        Of one more run at this point, of one more specimen where specimens are random.
+        [unit of the response]
+    simultaneous_interval : ndarray
+        Of the surface at all points at once. [unit of the response]
+    is_inside : ndarray of bool, shape (n_points,)
+        Between the low and high levels of every factor.
+    above_leverage : ndarray of bool
+        Inside, and the runs say less there than at the worst of them, as in the corners of the
+        cube of a Box-Behnken design (1.396 against 0.75).
+    degrees_of_freedom : ndarray, shape (n_responses,)
+        Of the intervals. [1]
+    confidence : float
+        Of each interval. [1]
+    notes : tuple of str
+        What the intervals hold and what not.
+    """
+
+    coded: Floats
+    engineering: Floats
+    value: Floats
+    mean_value: Floats
+    fitted_standard_uncertainty: Floats
+    variance_factor: Floats
+    confidence_interval: Floats
+    prediction_interval: Floats
+    simultaneous_interval: Floats
+    is_inside: Bools
+    above_leverage: Bools
+    degrees_of_freedom: Floats
+    confidence: float
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+def evaluate_surfaces(
+    surfaces: ResponseSurfaces,
+    points: ArrayLike,
+    *,
+    units: Literal["engineering", "coded"] = "engineering",
+    confidence: float = 0.95,
+    outside: Literal["refuse", "flag"] = "refuse",
+) -> SurfaceValues:
+    r"""Value of every surface at every point, with three kinds of interval.
+
+    Parameters
+    ----------
+    surfaces : ResponseSurfaces
+        As fitted.
+    points : array_like, shape (n_points, n_factors)
+        Where to evaluate. [SI unit of each factor, or 1 where coded]
+    units : {'engineering', 'coded'}
+        Of the points.
+    confidence : float
+        Of each interval. [1]
+    outside : {'refuse', 'flag'}
+        What to do with a point beyond the levels of the plan.
+
+    Returns
+    -------
+    values : SurfaceValues
+        NaN for a response without a surface, NaN intervals for one without scatter.
+
+    Raises
+    ------
+    SettingsError
+        If the confidence is not between 0 and 1.
+    DataError
+        If a point is not finite, has other factors, or lies outside and is not to be flagged.
+
+    Notes
+    -----
+    The range is that of the plan ([1]_, "range of usefulness"); a point inside it can still lie
+    where no run was near: `above_leverage`.  Simultaneous intervals hold for the whole surface
+    at once ([2]_, [3]_) and are the ones to draw; a confidence interval holds for one point
+    chosen beforehand.  With fixed blocks everything is of the mean over these specimens; with
+    random ones of the population, with the fewest degrees of freedom of any term.
+
+    Examples
+    --------
+    A mean of three runs and its slope, at the end of the range:
+
+    >>> from reduction.surface.surfaces import fit_surfaces
+    >>> found = fit_surfaces([[-1.0], [-1.0], [0.0], [0.0], [1.0], [1.0]],
+    ...     [[1.0, 2.0, 4.0, 5.0, 3.0, 4.0]], factor_names=["frequency"],
+    ...     response_names=["stiffness"], low=[0.1], high=[0.5], units="coded")
+    >>> at = evaluate_surfaces(found, [[0.5]])
+    >>> print(at.value, at.variance_factor.round(3), at.confidence_interval.round(2))
+    [[3.5]] [[0.5]] [[[1.91 5.09]]]
+    """
+    if not 0 < confidence < 1:
+        raise SettingsError(
+            "the confidence of an interval is a probability",
+            found=f"{confidence:g}",
+            needed="between 0 and 1",
+        )
+    asked = as_finite("points", points)
+    if asked.ndim != 2 or asked.shape[1] != surfaces.coded.shape[1]:
+        raise DataError(
+            "the points do not have the factors of the surface",
+            found=f"shape {asked.shape}",
+            needed=f"(n_points, {surfaces.coded.shape[1]})",
+        )
+    limits = {"low": surfaces.low, "high": surfaces.high}
+    coded = asked if units == "coded" else coded_from_engineering(asked, **limits)
+    is_inside = np.asarray((np.abs(coded) <= 1 + _EDGE).all(axis=1))
+    if outside == "refuse" and not is_inside.all():
+        _refuse(surfaces, coded, int(np.flatnonzero(~is_inside)[0]), int((~is_inside).sum()))
+
+    terms = model_matrix(coded, surfaces.exponents)
+    of_pattern = variance_factor(
+        np.broadcast_to(terms, (len(surfaces.covariance_factor), *terms.shape)),
+        surfaces.covariance_factor,
+        pattern=np.arange(len(surfaces.covariance_factor)),
+    )
+    factor = of_pattern[surfaces.pattern]
+    greatest = _greatest_leverage(surfaces)[surfaces.pattern]
+    fitted = surfaces.coefficient @ terms.T
+    sigma = np.where(surfaces.reason == 0, surfaces.sigma, np.nan)[:, None]
+    freedom = np.min(surfaces.term_degrees_of_freedom, axis=1)
+    between = np.zeros_like(sigma)
+    if surfaces.blocks is not None and surfaces.blocks.treatment == "random":
+        between = surfaces.blocks.standard_deviation[:, None]
+    deviation = sigma * np.sqrt(factor)
+    student = np.asarray(stdtrit(freedom, (1 + confidence) / 2))[:, None]
+    n_terms = len(surfaces.term_names)
+    scheffe = np.sqrt(n_terms * np.asarray(fdtri(n_terms, freedom, confidence)))[:, None]
+
+    power = surfaces.transform_exponent[:, None]
+    plain = np.array([kind == "none" for kind in surfaces.transform])[:, None]
+
+    def back(values: Floats) -> Floats:
+        return np.where(plain, values, back_transform(values, np.where(plain, 1.0, power)))
+
+    def interval(half: Floats) -> Floats:
+        return np.stack([back(fitted - half), back(fitted + half)], axis=-1)
+
+    mean = retransformed_mean(fitted, np.where(plain, 1.0, power), sigma=np.hypot(sigma, between))
+    return SurfaceValues(
+        coded=coded,
+        engineering=engineering_from_coded(coded, **limits),
+        value=back(fitted),
+        mean_value=np.where(plain, fitted, mean),
+        fitted_standard_uncertainty=deviation,
+        variance_factor=factor,
+        confidence_interval=interval(student * deviation),
+        prediction_interval=interval(student * np.sqrt(sigma**2 + between**2 + deviation**2)),
+        simultaneous_interval=interval(scheffe * deviation),
+        is_inside=is_inside,
+        above_leverage=is_inside & (factor > greatest[:, None] * (1 + _EDGE)),
+        degrees_of_freedom=freedom,
+        confidence=confidence,
+        notes=_notes(surfaces),
+    )
+
+
+def _greatest_leverage(surfaces: ResponseSurfaces) -> Floats:
+    """Largest variance factor of a run that was used, shape (n_patterns,)."""
+    known = np.isfinite(surfaces.coded).all(axis=1)
+    terms = model_matrix(surfaces.coded[known], surfaces.exponents)
+    n_patterns = len(surfaces.covariance_factor)
+    factor = variance_factor(
+        np.broadcast_to(terms, (n_patterns, *terms.shape)),
+        surfaces.covariance_factor,
+        pattern=np.arange(n_patterns),
+    )
+    used = surfaces.is_used[:, known] & np.isfinite(factor)
+    greatest: Floats = np.max(factor, axis=1, where=used, initial=-np.inf)
+    return np.where(used.any(axis=1), greatest, np.nan)
+
+
+def _refuse(surfaces: ResponseSurfaces, coded: Floats, row: int, count: int) -> None:
+    column = int(np.argmax(np.abs(coded[row])))
+    level = engineering_from_coded(coded[row], low=surfaces.low, high=surfaces.high)[column]
+    raise DataError(
+        f"{count} of {len(coded)} points lie outside the tested range, first point {row + 1}",
+        found=f"{surfaces.factor_names[column]} = {level:g}",
+        needed=f"{surfaces.low[column]:g} to {surfaces.high[column]:g}",
+        hint="Ask for the value with a flag, or test there.",
+    )
+
+
+def _notes(surfaces: ResponseSurfaces) -> tuple[str, ...]:
+    notes = []
+    if set(surfaces.transform) != {"none"}:
+        notes.append(
+            "values of transformed responses are medians; the exponent counts as known in "
+            "their intervals"
+        )
+    if surfaces.blocks is not None and surfaces.blocks.treatment == "fixed":
+        notes.append("intervals are of the mean over the specimens tested, not of another specimen")
+    return tuple(notes)
