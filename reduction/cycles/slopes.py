@@ -81,7 +81,7 @@ def slope_readings(apparent_spring_constant: ArrayLike, loss_factor: ArrayLike) 
     -----
     [1]_ reads K_ap from "the slope of the line drawn between the ends of the hysteresis
     loop", and eq. 1 there gives the modulus: the amplitude ratio, which is used here.  The
-    others differ from it by 0.4 to 2.7 % at the loss angles of [1]_, 5 to 13 degrees.  A
+    others differ from it by 0.4 to 2.7 % at the loss angles of [1]_, 5.1 to 13.1 degrees.  A
     loop with pointed ends has its extremes of strain and tension at one point and all three
     readings are one: there the spread is that of the ellipse with the same loss angle.
     NaN in, NaN out.

@@ -103,6 +103,9 @@ class SlowPull:
     covariance : ndarray, shape (4, 4)
         Of the coefficients, from the residuals and their likeness to their neighbours
         (type A); no part of load cell or gauge length. [1]
+    strain_misfit, slope_misfit : float
+        Root mean square of what a cubic misses of the strain, and of its slope in u, by a
+        polynomial of sixth degree; 0 where noise explains it. [1]
     tension_low, tension_high : float
         Range of use: where there are readings and the slope is positive. [N]
     residual_deviation : float
@@ -139,6 +142,8 @@ class SlowPull:
     tension_half_range: float
     coefficient: Floats
     covariance: Floats
+    strain_misfit: float
+    slope_misfit: float
     tension_low: float
     tension_high: float
     residual_deviation: float

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
+from reduction.cycles.loops import reading_noise
 from reduction.errors import DataError, FitError
 from reduction.line.cubic import positive_range, printed_form
 from reduction.line.loading import find_loading, greatest_fall
@@ -35,17 +36,23 @@ from reduction.record import Floats, Integers
 __all__ = ["fit_pull"]
 
 _BLOCKS = 100
+# degree that a load-strain curve may ask for beyond the cubic, and blocks that it needs
+_DEGREE_BEYOND = 6
+_FEWEST_BLOCKS_BEYOND = 20
+# times the square that noise makes, which three more terms pass once in thirty
+_BEYOND_NOISE = 3.0
 _FEWEST_BLOCKS = 8
 _FALL_NOTED = 0.02
 _FALL_REFUSED = 0.25
 # a range of use below this share of the readings is no load-strain curve
 _SHORTEST_RANGE = 0.5
 _UNEVEN_RATE = 2.0
+_NOISE_FACTOR = 6.0
 
 
 @dataclass(frozen=True)
 class _Blocks:
-    """Means over equal steps of tension; ``powers`` has shape (n_blocks, 4)."""
+    """Means over equal steps of tension; ``powers`` has shape (n_blocks, 7)."""
 
     time: Floats
     strain: Floats
@@ -71,8 +78,42 @@ def _block_means(time: Floats, strain: Floats, tension: Floats) -> _Blocks:
         return total
 
     scaled = 2 * (tension - low) / (high - low) - 1
-    powers = np.stack([mean(scaled**power) for power in range(4)], axis=1)
+    powers = np.stack([mean(scaled**power) for power in range(_DEGREE_BEYOND + 1)], axis=1)
     return _Blocks(mean(time), mean(strain), mean(tension), powers)
+
+
+def _covariance(powers: Floats, residual: Floats) -> Floats:
+    """Of least squares with unequal and correlated errors: sandwich, leverage taken off.
+
+    Noise of tension moves strain by itself over K_0, more at the soft end of the curve.
+    """
+    inverse = np.linalg.inv(powers.T @ powers)
+    leverage = ((powers @ inverse) * powers).sum(axis=1)
+    own = powers * (residual / np.maximum(1 - leverage, 0.1))[:, None]
+    covariance: Floats = lag_one_inflation(residual) * inverse @ (own.T @ own) @ inverse
+    return covariance
+
+
+def _misfit(blocks: _Blocks, cubic: Floats, covariance: Floats) -> tuple[float, float]:
+    """Root mean square of what the cubic misses of strain and of its slope in u.
+
+    Judged by a polynomial of higher degree, less what noise alone makes the two differ by.
+    """
+    if blocks.strain.size < _FEWEST_BLOCKS_BEYOND:
+        return 0.0, 0.0
+    beyond, *_ = np.linalg.lstsq(blocks.powers, blocks.strain, rcond=None)
+    spread = _covariance(blocks.powers, blocks.strain - blocks.powers @ beyond)
+    degree = np.arange(_DEGREE_BEYOND + 1)
+    # a polynomial of high degree is loose at its ends
+    at = np.linspace(-0.9, 0.9, 61)[:, None]
+    missed = []
+    for rows in (at**degree, degree * at ** np.maximum(degree - 1, 0)):
+        apart = rows @ beyond - rows[:, :4] @ cubic
+        known = ((rows[:, :4] @ covariance) * rows[:, :4]).sum(axis=1)
+        noise = np.mean(np.maximum(((rows @ spread) * rows).sum(axis=1) - known, 0))
+        square = np.mean(apart**2)
+        missed.append(float(np.sqrt(square - noise)) if square > _BEYOND_NOISE * noise else 0.0)
+    return missed[0], missed[1]
 
 
 def _rates(blocks: _Blocks) -> tuple[float, float, float, float]:
@@ -169,9 +210,10 @@ def fit_pull(
     -----
     Source: [1]_, sec. 4.4.2 and 4.4.3.  Readings are first averaged over a hundredth of the
     tension range each, and the residuals of those means carry the uncertainty, widened by
-    their likeness to their neighbours: a cubic leaves waves that thousands of readings
-    would hide in a root of their number.  The standard uncertainty holds that and no
-    calibration.
+    their likeness to their neighbours: thousands of readings would hide in a root of their
+    number what a cubic leaves.  A curve that is no cubic has another slope than its cubic;
+    how much, a polynomial of sixth degree tells, and that is added.  The standard
+    uncertainty holds these and no calibration.
 
     App. D of [1]_ finds 4.22, 6.33 and 7.71e4 lb for K_0 of one line: at 0.071 per minute
     a day after the dynamic test, at 0.23 per minute a day after, and at 0.23 per minute at
@@ -192,8 +234,8 @@ def fit_pull(
     clock, stretch, load = clock[rows], stretch[rows], load[rows]
     low, high = float(load[0]), float(load.max())
     blocks = _block_means(clock, stretch, load)
-    # falls of single readings are noise; falls of block means are the machine's or the line's
-    fall = greatest_fall(blocks.tension) / (high - low)
+    # falls of single readings are noise
+    fall = max(greatest_fall(load) - _NOISE_FACTOR * reading_noise(load), 0.0) / (high - low)
     if fall > _FALL_REFUSED:
         raise DataError(
             f"tension falls by {fall:.0%} of its rise on the way to the peak",
@@ -207,13 +249,12 @@ def fit_pull(
             found=f"{n_blocks} of {_BLOCKS} with a reading",
             needed=f"{_FEWEST_BLOCKS} or more",
         )
-    solution, *_ = np.linalg.lstsq(blocks.powers, blocks.strain, rcond=None)
+    powers = blocks.powers[:, :4]
+    solution, *_ = np.linalg.lstsq(powers, blocks.strain, rcond=None)
     coefficient = solution.astype(np.float64)
-    residual = blocks.strain - blocks.powers @ coefficient
-    variance = float((residual**2).sum()) / (n_blocks - 4)
-    inflation = lag_one_inflation(residual)
-    normal = np.linalg.inv(blocks.powers.T @ blocks.powers).astype(np.float64)
-    covariance = variance * inflation * normal
+    residual = blocks.strain - powers @ coefficient
+    covariance = _covariance(powers, residual)
+    strain_misfit, slope_misfit = _misfit(blocks, coefficient, covariance)
     start, stop = positive_range(coefficient)
     if stop - start < 2 * _SHORTEST_RANGE:
         raise FitError(
@@ -237,8 +278,10 @@ def fit_pull(
         covariance=covariance,
         tension_low=use[0],
         tension_high=use[1],
-        residual_deviation=float(np.sqrt(variance)),
-        variance_inflation=inflation,
+        strain_misfit=strain_misfit,
+        slope_misfit=slope_misfit,
+        residual_deviation=float(np.sqrt((residual**2).sum() / (n_blocks - 4))),
+        variance_inflation=lag_one_inflation(residual),
         n_samples=rows.size,
         n_blocks=n_blocks,
         first_sample=int(rows[0]),

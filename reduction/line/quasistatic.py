@@ -76,7 +76,8 @@ def quasi_static_spring_constant(pull: SlowPull, tension: ArrayLike) -> tuple[Fl
     Notes
     -----
     Source: [1]_, sec. 4.4.2: it "must be calculated at the mean load level of interest and
-    used for small perturbations around that mean load".  The uncertainty is of the fit.
+    used for small perturbations around that mean load".  The uncertainty is of the fit, with
+    what the cubic misses of the curve.
 
     Examples
     --------
@@ -94,7 +95,8 @@ def quasi_static_spring_constant(pull: SlowPull, tension: ArrayLike) -> tuple[Fl
     slope = np.where(np.isnan(scaled), np.nan, rows @ pull.coefficient)
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = np.where(slope > 0, 1 / slope, np.nan)
-    return inverse, inverse**2 * _spread(rows, pull.covariance)
+    spread = np.hypot(_spread(rows, pull.covariance), pull.slope_misfit / pull.tension_half_range)
+    return inverse, inverse**2 * spread
 
 
 def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Floats]:
@@ -131,7 +133,8 @@ def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Float
     """
     scaled, _ = _scaled(pull, tension)
     rows = np.stack([scaled**power for power in range(4)], axis=-1)
-    return rows @ pull.coefficient, _spread(rows, pull.covariance)
+    spread = np.hypot(_spread(rows, pull.covariance), pull.strain_misfit)
+    return rows @ pull.coefficient, spread
 
 
 def strain_at_break_share(

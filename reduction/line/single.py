@@ -28,10 +28,10 @@ from reduction.record import Floats, Integers, freeze_arrays
 __all__ = ["VERDICTS", "SingleTimeCheck", "check_single_time", "power_of_frequency"]
 
 VERDICTS: dict[int, str] = {
-    0: "not decided: the interval of the exponent holds both 0 and 1",
-    1: "one relaxation time holds over frequency: the interval holds 0 and not 1",
-    2: "the relaxation time follows 1/f: the interval holds 1 and not 0, so tau re-expresses a "
-    "loss angle that hardly changes with frequency",
+    0: "not decided: the interval of the exponent reaches both 0 and 1",
+    1: "one relaxation time holds over frequency: the interval reaches 0 and not 1",
+    2: "the relaxation time follows 1/f: the interval reaches 1 and not 0, so tau re-expresses "
+    "a loss angle that hardly changes with frequency",
     3: "neither: the relaxation time changes with frequency, and not as 1/f",
     4: "not decided: too few frequencies at equal loads, or no scatter to judge them by",
 }
@@ -48,7 +48,7 @@ class SingleTimeCheck:
     exponent_low, exponent_high : ndarray
         Interval of n. [1]
     p_one_time, p_inverse_frequency : ndarray
-        Probability of an estimate as far from 0 (one tau), and from 1 (1/f). [1]
+        Probability of an estimate as far from exactly 0 (one tau), and from 1 (1/f). [1]
     time_ratio, time_ratio_low, time_ratio_high : ndarray
         tau at the lowest over tau at the highest frequency, by the fit; 1 where one tau
         holds and ``frequency_ratio`` where tau follows 1/f. [1]
@@ -61,8 +61,8 @@ class SingleTimeCheck:
         for one tau far above its frequency. [1]
     verdict : ndarray of int8
         Key of `VERDICTS`.
-    confidence : float
-        Of the intervals. [1]
+    confidence, tolerance : float
+        Of the intervals, and by which they may miss 0 or 1. [1]
     """
 
     exponent: Floats
@@ -81,6 +81,7 @@ class SingleTimeCheck:
     loss_exponent_high: Floats
     verdict: NDArray[np.int8]
     confidence: float
+    tolerance: float
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -197,6 +198,7 @@ def check_single_time(
     group: ArrayLike | None = None,
     relative_standard_uncertainty: ArrayLike | None = None,
     confidence: float = 0.95,
+    tolerance: float = 0.1,
 ) -> SingleTimeCheck:
     r"""Whether one relaxation time holds over the frequencies of some runs.
 
@@ -217,6 +219,9 @@ def check_single_time(
         runs leave no degree of freedom, as two frequencies at one load do. [1]
     confidence : float, optional
         Of the intervals. [1]
+    tolerance : float, optional
+        An exponent this near to 0 or 1 is as good as it: many runs would else tell 0.95
+        from 1, and no line is exactly either. [1]
 
     Returns
     -------
@@ -228,7 +233,7 @@ def check_single_time(
     DataError
         If shapes do not fit or a frequency is not positive.
     SettingsError
-        If the confidence is not between 0 and 1.
+        If the confidence is not between 0 and 1, or the tolerance not between 0 and 0.5.
 
     Notes
     -----
@@ -247,6 +252,10 @@ def check_single_time(
     """
     if not 0 < confidence < 1:
         raise SettingsError("a confidence is a share", found=f"{confidence:g}", needed="0 to 1")
+    if not 0 <= tolerance < 0.5:
+        raise SettingsError(
+            "a tolerance of the exponent", found=f"{tolerance:g}", needed="0 to 0.5"
+        )
     slope, uncertainty, left = power_of_frequency(
         frequency,
         relaxation_time,
@@ -266,7 +275,9 @@ def check_single_time(
     span = np.where(np.isfinite(highest), highest, 1) / np.where(np.isfinite(lowest), lowest, 1)
     low, high = exponent - width, exponent + width
     with np.errstate(divide="ignore", invalid="ignore"):
-        holds_none, holds_one = (low <= 0) & (high >= 0), (low <= 1) & (high >= 1)
+        holds_none, holds_one = (
+            (low <= exact + tolerance) & (high >= exact - tolerance) for exact in (0, 1)
+        )
         verdict = np.select(
             [~np.isfinite(width), holds_none & holds_one, holds_none, holds_one],
             [4, 0, 1, 2],
@@ -291,4 +302,5 @@ def check_single_time(
         loss_exponent_high=loss_slope + loss_width,
         verdict=verdict,
         confidence=confidence,
+        tolerance=tolerance,
     )

@@ -1,0 +1,342 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from reduction.cycles.product import Loops
+from reduction.errors import DataError, FitError
+from reduction.line.cubic import positive_range, printed_form, slope_of_cubic
+from reduction.line.loading import find_loading, greatest_fall
+from reduction.line.pull import fit_pull
+from reduction.line.quasistatic import (
+    quasi_static_of_run,
+    quasi_static_spring_constant,
+    spring_constant_ratio,
+    strain_at_break_share,
+    strain_at_tension,
+)
+
+# nylon double braid of Table 8, in newtons
+CUBIC = np.array([-4.13e-4, 1.389e-4 / 4.448, -3.906e-8 / 4.448**2, 3.795e-12 / 4.448**3])
+
+
+def strain_of(load):
+    return np.asarray(load)[..., None] ** np.arange(4) @ CUBIC
+
+
+def rising(n=2000, top=8800.0, seed=None, noise=0.0):
+    """A pull at constant rate of strain: time, strain and tension, with noise on tension."""
+    grid = np.linspace(0, top, 4001)
+    strain = np.linspace(strain_of(0.0), strain_of(top), n)
+    load = np.interp(strain, strain_of(grid), grid)
+    if seed is not None:
+        load = load + np.random.default_rng(seed).normal(0, noise, n)
+    return np.arange(n) * 0.1, strain, load
+
+
+class TestLoading:
+    def test_slack_before_and_unloading_after_are_left_out(self):
+        load = np.concatenate(
+            [np.full(50, 2.0), np.linspace(2, 1000, 500), np.linspace(1000, 0, 80)]
+        )
+        rows = find_loading(load, load / 1e4)
+        assert 49 <= rows[0] <= 53 and rows[-1] in (549, 550)
+
+    def test_cycles_that_come_back_to_slack_are_no_part_of_the_pull(self):
+        turn = np.linspace(0, 6 * np.pi, 600)
+        load = np.concatenate([300 * (1 - np.cos(turn)), np.linspace(0, 2000, 400)])
+        rows = find_loading(load, load / 1e4)
+        assert 595 <= rows[0] <= 605
+
+    def test_it_counts_from_the_reference_tension(self):
+        load = np.linspace(0, 1000, 1001)
+        rows = find_loading(load, load / 1e4, reference_tension=100.0)
+        assert (rows[0], rows[-1]) == (100, 1000)
+
+    def test_a_record_that_begins_above_the_reference_is_used_whole(self):
+        load = np.linspace(50, 1000, 500)
+        rows = find_loading(load, load / 1e4, reference_tension=20.0)
+        assert (rows[0], rows.size) == (0, 500)
+
+    def test_missing_readings_are_passed_over(self):
+        load = np.linspace(0, 1000, 500)
+        strain = load / 1e4
+        load[100:110], strain[200] = np.nan, np.nan
+        rows = find_loading(load, strain)
+        assert not set(rows) & {*range(100, 110), 200}
+
+    def test_noise_at_slack_does_not_begin_the_pull(self):
+        rng = np.random.default_rng(2)
+        load = np.concatenate([np.zeros(3000), np.linspace(0, 1000, 2000)]) + rng.normal(0, 2, 5000)
+        assert 3000 <= find_loading(load, np.arange(5000.0))[0] <= 3060
+
+    def test_a_fall_is_from_the_greatest_so_far(self):
+        assert greatest_fall([1.0, 5.0, 2.0, 6.0, 5.5]) == 3.0
+
+    @pytest.mark.parametrize(
+        ("load", "reference", "message"),
+        [
+            (np.linspace(0, 1, 5), None, "too few readings of tension and strain; found 5"),
+            (np.full(20, 7.0), None, "tension does not rise in the slow pull; found a peak of 7 N"),
+            (np.linspace(0, 90, 50), 100.0, "found a peak of 90 N; needed more than the 100 N"),
+            (
+                np.concatenate([np.zeros(20), [50.0, 100.0]]), None,
+                "the loading part of the slow pull has too few readings; found 3",
+            ),
+        ],
+    )  # fmt: skip
+    def test_what_is_no_pull_is_refused(self, load, reference, message):
+        with pytest.raises(DataError, match=message):
+            find_loading(load, load / 1e3, reference_tension=reference)
+
+    def test_series_that_do_not_pair_up_are_refused(self):
+        with pytest.raises(DataError, match="do not pair up"):
+            find_loading([1.0, 2.0], [1.0])
+
+
+class TestCubic:
+    def test_the_slope_is_the_inverse_of_a_difference(self):
+        load = np.array([500.0, 3000.0, 8000.0])
+        step = 1e-2
+        difference = 2 * step / (strain_of(load + step) - strain_of(load - step))
+        assert slope_of_cubic(load, CUBIC) == pytest.approx(difference, rel=1e-6)
+
+    def test_a_falling_strain_has_no_spring_constant(self):
+        assert np.isnan(slope_of_cubic([100.0], [0, -1e-5, 0, 0])).all()
+
+    def test_four_coefficients_are_needed(self):
+        with pytest.raises(DataError, match=r"a cubic has four coefficients; found \(3,\)"):
+            slope_of_cubic(1.0, [1.0, 2.0, 3.0])
+
+    @pytest.mark.parametrize(
+        ("coefficient", "expected"),
+        [
+            ([0, 1, 0, 0], (-1, 1)),
+            ([0, -1, 0, 0], (0, 0)),
+            ([0, 0, 0, 0], (0, 0)),
+            ([0, 1, 1, 0], (-0.5, 1)),
+            # slope 3 u^2 - 0.12: falls between -0.2 and 0.2
+            ([0, -0.12, 0, 1], (-1, -0.2)),
+        ],
+    )
+    def test_the_longest_rising_part(self, coefficient, expected):
+        assert positive_range(np.array(coefficient, dtype=float)) == pytest.approx(expected)
+
+    def test_the_printed_form_of_a_curve_that_it_can_hold_is_exact(self):
+        # strain with slope 1/K_0 for constant K_0
+        fit, deviation = printed_form(
+            np.array([0.1, 0.05, 0, 0]), low=0, high=1000, centre=500, half=500
+        )
+        assert fit == pytest.approx([1e4, 0, 0, 0], abs=1e-7) and deviation < 1e-12
+
+
+class TestPull:
+    def test_a_cubic_comes_back(self):
+        pull = fit_pull(*rising())
+        assert pull.strain_coefficient == pytest.approx(CUBIC, rel=1e-5, abs=1e-7)
+        # interpolation on a grid of 2 N leaves a millionth
+        load = np.array([1000.0, 5000.0, 8500.0])
+        constant, uncertainty = quasi_static_spring_constant(pull, load)
+        assert constant == pytest.approx(slope_of_cubic(load, CUBIC), rel=1e-4)
+        assert (uncertainty < 1e-3 * constant).all()
+
+    def test_the_stated_uncertainty_is_the_scatter_of_pulls_with_noise(self):
+        load = np.array([1000.0, 4000.0, 8000.0])
+        found = [
+            quasi_static_spring_constant(fit_pull(*rising(seed=seed, noise=20.0)), load)
+            for seed in range(300)
+        ]
+        constants, stated = np.array(found).transpose(1, 0, 2)
+        truth = slope_of_cubic(load, CUBIC)
+        # the middle one: now and then noise looks like a misfit of the cubic
+        assert np.median(stated, axis=0) == pytest.approx(constants.std(axis=0), rel=0.25)
+        error = constants.std(axis=0) / np.sqrt(300)
+        # noise of tension stands on the abscissa: 20 N of 8,800 N shifts the slope by little
+        assert (np.abs(constants.mean(axis=0) - truth) < 4 * error + 1e-3 * truth).all()
+
+    def test_more_readings_do_not_shrink_the_uncertainty_of_a_curve_that_is_no_cubic(self):
+        def stated(n):
+            time, strain, load = rising(n)
+            wave = 2e-4 * np.sin(load / 8800.0 * 4 * np.pi)
+            pull = fit_pull(time, strain + wave, load)
+            return quasi_static_spring_constant(pull, 4400.0), pull
+
+        (few, u_few), _ = stated(500)
+        (many, u_many), pull = stated(50_000)
+        assert u_many == pytest.approx(u_few, rel=0.1)
+        assert pull.variance_inflation > 10
+        # root mean square of the slope of the wave, as a share of the slope of the cubic there
+        wave = 2e-4 / 8800.0 * 4 * np.pi / np.sqrt(2) * slope_of_cubic(4400.0, CUBIC)
+        assert u_many / many == pytest.approx(wave, rel=0.4)
+        assert few == pytest.approx(many, rel=0.01)
+
+    def test_a_hold_on_the_way_counts_once(self):
+        time, strain, load = rising(400)
+        at = 200
+        hold = np.full(20_000, load[at])
+        creep = np.full(20_000, strain[at])
+        stopped = fit_pull(
+            np.arange(20_400) * 0.1,
+            np.concatenate([strain[:at], creep, strain[at:]]),
+            np.concatenate([load[:at], hold, load[at:]]),
+        )
+        plain = fit_pull(time, strain, load)
+        assert stopped.coefficient == pytest.approx(plain.coefficient, abs=1e-5)
+        assert any(note.startswith("the strain rate is uneven") for note in stopped.notes)
+
+    def test_conditions_stay_with_the_number(self):
+        time, strain, load = rising()
+        pull = fit_pull(
+            time, strain, load, specimen="line 1", reference_tension=100.0, reference_length=1.8,
+            waiting_time=86_400.0, waiting="a day in water",
+        )  # fmt: skip
+        assert (pull.specimen, pull.reference_tension, pull.reference_length) == (
+            "line 1",
+            100,
+            1.8,
+        )
+        assert (pull.waiting_time, pull.waiting, pull.notes) == (86_400, "a day in water", ())
+        assert pull.strain_rate == pytest.approx(
+            (strain[-1] - strain[0]) / (time[-1] - time[0]), rel=1e-3
+        )
+        assert pull.strain_rate_slowest == pytest.approx(pull.strain_rate_fastest, rel=0.01)
+        assert pull.tension_rate == pytest.approx(8800 / 200, rel=0.03)
+        assert pull.tension_low == pytest.approx(100, abs=20) and pull.tension_high == load[-1]
+        assert load[pull.first_sample] <= 100 and pull.last_sample == 1999
+
+    def test_conditions_that_are_missing_are_said(self):
+        notes = fit_pull(*rising()).notes
+        assert len(notes) == 2
+        assert "length at which strain is zero" in notes[0] and "K_0 depends on it" in notes[1]
+
+    def test_the_covariance_of_the_printed_coefficients_gives_the_same_uncertainty(self):
+        pull = fit_pull(*rising(seed=1, noise=20.0))
+        load = 4000.0
+        row = np.array([0, 1, 2 * load, 3 * load**2])
+        slope = row @ pull.strain_coefficient
+        spread = np.sqrt(row @ pull.strain_coefficient_covariance @ row)
+        constant, uncertainty = quasi_static_spring_constant(pull, load)
+        assert 1 / slope == pytest.approx(float(constant))
+        assert spread / slope**2 == pytest.approx(float(uncertainty), rel=1e-4)
+
+    def test_the_polynomial_of_the_spring_constant_is_as_far_off_as_it_says(self):
+        pull = fit_pull(*rising())
+        load = np.linspace(pull.tension_low, pull.tension_high, 301)
+        polynomial = load[:, None] ** np.arange(4) @ pull.polynomial_coefficient
+        constant, _ = quasi_static_spring_constant(pull, load)
+        off = np.abs(polynomial / constant - 1).max()
+        assert off == pytest.approx(pull.polynomial_deviation, rel=0.05)
+
+    def test_a_turn_of_the_cubic_ends_the_range_of_use(self):
+        load = np.linspace(0, 1000, 500)
+        # slope of strain 1e-5 (1 - (T/800)^2): positive up to 800 N
+        strain = 1e-5 * (load - load**3 / 3 / 800**2)
+        pull = fit_pull(np.arange(500.0), strain, load)
+        assert pull.tension_high == pytest.approx(800, abs=1)
+        assert any("range of use ends" in note for note in pull.notes)
+        assert np.isnan(quasi_static_spring_constant(pull, 850.0)[0])
+
+    def test_strain_that_falls_is_refused(self):
+        time, strain, load = rising()
+        with pytest.raises(FitError, match="the load-strain cubic does not rise; found a positive"):
+            fit_pull(time, -strain, load)
+
+    def test_a_staircase_of_few_steps_is_refused(self):
+        load = np.repeat([0.0, 250, 500, 750, 1000], 50)
+        with pytest.raises(FitError, match="too few steps of tension for a cubic; found 5 of 100"):
+            fit_pull(np.arange(250.0), load / 1e4, load, reference_tension=0.0)
+
+    def test_cycles_in_place_of_a_pull_are_refused(self):
+        turn = np.linspace(0, 20 * np.pi, 2000)
+        load = 1000 - 400 * np.cos(turn) + turn
+        with pytest.raises(DataError, match="tension falls by 9.% of its rise on the way"):
+            fit_pull(turn, load / 1e4, load)
+
+    def test_a_fall_on_the_way_is_noted(self):
+        time, strain, load = rising()
+        load = load.copy()
+        load[1000:] -= 0.05 * 8800
+        assert any("tension falls by" in note for note in fit_pull(time, strain, load).notes)
+
+    def test_time_that_stands_still_is_refused(self):
+        _, strain, load = rising()
+        with pytest.raises(DataError, match="time does not rise over the slow pull; found 0 s"):
+            fit_pull(np.zeros(2000), strain, load)
+
+    def test_rows_without_a_time_are_passed_over(self):
+        time, strain, load = rising()
+        time[500:600] = np.nan
+        assert fit_pull(time, strain, load).n_samples == fit_pull(*rising()).n_samples - 100
+
+
+@given(scale=st.floats(0.01, 100), shift=st.floats(-0.2, 0.2))
+def test_units_of_tension_and_the_zero_of_strain_do_not_change_the_curve(scale, shift):
+    time, strain, load = rising(300)
+    one = quasi_static_spring_constant(fit_pull(time, strain, load), 4000.0)[0]
+    other = quasi_static_spring_constant(
+        fit_pull(time, strain + shift, load * scale), 4000.0 * scale
+    )
+    assert other[0] == pytest.approx(float(one) * scale, rel=1e-6)
+
+
+class TestQuasiStatic:
+    def test_strain_and_its_uncertainty(self):
+        pull = fit_pull(*rising(seed=3, noise=20.0))
+        strain, uncertainty = strain_at_tension(pull, [2000.0, 8000.0, 9000.0])
+        assert strain[:2] == pytest.approx(strain_of([2000.0, 8000.0]), abs=5e-4)
+        assert (uncertainty[:2] < 2e-4).all() and np.isnan(strain[2])
+
+    def test_a_level_at_the_very_end_of_the_pull_is_not_refused(self):
+        pull = fit_pull(*rising())
+        assert np.isfinite(strain_at_break_share(pull, 0.3, rated_break_strength=8820 / 0.3)[0])
+        assert np.isnan(strain_at_break_share(pull, 0.3, rated_break_strength=9000 / 0.3)[0])
+
+    def test_a_break_strength_must_be_positive(self):
+        with pytest.raises(DataError, match="rated break strength are not positive"):
+            strain_at_break_share(fit_pull(*rising()), 0.3, rated_break_strength=0.0)
+
+    def test_a_ratio_carries_both_uncertainties(self):
+        one, other = (fit_pull(*rising(seed=seed, noise=20.0)) for seed in (4, 5))
+        ratio, uncertainty = spring_constant_ratio(one, other, 4000.0)
+        parts = [quasi_static_spring_constant(pull, 4000.0) for pull in (one, other)]
+        relative = np.hypot(*(u / k for k, u in parts))
+        assert ratio == pytest.approx(1, abs=5 * float(relative))
+        assert uncertainty == pytest.approx(float(ratio * relative))
+
+
+def loops_at(mean_tension):
+    shape = np.shape(mean_tension)
+    fields = {name: np.ones(shape) for name in Loops.__dataclass_fields__ if name != "uncertainty"}
+    return Loops(**fields | {"mean_tension": np.array(mean_tension, dtype=float)}, uncertainty={})
+
+
+class TestRun:
+    def test_the_spring_constant_is_that_at_the_mean_tension_after_the_break_in(self):
+        pull = fit_pull(*rising())
+        constant, uncertainty, notes = quasi_static_of_run(
+            loops_at([[8000.0, 4000.0, 4010.0, 3990.0]]), [pull], break_in_cycles=1
+        )
+        assert constant == pytest.approx(slope_of_cubic([4000.0], CUBIC), rel=1e-4)
+        assert uncertainty.shape == (1,) and notes == ()
+
+    def test_what_is_missing_is_nan_and_said(self):
+        pull = fit_pull(*rising(), specimen="line 2")
+        constant, _, notes = quasi_static_of_run(
+            loops_at([[4000.0, 4000.0], [9500.0, 9500.0], [np.nan, np.nan]]), [None, pull, pull]
+        )
+        assert np.isnan(constant).all()
+        assert notes[0] == "specimen 1 has no slow pull"
+        assert "9500 N lies outside" in notes[1] and "line 2" in notes[1]
+        assert notes[2] == "specimen 3 has no mean tension"
+
+    def test_a_drift_of_the_mean_tension_that_matters_is_said(self):
+        pull = fit_pull(*rising())
+        _, _, notes = quasi_static_of_run(loops_at([[5000.0, 4500.0, 4000.0]]), [pull])
+        assert (
+            len(notes) == 1 and "drifts from 5000 to 4000 N" in notes[0] and "K_0 by -" in notes[0]
+        )
+
+    @pytest.mark.parametrize(("pulls", "break_in"), [([], 0), ([None], 2), ([None], -1)])
+    def test_what_does_not_fit_is_refused(self, pulls, break_in):
+        with pytest.raises(DataError, match="slow pulls do not fit the run"):
+            quasi_static_of_run(loops_at([[1.0, 1.0]]), pulls, break_in_cycles=break_in)
