@@ -18,9 +18,44 @@ from reduction.errors import DataError, FitError
 from reduction.outcomes.censored import Scatter, fit_censored, scatter_quantile
 from reduction.outcomes.life import SCATTER_OF, as_log_lives
 from reduction.outcomes.life_product import LifeDistribution, LoadLife
-from reduction.record import Bools, Floats
+from reduction.record import Bools, Floats, Integers
 
-__all__ = ["fit_load_life", "life_at_load"]
+__all__ = ["LEVEL_WIDTH", "fit_load_life", "life_at_load", "load_levels"]
+
+LEVEL_WIDTH = 0.01
+"""Peak loads no further apart, in rated break strengths, are one level: a machine does not
+reach the same load twice."""
+
+
+def load_levels(peak_load_ratio: ArrayLike) -> Integers:
+    """Level of each test, by peak loads that lie together.
+
+    Parameters
+    ----------
+    peak_load_ratio : array_like, shape (n,)
+        Peak load over the rated break strength. [1]
+
+    Returns
+    -------
+    level : ndarray of int, shape (n,)
+        From 0 for the lowest; a gap of more than `LEVEL_WIDTH` parts two levels. [1]
+
+    Raises
+    ------
+    DataError
+        If a load is not above zero.
+
+    Examples
+    --------
+    >>> print(load_levels([0.302, 0.45, 0.298, 0.451]))
+    [0 1 0 1]
+    """
+    load = as_positive("peak_load_ratio", peak_load_ratio)
+    order = np.argsort(load, kind="stable")
+    level = np.empty(load.size, dtype=np.intp)
+    # a thousandth more, so that 0.30 and 0.31 are together whatever their last bit
+    level[order] = np.cumsum(np.diff(load[order], prepend=load[order][:1]) > 1.001 * LEVEL_WIDTH)
+    return level
 
 
 def _log_likelihood_of_levels(
@@ -30,12 +65,13 @@ def _log_likelihood_of_levels(
 
     A level without failure takes a median as high as it likes, and adds nothing.
     """
-    levels, place = np.unique(load, return_inverse=True)
-    has_failure = np.bincount(place[~suspended], minlength=levels.size) > 0
+    place = load_levels(load)
+    n_levels = int(place.max()) + 1
+    has_failure = np.bincount(place[~suspended], minlength=n_levels) > 0
     kept = has_failure[place]
     design = np.equal.outer(place[kept], np.flatnonzero(has_failure)).astype(np.float64)
     fit = fit_censored(about[kept], design, suspended[kept], scatter=scatter)
-    return fit.log_likelihood, levels.size
+    return fit.log_likelihood, n_levels
 
 
 def fit_load_life(
@@ -95,11 +131,12 @@ def fit_load_life(
             "loads and cycles do not pair up", found=f"shapes {load.shape} and {logs.shape}",
             needed="equal lengths",
         )  # fmt: skip
-    failed_loads = np.unique(load[~suspended])
-    if failed_loads.size < 2:
+    level = load_levels(load)
+    n_failed_levels = np.unique(level[~suspended]).size
+    if n_failed_levels < 2:
         raise FitError(
             "the slope of life against load needs failures at two loads",
-            found=f"failures at {failed_loads.size}",
+            found=f"failures at {n_failed_levels}",
             needed="2 or more",
             hint="Use fit_life for one load.",
         )
@@ -113,9 +150,9 @@ def fit_load_life(
     # of (location, exponent, scale) to (median, exponent, scale)
     to_median = np.array([[1.0, 0.0, median], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     chi_square = p_value = float("nan")
-    n_levels = np.unique(load).size
+    n_levels = int(level.max()) + 1
     n_failed = int((~suspended).sum())
-    if n_levels > 2 and n_failed > failed_loads.size:
+    if n_levels > 2 and n_failed > n_failed_levels:
         best, n_levels = _log_likelihood_of_levels(about, load, suspended, scatter)
         chi_square = max(2 * (best - fit.log_likelihood), 0.0)
         p_value = float(stats.chi2.sf(chi_square, n_levels - 2))

@@ -179,6 +179,7 @@ def fit_life(
     fit = fit_censored(about, ones, suspended, scatter=scatter)
     location = float(fit.coefficient[0])
     gradient = np.array([1.0, quantile])
+    spread_of_life = float(np.sqrt(gradient @ fit.covariance @ gradient))
     low, high = profile_bounds(
         lambda held: (
             fit_censored(
@@ -187,7 +188,7 @@ def fit_life(
         ),
         estimate=location + quantile * fit.scale,
         maximum=fit.log_likelihood,
-        step=float(np.sqrt(gradient @ fit.covariance @ gradient)),
+        step=spread_of_life,
         drop=cutoff(confidence, n_failed=failed.size, n_coefficients=1),
     )
     with np.errstate(over="ignore"):
@@ -196,6 +197,7 @@ def fit_life(
     return replace(
         unknown,
         life=float(life),
+        life_standard_uncertainty=float(life) * spread_of_life,
         low=float(low),
         high=float(high),
         log_location=centre + location,

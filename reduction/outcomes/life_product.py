@@ -26,6 +26,8 @@ class LifeFit:
     ----------
     life, low, high : float
         Cycles by which ``failed_share`` of the specimens have failed, and its bounds. [1]
+    life_standard_uncertainty : float
+        To first order, from the observed information (type A). [1]
     log_location, log_scale : float
         Of ln cycles; for a Weibull law ln of the characteristic life and one over the shape.
     log_location_uncertainty, log_scale_uncertainty : float
@@ -42,6 +44,7 @@ class LifeFit:
     n_failed: int
     n_suspended: int
     life: float = nan
+    life_standard_uncertainty: float = nan
     low: float = nan
     high: float = nan
     log_location: float = nan

@@ -63,7 +63,7 @@ class Outcome:
         ``tensile_strength`` [N], ``strain_at_failure`` [1], ``cycles_to_failure`` or
         ``abrasion_cycles`` [1].
     value : float
-        In the unit of ``quantity``.
+        In the unit of ``quantity``; NaN where an invalid test gave none.
     test, specimen : str
         Names, where given.
     line, material, construction, condition : str
@@ -115,7 +115,8 @@ class Outcome:
     def use(self) -> Literal["value", "lower_bound", "excluded"]:
         """What the value says of the line: itself, that it is at least this, or nothing."""
         if not self.is_valid:
-            return "lower_bound" if self.place in IN_THE_TERMINATION else "excluded"
+            is_bound = self.place in IN_THE_TERMINATION and self.value > 0
+            return "lower_bound" if is_bound else "excluded"
         return "lower_bound" if self.is_suspended else "value"
 
 
