@@ -1,0 +1,219 @@
+import numpy as np
+import pytest
+
+from reduction.cycles.loops import close_loops
+from reduction.cycles.product import Cycles, Loops
+from reduction.errors import DataError
+from reduction.line.loops import identify_cycles, identify_run
+from reduction.line.model import apparent_spring_constant, storage_and_loss
+
+REST, SPRING, TIME, FREQUENCY = 1.2e4, 1.8e4, 2.0, 0.3
+LINE = {
+    "quasi_static_spring_constant": REST,
+    "dissipation_spring_constant": SPRING,
+    "relaxation_time": TIME,
+}
+NAMES = (
+    "storage_spring_constant", "loss_spring_constant", "dissipation_spring_constant",
+    "relaxation_time", "dashpot_coefficient",
+)  # fmt: skip
+
+
+def series(n_cycles, per_cycle=100, noise=0.0, seed=0, waveform="sinusoidal", amplitude=0.02):
+    """Tension and strain of the line in a steady motion, by its harmonics."""
+    turn = np.arange(n_cycles * per_cycle + 1) / per_cycle
+    orders = (1,) if waveform == "sinusoidal" else range(1, 40, 2)
+    strain, tension = 0.1, 2000.0
+    for order in orders:
+        size = amplitude * (1 if waveform == "sinusoidal" else 8 / np.pi**2 / order**2)
+        stored, lost = storage_and_loss(frequency=order * FREQUENCY, **LINE)
+        angle = 2 * np.pi * order * turn
+        strain = strain - size * np.cos(angle)
+        tension = tension - size * (stored * np.cos(angle) - lost * np.sin(angle))
+    rng = np.random.default_rng(seed)
+    tension = tension + noise * np.ptp(tension) * rng.normal(size=turn.size)
+    strain = strain + noise * np.ptp(strain) * rng.normal(size=turn.size)
+    return turn / FREQUENCY, tension, strain
+
+
+def loops_of(time, tension, strain, per_cycle=100, waveform="sinusoidal"):
+    n_cycles = (time.size - 1) // per_cycle
+    first = np.arange(n_cycles) * per_cycle
+    half, last = first + per_cycle // 2, first + per_cycle
+    cycles = Cycles(
+        first, last, np.column_stack([first, half]), np.column_stack([half, last]),
+        np.ones((n_cycles, 2)), np.zeros(time.size, np.int32), np.zeros(time.size, np.int8),
+        np.zeros(time.size, bool), 0.01,
+    )  # fmt: skip
+    return close_loops(
+        time, np.atleast_2d(tension), np.atleast_2d(strain), cycles, waveform=waveform
+    )
+
+
+K0 = {"quasi_static_spring_constant": [REST], "quasi_static_standard_uncertainty": [200.0]}
+
+
+@pytest.mark.parametrize("reading", ["amplitude", "fundamental"])
+def test_a_line_comes_back_from_its_loops(reading):
+    line = identify_cycles(loops_of(*series(6)), **K0, reading=reading)
+    assert line.relaxation_time.shape == (1, 6) and line.notes == ()
+    assert line.dissipation_spring_constant == pytest.approx(np.full((1, 6), SPRING), rel=1e-3)
+    assert line.relaxation_time == pytest.approx(np.full((1, 6), TIME), rel=1e-3)
+
+
+def test_triangular_cycles_need_the_fundamental_and_the_note_says_so():
+    loops = loops_of(*series(6, waveform="triangular"), waveform="triangular")
+    by_fundamental = identify_run(loops, **K0, reading="fundamental")
+    assert by_fundamental.relaxation_time == pytest.approx([TIME], rel=2e-3)
+    assert by_fundamental.notes == ()
+    by_amplitude = identify_run(loops, **K0)
+    # E'' by area and amplitudes is about (8/pi^2)^2 of the true one
+    assert by_amplitude.relaxation_time[0] > 1.3 * TIME
+    (note,) = by_amplitude.notes
+    assert note.startswith("the loops are no ellipses: E'' by area and amplitudes is 0.6")
+
+
+def test_the_random_part_is_the_scatter_of_the_cycles():
+    loops = loops_of(*series(800, noise=0.002, seed=1))
+    line = identify_cycles(loops, **K0, reading="fundamental")
+    # the cycles here begin at a sample each; a log's do not, and the stated period knows
+    period = float(np.mean(loops.uncertainty["frequency"] / loops.frequency))
+    for name, feels in zip(NAMES, (0, 0, 0, 1, 1), strict=True):
+        values = getattr(line, name)
+        stated = np.sqrt(np.mean(line.random_uncertainty[name] ** 2))
+        scatter = np.hypot(values.std(ddof=1), feels * period * values.mean())
+        assert stated == pytest.approx(scatter, rel=0.15), name
+
+
+def test_the_random_part_by_amplitudes_covers_the_scatter_of_the_cycles():
+    # amplitudes are stated with a turn missed at constant rate, which a sine does not have
+    loops = loops_of(*series(800, noise=0.002, seed=1))
+    line = identify_cycles(loops, **K0)
+    for name in NAMES:
+        stated = np.sqrt(np.mean(line.random_uncertainty[name] ** 2))
+        scatter = getattr(line, name).std(ddof=1)
+        assert scatter < 1.2 * stated and stated < 3.5 * scatter, name
+
+
+@pytest.mark.parametrize("reading", ["amplitude", "fundamental"])
+def test_the_random_part_of_a_run_is_the_scatter_of_runs(reading):
+    runs = [
+        identify_run(loops_of(*series(20, noise=0.002, seed=seed)), **K0, reading=reading)
+        for seed in range(200)
+    ]
+    for name in NAMES:
+        values = np.array([getattr(line, name)[0] for line in runs])
+        stated = np.sqrt(np.mean([line.random_uncertainty[name][0] ** 2 for line in runs]))
+        assert stated == pytest.approx(values.std(ddof=1), rel=0.25), name
+
+
+def test_more_cycles_make_the_random_part_smaller_and_the_shared_part_not():
+    short, long = (
+        identify_run(loops_of(*series(n, noise=0.002, seed=2)), **K0) for n in (10, 1000)
+    )
+    name = "dissipation_spring_constant"
+    assert long.random_uncertainty[name][0] < 0.25 * short.random_uncertainty[name][0]
+    assert long.shared_uncertainty[name] == pytest.approx(short.shared_uncertainty[name], rel=0.02)
+    # d ln K_1/d ln K_0 by a difference of two inversions
+    other = identify_run(
+        loops_of(*series(1000, noise=0.002, seed=2)),
+        quasi_static_spring_constant=[REST + 1.0],
+        quasi_static_standard_uncertainty=[200.0],
+    )
+    slope = other.dissipation_spring_constant - long.dissipation_spring_constant
+    assert long.shared_uncertainty[name] == pytest.approx(np.abs(slope) * 200.0, rel=1e-3)
+    assert long.uncertainty[name] == pytest.approx(
+        np.hypot(long.random_uncertainty[name], long.shared_uncertainty[name])
+    )
+
+
+def test_break_in_cycles_are_left_out_of_a_run():
+    time, tension, strain = series(10)
+    tension = tension.copy()
+    tension[:300] *= 1.2
+    loops = loops_of(time, tension, strain)
+    assert identify_run(loops, **K0, break_in_cycles=4).relaxation_time == pytest.approx(
+        [TIME], rel=1e-3
+    )
+
+
+def test_a_run_of_two_cycles_has_no_random_part():
+    line = identify_run(loops_of(*series(2)), **K0)
+    assert np.isnan(line.random_uncertainty["relaxation_time"][0])
+    assert line.shared_uncertainty["relaxation_time"][0] > 0
+
+
+def test_a_missing_cycle_does_not_spoil_the_run():
+    time, tension, strain = series(6)
+    tension = tension.copy()
+    tension[210:290] = np.nan
+    loops = loops_of(time, tension, strain)
+    assert identify_cycles(loops, **K0).reason.tolist() == [[0, 0, 3, 0, 0, 0]]
+    assert identify_run(loops, **K0).relaxation_time == pytest.approx([TIME], rel=2e-3)
+
+
+def test_a_specimen_without_a_pull_has_no_parameters_and_the_other_has():
+    time, tension, strain = series(5)
+    loops = loops_of(time, [tension, tension], [strain, strain])
+    rest = {
+        "quasi_static_spring_constant": [REST, np.nan],
+        "quasi_static_standard_uncertainty": [200.0, np.nan],
+    }
+    line = identify_cycles(loops, **rest)
+    assert line.reason.tolist() == [[0] * 5, [1] * 5]
+    assert "5 of 10 are refused: the quasi-static spring constant" in line.notes[0]
+    assert identify_run(loops, **rest).reason.tolist() == [0, 1]
+
+
+def test_a_spring_constant_of_each_cycle_is_taken_too():
+    loops = loops_of(*series(3))
+    line = identify_cycles(
+        loops,
+        quasi_static_spring_constant=np.full((1, 3), REST),
+        quasi_static_standard_uncertainty=np.full((1, 3), 1.0),
+    )
+    assert line.relaxation_time == pytest.approx(np.full((1, 3), TIME), rel=1e-3)
+
+
+def test_a_slack_line_is_noted():
+    time, tension, strain = series(4)
+    loops = loops_of(time, np.maximum(tension - 1600, 0), strain)
+    notes = identify_cycles(loops, **K0).notes
+    assert any("goes slack in 4 of 4 loops" in note for note in notes)
+
+
+def test_an_uncertain_rest_spring_is_noted():
+    rest = REST * 2.2
+    stored, _ = storage_and_loss(frequency=FREQUENCY, **LINE)
+    assert rest < stored < apparent_spring_constant(frequency=FREQUENCY, **LINE)
+    line = identify_cycles(
+        loops_of(*series(4)),
+        quasi_static_spring_constant=[rest],
+        quasi_static_standard_uncertainty=[0.05 * rest],
+    )
+    assert any("uncertainty of K_0 is more than 30% of K_1" in note for note in line.notes)
+
+
+@pytest.mark.parametrize("function", [identify_cycles, identify_run])
+def test_a_spring_constant_that_does_not_fit_is_refused(function):
+    with pytest.raises(DataError, match="does not fit the loops"):
+        function(
+            loops_of(*series(3)),
+            quasi_static_spring_constant=[1.0, 2.0],
+            quasi_static_standard_uncertainty=[1.0, 2.0],
+        )
+
+
+def test_a_break_in_of_all_cycles_is_refused():
+    with pytest.raises(DataError, match="the break-in leaves no cycle; found 3 of 3 cycles"):
+        identify_run(loops_of(*series(3)), **K0, break_in_cycles=3)
+
+
+def test_loops_of_nothing_give_reasons_only():
+    shape = (1, 3)
+    fields = {
+        name: np.full(shape, np.nan) for name in Loops.__dataclass_fields__ if name != "uncertainty"
+    }
+    loops = Loops(**fields, uncertainty={name: np.full(shape, np.nan) for name in fields})
+    assert identify_cycles(loops, **K0).reason.tolist() == [[3, 3, 3]]
+    assert identify_run(loops, **K0).reason.tolist() == [3]

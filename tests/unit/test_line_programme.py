@@ -1,0 +1,276 @@
+import numpy as np
+import pytest
+
+from reduction.cycles.product import Loops
+from reduction.errors import DataError, FitError, SettingsError
+from reduction.holds.product import HoldResult
+from reduction.line.failure import cycles_to_failure
+from reduction.line.programme import dynamic_stiffness, summarise_bedding_in
+from reduction.line.static import creep_of_hold, static_stiffness
+from reduction.line.strength import mean_of_rows, one_a_specimen
+
+
+def loops_with(shape, *, u=0.0, **given):
+    fields = {name: np.ones(shape) for name in Loops.__dataclass_fields__ if name != "uncertainty"}
+    fields |= {name: np.broadcast_to(values, shape).astype(float) for name, values in given.items()}
+    return Loops(**fields, uncertainty={name: np.full(shape, u) for name in fields})
+
+
+class TestBeddingIn:
+    def test_permanent_strain_is_at_equal_tension(self):
+        # the foot moves by 3 %, of which 50 N over 5,000 N is a valley that was not reached
+        loops = loops_with(
+            (1, 3), mean_strain=[0.10, 0.12, 0.13], strain_amplitude=0.02,
+            valley_tension=[100.0, 100.0, 150.0],
+            apparent_spring_constant=[3000.0, 4500.0, 5000.0],
+        )  # fmt: skip
+        bedding = summarise_bedding_in(loops, rated_break_strength=[2000.0])
+        assert bedding.permanent_strain == pytest.approx([0.03 - 50 / 5000])
+        assert bedding.stiffening == pytest.approx([5 / 3])
+        assert bedding.first_stiffness_over_strength == pytest.approx([1.5])
+        assert bedding.last_stiffness_over_strength == pytest.approx([2.5])
+        assert bedding.n_cycles == 3
+
+    def test_uncertainties_add_up(self):
+        loops = loops_with((2, 5), u=0.001, apparent_spring_constant=2.0)
+        bedding = summarise_bedding_in(loops, rated_break_strength=np.nan)
+        # two feet, each of mean and amplitude, and two valleys over 2 N
+        expected = 0.001 * np.sqrt(2 * 2 + 2 / 4)
+        assert bedding.permanent_strain_standard_uncertainty == pytest.approx([expected] * 2)
+        assert np.isnan(bedding.first_stiffness_over_strength).all()
+
+    def test_one_cycle_is_refused(self):
+        with pytest.raises(DataError, match="bedding-in needs two cycles; found 1"):
+            summarise_bedding_in(loops_with((1, 1)), rated_break_strength=1.0)
+
+
+class TestDynamicStiffness:
+    def test_the_last_cycles_of_each_level_count(self):
+        stiffness = [900, 100, 101, 99, 100, 800, 200, 202, 198, 200.0]
+        loops = loops_with(
+            (1, 10), apparent_spring_constant=stiffness, mean_tension=[20.0] * 5 + [30.0] * 5
+        )
+        found = dynamic_stiffness(
+            loops, last_cycles=4, rated_break_strength=[10.0], level=[7] * 5 + [3] * 5
+        )
+        assert found.level.tolist() == [7, 3]  # in the order of the test
+        assert found.dynamic_stiffness == pytest.approx(np.array([[100.0, 200.0]]))
+        assert found.dynamic_stiffness_over_strength == pytest.approx(np.array([[10.0, 20.0]]))
+        assert found.mean_tension_over_strength == pytest.approx(np.array([[2.0, 3.0]]))
+        # scatter of (100, 101, 99, 100) is root 2/3; neighbours are not alike
+        assert found.dynamic_stiffness_standard_uncertainty[0, 0] == pytest.approx(
+            np.sqrt(2 / 3) / 2
+        )
+        assert found.notes == () and found.n_cycles.tolist() == [[4, 4]]
+
+    def test_the_drift_is_the_slope_of_a_regression(self):
+        rng = np.random.default_rng(0)
+        series = 1000 + 2.0 * np.arange(200) + rng.normal(0, 5, (300, 200))
+        found = dynamic_stiffness(
+            loops_with((300, 200), apparent_spring_constant=series),
+            last_cycles=100,
+            rated_break_strength=1.0,
+        )
+        drift = found.drift_per_cycle[:, 0]
+        assert drift.mean() == pytest.approx(2.0, abs=0.01)
+        stated = np.sqrt(np.mean(found.drift_per_cycle_standard_uncertainty**2))
+        assert stated == pytest.approx(drift.std(ddof=1), rel=0.2)
+
+    def test_too_few_cycles_are_noted_and_have_no_error(self):
+        found = dynamic_stiffness(loops_with((1, 2)), last_cycles=100, rated_break_strength=1.0)
+        assert found.notes == ("level 0 has 2 of the 100 cycles asked for",)
+        assert found.dynamic_stiffness == 1
+        assert np.isnan(found.dynamic_stiffness_standard_uncertainty)
+
+    def test_a_missing_cycle_is_passed_over(self):
+        loops = loops_with((1, 4), apparent_spring_constant=[1.0, np.nan, 3.0, 5.0])
+        found = dynamic_stiffness(loops, last_cycles=4, rated_break_strength=1.0)
+        assert (found.dynamic_stiffness, found.n_cycles) == (3, 3)
+        # over cycles 1, 3, 4 the regression of 1, 3, 5 has the slope 18/14
+        assert found.drift_per_cycle == pytest.approx(np.array([[18 / 14]]))
+
+    def test_nothing_known_is_nan(self):
+        loops = loops_with((1, 4), apparent_spring_constant=np.nan, mean_tension=np.nan)
+        found = dynamic_stiffness(loops, last_cycles=4, rated_break_strength=1.0)
+        assert np.isnan(found.dynamic_stiffness) and np.isnan(found.mean_tension)
+
+    def test_what_does_not_fit_is_refused(self):
+        with pytest.raises(SettingsError, match="no cycle counts towards the stiffness; found 0"):
+            dynamic_stiffness(loops_with((1, 2)), last_cycles=0, rated_break_strength=1.0)
+        with pytest.raises(DataError, match="levels do not fit the cycles"):
+            dynamic_stiffness(
+                loops_with((1, 2)), last_cycles=1, rated_break_strength=1.0, level=[1]
+            )
+
+
+class TestFailure:
+    def test_a_peak_that_falls_and_stays_down_is_a_failure(self):
+        loops = loops_with((1, 6), peak_tension=[90.0, 110, 100, 100, 8, 5], valley_tension=3.0)
+        lasted = cycles_to_failure(loops, rated_break_strength=200.0)
+        assert (lasted.cycles, lasted.failed) == (4, True)
+        assert lasted.peak_tension == 100 and lasted.peak_tension_over_strength == 0.5
+        assert lasted.how[0].startswith("the peak falls below 50% of its median")
+
+    def test_one_low_peak_among_sound_ones_is_no_failure(self):
+        loops = loops_with((1, 6), peak_tension=[90.0, 110, 8, 100, 100, 100])
+        lasted = cycles_to_failure(loops, rated_break_strength=200.0)
+        assert (lasted.cycles, lasted.failed) == (6, False)
+        assert "a run-out, or a failure after the last one" in lasted.how[0]
+
+    def test_the_word_of_the_laboratory_decides(self):
+        loops = loops_with((2, 5), peak_tension=100.0)
+        lasted = cycles_to_failure(
+            loops, rated_break_strength=[200.0, np.nan], failed=[True, False],
+            cycle_number=[10, 20, 30, 40, 50],
+        )  # fmt: skip
+        assert lasted.cycles.tolist() == [50, 50] and lasted.failed.tolist() == [True, False]
+        assert lasted.how == ("as stated, after the last whole cycle", "as stated")
+        assert np.isnan(lasted.peak_tension_over_strength[1])
+
+    def test_cycles_of_a_machine_that_skips_keep_their_numbers(self):
+        loops = loops_with((1, 4), peak_tension=[100.0, 100, 100, 1])
+        numbers = [1, 1000, 2000, 3000]
+        lasted = cycles_to_failure(loops, rated_break_strength=1.0, cycle_number=numbers)
+        assert lasted.cycles == 2000
+
+    def test_a_specimen_without_any_reading_is_nan(self):
+        loops = loops_with((1, 3), peak_tension=np.nan, valley_tension=np.nan)
+        assert np.isnan(cycles_to_failure(loops, rated_break_strength=1.0).peak_tension)
+
+    @pytest.mark.parametrize(
+        "changed", [{"failed": [True, False]}, {"cycle_number": [1]}], ids=["words", "numbers"]
+    )
+    def test_what_does_not_fit_is_refused(self, changed):
+        with pytest.raises(DataError, match="the arrays do not fit the loops; found 3 cycles"):
+            cycles_to_failure(loops_with((1, 3)), rated_break_strength=1.0, **changed)
+
+    def test_a_share_of_the_peak_is_a_share(self):
+        with pytest.raises(
+            SettingsError, match="the share of the peak that is a failure; found 50"
+        ):
+            cycles_to_failure(loops_with((1, 3)), rated_break_strength=1.0, failure_share=50)
+
+
+class TestStrength:
+    @pytest.mark.parametrize("bad", [[1.0, 2.0, 3.0], [0.0, 1.0], [-1.0, 1.0]])
+    def test_a_strength_that_cannot_be_is_refused(self, bad):
+        with pytest.raises(DataError, match="the rated break strength does not fit the specimens"):
+            one_a_specimen(bad, 2)
+
+    def test_one_for_all_or_one_each(self):
+        assert one_a_specimen(5.0, 2).tolist() == one_a_specimen([5.0, 5.0], 2).tolist()
+        assert mean_of_rows(np.array([np.nan, 4.0])) == 4
+
+
+def upper_hold(seed=None, n=3600):
+    """One hour at 300 N after 100 N, one reading a second; K = 4000 - 100 log10(t)."""
+    t = np.arange(1.0, n + 1)
+    strain = 0.05 + 200 / (4000 - 100 * np.log10(t))
+    if seed is not None:
+        strain = strain + np.random.default_rng(seed).normal(0, 1e-4, n)
+    return t, np.full(n, 300.0), strain
+
+
+LOW = {"low_tension": 100.0, "low_strain": 0.05, "reference_time": 600.0}
+
+
+class TestStatic:
+    def test_a_line_in_the_logarithm_of_time_comes_back(self):
+        found = static_stiffness(*upper_hold(), **LOW, rated_break_strength=1000.0)
+        expected = 4000 - 100 * np.log10(600)
+        assert found.stiffness_at_reference == pytest.approx(expected, rel=1e-5)
+        assert found.slope_per_decade == pytest.approx(-100, rel=1e-3)
+        assert found.stiffness_over_strength == pytest.approx(expected / 1000, rel=1e-5)
+        assert found.slope_per_decade_over_strength == pytest.approx(-0.1, rel=1e-3)
+        assert found.notes == ()
+
+    def test_stated_uncertainties_are_the_scatter_of_holds_with_noise(self):
+        found = [static_stiffness(*upper_hold(seed), **LOW) for seed in range(200)]
+        for value, stated in (
+            ("slope_per_decade", "slope_per_decade_standard_uncertainty"),
+            ("stiffness_at_reference", "stiffness_at_reference_standard_uncertainty"),
+        ):
+            scatter = np.std([getattr(one, value) for one in found], ddof=1)
+            mean = np.sqrt(np.mean([getattr(one, stated) ** 2 for one in found]))
+            # short blocks at the start have few readings, which the weights know in part
+            assert 0.7 * scatter < mean < 2 * scatter
+        inside = np.mean([one.slope_low < -100 < one.slope_high for one in found])
+        assert 0.9 <= inside <= 1
+
+    def test_a_few_values_at_stated_times_do_too(self):
+        t, load, strain = upper_hold()
+        at = np.array([0, 9, 59, 179, 599, 3599])
+        tension = np.append(load[at], np.nan)
+        found = static_stiffness(
+            np.append(t[at], 7200.0), tension, np.append(strain[at], np.nan), **LOW
+        )
+        assert found.slope_per_decade == pytest.approx(-100, rel=1e-6)
+        assert found.elapsed.size == 6
+
+    def test_the_first_three_ramp_times_are_left_out(self):
+        found = static_stiffness(*upper_hold(), **LOW, ramp_duration=10.0)
+        assert found.elapsed[0] >= 30
+
+    def test_a_reference_time_beyond_the_hold_is_noted(self):
+        found = static_stiffness(*upper_hold(), **{**LOW, "reference_time": 1e5})
+        assert found.notes[0].startswith("the stiffness at 100000 s is read off the line beyond")
+        assert found.stiffness_at_reference == pytest.approx(3500, rel=1e-3)
+
+    def test_a_short_hold_is_refused(self):
+        t, load, strain = upper_hold()
+        with pytest.raises(FitError, match="found 3 readings after 3 ramp times"):
+            static_stiffness(t[:3], load[:3], strain[:3], **LOW)
+        with pytest.raises(
+            FitError, match=r"points over 0\.\d\d decades; needed 4 points over 0.5"
+        ):
+            static_stiffness(t[999:2000], load[999:2000], strain[999:2000], **LOW)
+
+    def test_an_upper_hold_that_is_not_above_is_refused(self):
+        with pytest.raises(
+            DataError, match="the upper hold is not above the lower one; found least"
+        ):
+            static_stiffness(*upper_hold(), **{**LOW, "low_tension": 400.0})
+
+    @pytest.mark.parametrize(
+        ("changed", "message"),
+        [
+            ({"confidence": 95.0}, "a confidence is a share; found 95"),
+            ({"reference_time": 0.0}, "the reference time is not positive; found 0 s"),
+        ],
+    )
+    def test_settings_that_cannot_be_are_refused(self, changed, message):
+        with pytest.raises(SettingsError, match=message):
+            static_stiffness(*upper_hold(), **{**LOW, **changed})
+
+
+def hold(kind="creep", rate=0.002, refusals=()):
+    nothing, nan = np.empty(0), np.nan
+    return HoldResult(
+        "line 1", kind, 0.0, 3600.0, 0.1, 3010.0, 2990.0, nan, nan, rate, 1e-5, nothing, nothing,
+        nothing, nothing, nothing, nothing, nothing, nan, nan, refusals=refusals,
+    )  # fmt: skip
+
+
+class TestCreep:
+    def test_creep_stands_with_its_tension_as_a_share(self):
+        creep = creep_of_hold(hold(), rated_break_strength=10_000.0)
+        assert (creep.creep_per_decade, creep.tension, creep.tension_over_strength) == (
+            0.002,
+            3000,
+            0.3,
+        )
+        assert creep.creep_compliance_per_decade == pytest.approx(0.002 / 0.3)
+        assert creep.reason == ""
+
+    def test_a_refused_hold_keeps_its_reason(self):
+        creep = creep_of_hold(hold(rate=np.nan, refusals=("too short", "no ramp")))
+        assert np.isnan(creep.creep_per_decade) and creep.reason == "too short; no ramp"
+        assert np.isnan(creep.tension_over_strength)
+
+    def test_relaxation_is_no_creep(self):
+        with pytest.raises(DataError, match="a hold of line 1 is no creep; found relaxation"):
+            creep_of_hold(hold("relaxation"))
+
+    def test_a_break_strength_must_be_positive(self):
+        with pytest.raises(DataError, match="rated break strength are not positive"):
+            creep_of_hold(hold(), rated_break_strength=-1.0)
