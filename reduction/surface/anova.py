@@ -30,6 +30,7 @@ from scipy.special import fdtrc, fdtri
 
 from reduction.errors import DataError, SettingsError
 from reduction.record import Floats, Integers
+from reduction.surface.fit import times
 from reduction.surface.product import Anova, LackOfFit, LeastSquares
 
 __all__ = ["anova_table", "lack_of_fit", "replicate_cells", "statistics_from_r2"]
@@ -110,14 +111,18 @@ def statistics_from_r2(
     runs = np.asarray(n_runs, dtype=np.float64)
     above, below = n_terms - 1.0, _positive_or_nan(runs - n_terms)
     printed_below = _positive_or_nan(runs - n_terms - 1)
+    # critical values are dear, and numbers of runs few
+    different, which = np.unique(runs, return_inverse=True)
+    right = fdtri(above, _positive_or_nan(different - n_terms), 1 - level)
+    transposed = fdtri(_positive_or_nan(different - n_terms - 1), n_terms, 1 - level)
     odds = np.divide(share, 1 - share, out=np.full(share.shape, np.inf), where=share < 1)
     f = odds * below / above
     return OverallF(
         f,
         fdtrc(above, below, f),
-        np.asarray(fdtri(above, below, 1 - level)),
+        np.asarray(right[which.reshape(runs.shape)]),
         odds * printed_below / n_terms,
-        np.asarray(fdtri(printed_below, n_terms, 1 - level)),
+        np.asarray(transposed[which.reshape(runs.shape)]),
     )
 
 
@@ -237,7 +242,8 @@ def lack_of_fit(
         basis = left[:, values > 1e-9 * values[0]] if values.size else left
         pure_df[rows] = int(used.sum()) - basis.shape[1]
         residual = fit.residual[rows][:, used]
-        pure[rows] = np.sum((residual - (residual @ basis) @ basis.T) ** 2, axis=1)
+        left_over = residual - times(times(residual, basis), basis.T)
+        pure[rows] = np.sum(left_over**2, axis=1)
     lack_df = fit.degrees_of_freedom - pure_df
     lack = fit.residual_sum_of_squares - pure
     scale = np.maximum(fit.total_sum_of_squares, fit.residual_sum_of_squares)

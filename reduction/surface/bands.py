@@ -28,7 +28,7 @@ from reduction.checks import as_finite
 from reduction.errors import DataError, SettingsError
 from reduction.record import Bools, Floats, freeze_arrays
 from reduction.surface.coding import coded_from_engineering, engineering_from_coded
-from reduction.surface.fit import variance_factor
+from reduction.surface.fit import times, variance_factor
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.terms import model_matrix
 from reduction.surface.transform import back_transform, retransformed_mean
@@ -179,7 +179,7 @@ def evaluate_surfaces(
     )
     factor = of_pattern[surfaces.pattern]
     greatest = _greatest_leverage(surfaces)[surfaces.pattern]
-    fitted = surfaces.coefficient @ terms.T
+    fitted = times(surfaces.coefficient, terms.T)
     sigma = np.where(surfaces.reason == 0, surfaces.sigma, np.nan)[:, None]
     freedom = np.min(surfaces.term_degrees_of_freedom, axis=1)
     between = np.zeros_like(sigma)

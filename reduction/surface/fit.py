@@ -21,7 +21,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import solve_triangular
 from scipy.special import betainc
 
 from reduction.errors import DataError, FitError
@@ -42,6 +41,12 @@ _ROUNDING = 1e-12
 """Residuals smaller than this share of the response are rounding of the arithmetic."""
 _FIXES_A_TERM = 1 - 1e-9
 """Leverage from which a run is fitted by itself alone."""
+_PIECE = 200_000
+"""Multiplications in one call of the linear algebra library: below it stays in one thread."""
+_CLOSED = 60
+"""Degrees of freedom up to which the closed form of p is the quicker one."""
+_KEEPS_DIGITS = 1e-2
+"""A p above this is 1 less a sum without loss of digits that count."""
 
 
 def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
@@ -78,12 +83,15 @@ def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
     >>> print(two_sided_p(2.570582, 5).round(4))
     0.05
     """
-    nu = np.asarray(degrees_of_freedom, dtype=np.float64)
-    nu = np.where(nu > 0, nu, np.nan)
-    square = np.asarray(t, dtype=np.float64) ** 2
-    # an infinite t is a coefficient without scatter: p is 0
-    share = np.where(np.isinf(square), 0.0, nu / (nu + square))
-    return np.asarray(betainc(nu / 2, 0.5, share), dtype=np.float64)
+    statistic, nu = np.broadcast_arrays(
+        np.asarray(t, dtype=np.float64), np.asarray(degrees_of_freedom, dtype=np.float64)
+    )
+    if nu.size and (nu == nu.flat[0]).all() and nu.flat[0] > 0:
+        return _two_sided(statistic.ravel(), float(nu.flat[0])).reshape(statistic.shape)
+    p_value = np.full(statistic.shape, np.nan)
+    for value in np.unique(nu[nu > 0]):
+        p_value[nu == value] = _two_sided(statistic[nu == value], float(value))
+    return p_value
 
 
 def find_confounded(matrix: ArrayLike, names: Sequence[str]) -> tuple[str, ...]:
@@ -192,7 +200,7 @@ def covariance_factor(matrix: ArrayLike, *, names: Sequence[str]) -> Floats:
             hint="Add the runs that are missing from the design.",
             n_confounded=len(found),
         )
-    inverse = solve_triangular(np.linalg.qr(columns)[1], np.eye(n_columns))
+    inverse = np.linalg.inv(np.linalg.qr(columns)[1])
     return np.asarray(inverse @ inverse.T)
 
 
@@ -230,9 +238,11 @@ def variance_factor(
     terms, factors = np.asarray(matrix, dtype=np.float64), np.asarray(factor, dtype=np.float64)
     if factors.ndim == 3:
         factors = factors[0] if len(factors) == 1 or pattern is None else factors[pattern]
-    weighed = terms @ factors
-    shape: Floats = np.sum(weighed * terms, axis=-1)
-    return shape
+    if factors.ndim == 2:
+        weighed = times(terms.reshape(-1, len(factors)), factors).reshape(terms.shape)
+    else:
+        weighed = terms @ factors
+    return np.asarray(np.sum(weighed * terms, axis=-1))
 
 
 def fit_least_squares(
@@ -301,15 +311,15 @@ def fit_least_squares(
             reason[rows] = 1 if part.shape[0] < n_columns else 2
             continue
         basis, upper = np.linalg.qr(part)
-        inverse = solve_triangular(upper, np.eye(n_columns))
+        inverse = np.linalg.inv(upper)
         known = values[rows][:, used]
-        projection = known @ basis
-        residual = known - projection @ basis.T
+        projection = times(known, basis)
+        residual = known - times(projection, basis.T)
         leverage = np.sum(basis**2, axis=1)
-        out["coefficient"][rows] = coefficient = projection @ inverse.T
+        out["coefficient"][rows] = coefficient = times(projection, inverse.T)
         out["covariance_factor"][index] = inverse @ inverse.T
         out["leverage"][index, used] = leverage
-        out["fitted"][rows] = coefficient @ columns.T
+        out["fitted"][rows] = times(coefficient, columns.T)
         out["residual"][rows] = _spread(residual, used)
         out["sequential_sum_of_squares"][rows] = projection**2
         remainder = np.sum(residual**2, axis=1)
@@ -326,6 +336,41 @@ def fit_least_squares(
     return LeastSquares(
         **out, is_used=is_used, pattern=pattern, degrees_of_freedom=degrees, reason=reason
     )
+
+
+def times(left: Floats, right: Floats) -> Floats:
+    """Matrix product of many rows with a small matrix, in pieces too small for threads.
+
+    Threads of the linear algebra library cost a hundred times what they bring to a product
+    this narrow, and how they part the sums would depend on the machine.
+    """
+    n_rows = max(_PIECE // max(right.size, 1), 1)
+    product = np.empty((left.shape[0], right.shape[1]))
+    for start in range(0, left.shape[0], n_rows):
+        piece = slice(start, start + n_rows)
+        np.matmul(left[piece], right, out=product[piece])
+    return product
+
+
+def _two_sided(t: Floats, nu: float) -> Floats:
+    """Two-sided p of one number of degrees of freedom, by the closed form where it keeps digits."""
+    exact = np.isfinite(t)
+    if nu.is_integer() and nu <= _CLOSED:
+        angle = np.arctan2(np.abs(t), np.sqrt(nu))
+        cosine, sine = np.cos(angle), np.sin(angle)
+        # Abramowitz and Stegun 26.7.3 (odd) and 26.7.4 (even)
+        odd = int(nu) % 2
+        term = cosine if odd else np.ones_like(cosine)
+        series = term.copy() if nu > 1 else np.zeros_like(cosine)
+        for step in range(1 + odd, int(nu) - 1, 2):
+            term = term * cosine**2 * (step / (step + 1))
+            series += term
+        p_value = 1 - (2 / np.pi * (angle + sine * series) if odd else sine * series)
+        exact &= p_value < _KEEPS_DIGITS
+    else:
+        p_value = np.where(np.isnan(t), np.nan, 0.0)
+    p_value[exact] = betainc(nu / 2, 0.5, nu / (nu + t[exact] ** 2))
+    return p_value
 
 
 def _checked(matrix: ArrayLike, responses: ArrayLike) -> tuple[Floats, Floats]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
 
 import numpy as np
 
@@ -80,15 +81,17 @@ def _repeats(
 ) -> list[str]:
     notes = []
     # a run typed in twice looks like this, and makes pure error too small
-    rows = [
-        (*level, *value) for level, value in zip(coded, np.nan_to_num(responses.T), strict=True)
+    twins = [
+        (first, second)
+        for first, second in combinations(np.flatnonzero(used).tolist(), 2)
+        if (coded[first] == coded[second]).all()
+        and np.array_equal(responses[:, first], responses[:, second], equal_nan=True)
     ]
-    twins = np.array([used[i] and rows.index(row) < i for i, row in enumerate(rows)])
-    if twins.any():
-        first = int(np.flatnonzero(twins)[0])
+    if twins:
+        first, second = twins[0]
         notes.append(
-            f"runs {run_names[rows.index(rows[first])]} and {run_names[first]} agree in every "
-            f"level and response ({int(twins.sum())} such in all): repeats, or one run twice?"
+            f"runs {run_names[first]} and {run_names[second]} agree in every level and "
+            f"response ({len(twins)} such pairs): repeats, or one run twice?"
         )
     spread = max(
         (np.ptp(coded[lack.cell == cell], axis=0).max() for cell in np.unique(lack.cell[used])),

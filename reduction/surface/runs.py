@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Literal
 
@@ -46,9 +47,8 @@ def coded_levels(
 
 def require_names(names: tuple[str, ...], count: int, what: str) -> None:
     """Refuse names that do not pair up, or a name that stands twice."""
-    seen: set[str] = set()
-    twice = sorted({name for name in names if name in seen or seen.add(name)})  # type: ignore[func-returns-value]
-    if twice:
+    if len(set(names)) < len(names):
+        twice = sorted(name for name, count_of in Counter(names).items() if count_of > 1)
         raise SettingsError(
             f"a {what} is named twice",
             found=", ".join(twice),

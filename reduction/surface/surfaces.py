@@ -34,6 +34,7 @@ from reduction.surface.diagnostics import diagnose
 from reduction.surface.fit import (
     covariance_factor,
     fit_least_squares,
+    times,
     two_sided_p,
     variance_factor,
 )
@@ -210,7 +211,7 @@ def fit_surfaces(
         p_value=two_sided_p(t, found.degrees_of_freedom),
         term_degrees_of_freedom=found.degrees_of_freedom,
         error_term=found.error_term,
-        coefficient_engineering=found.coefficient @ to_engineering.T,
+        coefficient_engineering=times(found.coefficient, to_engineering.T),
         coefficient_engineering_standard_uncertainty=engineering_deviation,
         covariance_factor=found.covariance_factor,
         engineering_matrix=to_engineering,

@@ -28,7 +28,7 @@ from scipy.special import boxcox, chdtri
 
 from reduction.errors import DataError, SettingsError
 from reduction.record import Bools, Floats
-from reduction.surface.fit import patterns_of
+from reduction.surface.fit import patterns_of, times
 
 __all__ = ["Transform", "back_transform", "box_cox_exponent", "retransformed_mean", "transform"]
 
@@ -258,7 +258,7 @@ def _likelihood(scaled: Floats, basis: Floats) -> Callable[[Floats], Floats]:
 
     def at(exponent: Floats) -> Floats:
         transformed = boxcox(scaled, exponent[:, None])
-        residual = transformed - (transformed @ basis) @ basis.T
+        residual = transformed - times(times(transformed, basis), basis.T)
         square = np.sum(residual**2, axis=1)
         return np.asarray(-scaled.shape[1] / 2 * np.log(np.maximum(square, np.finfo(float).tiny)))
 
