@@ -115,11 +115,13 @@ def _solve(
     rest = inputs["quasi_static_spring_constant"]
     turn_rate = 2 * np.pi * inputs["frequency"]
     stands = reason == 0
-    excess = np.where(stands, stored - rest, np.nan)
-    turn = excess / np.where(stands, lost, np.nan)
-    # A + E''^2/A, in the form that does not square small numbers
-    spring = excess + lost / turn
-    time = turn / turn_rate
+    with np.errstate(over="ignore"):
+        excess = np.where(stands, stored - rest, np.nan)
+        turn = excess / np.where(stands, lost, np.nan)
+        # A + E''^2/A, in the form that does not square small numbers
+        spring = excess + lost / turn
+        time = turn / turn_rate
+        dashpot = spring * time
     return {
         "quasi_static_spring_constant": rest,
         "storage_spring_constant": stored,
@@ -127,7 +129,7 @@ def _solve(
         "loss_angle": np.arctan2(lost, stored),
         "dissipation_spring_constant": spring,
         "relaxation_time": time,
-        "dashpot_coefficient": spring * time,
+        "dashpot_coefficient": dashpot,
         "angular_frequency": turn_rate,
         "angular_frequency_relaxation_time": turn,
         "conditioning": rest / excess,
@@ -156,18 +158,17 @@ def _finish(
     table = sensitivities(stored, lost, np.where(reason == 0, rest, np.nan))
     # an input that a parameter does not feel need not have its uncertainty stated;
     # K_0 is the last input of either table
-    with np.errstate(invalid="ignore"):
-        felt = np.where(table == 0, 0.0, table * relative)
-    crossed = 2 * np.asarray(correlation) * felt[:, 0] * felt[:, 2]
-    # differences of nearly equal terms may fall a rounding error below zero
-    random_part = np.sqrt(np.maximum((felt[:, :-1] ** 2).sum(axis=1) + crossed, 0))
-    shared_part = np.abs(felt[:, -1])
     random, shared, both = {}, {}, {}
-    for row, name in enumerate(OUTPUTS):
-        size = np.abs(values[name])
-        random[name] = np.asarray(size * random_part[row])
-        shared[name] = np.asarray(size * shared_part[row])
-        both[name] = np.hypot(random[name], shared[name])
+    with np.errstate(invalid="ignore", over="ignore"):
+        felt = np.where(table == 0, 0.0, table * relative)
+        crossed = 2 * np.asarray(correlation) * felt[:, 0] * felt[:, 2]
+        # differences of nearly equal terms may fall a rounding error below zero
+        random_part = np.sqrt(np.maximum((felt[:, :-1] ** 2).sum(axis=1) + crossed, 0))
+        for row, name in enumerate(OUTPUTS):
+            size = np.abs(values[name])
+            random[name] = np.asarray(size * random_part[row])
+            shared[name] = np.asarray(size * np.abs(felt[row, -1]))
+            both[name] = np.hypot(random[name], shared[name])
     return LineParameters(
         **{name: np.asarray(value) for name, value in values.items()},
         reason=reason,
@@ -257,9 +258,11 @@ def identify_by_amplitude(
     apparent, energy, amplitude, rate = (inputs[name] for name in AMPLITUDE_INPUTS[:4])
     bad = _bad_loop([apparent, energy, amplitude, rate])
     sound = np.where(bad == 0, apparent, np.nan)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         lost = energy * sound**2 / (np.pi * amplitude**2)
         bad = np.where((bad == 0) & ~(lost < apparent), np.int8(_TOO_WIDE), bad)
+        # an area so small that its share of K_ap is no number any more
+        bad = np.where((bad == 0) & ~(lost > 0), np.int8(_NOT_POSITIVE), bad)
         lost = np.where(bad == 0, lost, np.nan)
         stored = np.sqrt((sound - lost) * (sound + lost))
     return _finish(

@@ -47,6 +47,8 @@ _FALL_REFUSED = 0.25
 # a range of use below this share of the readings is no load-strain curve
 _SHORTEST_RANGE = 0.5
 _UNEVEN_RATE = 2.0
+# strain at the reference tension, as a share of that of the pull, that is no zero
+_OFF_ZERO = 0.05
 _NOISE_FACTOR = 6.0
 
 
@@ -78,7 +80,11 @@ def _block_means(time: Floats, strain: Floats, tension: Floats) -> _Blocks:
         return total
 
     scaled = 2 * (tension - low) / (high - low) - 1
-    powers = np.stack([mean(scaled**power) for power in range(_DEGREE_BEYOND + 1)], axis=1)
+    powers = np.empty((first.size, _DEGREE_BEYOND + 1))
+    current = np.ones_like(scaled)
+    for power in range(_DEGREE_BEYOND + 1):
+        powers[:, power] = mean(current)
+        current *= scaled
     return _Blocks(mean(time), mean(strain), mean(tension), powers)
 
 
@@ -138,7 +144,13 @@ def _rates(blocks: _Blocks) -> tuple[float, float, float, float]:
 
 
 def _remarks(
-    *, fall: float, rates: tuple[float, ...], reference_length: float, waiting: bool, cut: bool
+    *,
+    fall: float,
+    rates: tuple[float, ...],
+    reference_length: float,
+    reference_strain: float,
+    waiting: bool,
+    cut: bool,
 ) -> tuple[str, ...]:
     remarks = []
     if fall > _FALL_NOTED:
@@ -150,6 +162,11 @@ def _remarks(
         )
     if not np.isfinite(reference_length):
         remarks.append("the length at which strain is zero is not stated")
+    if not np.isnan(reference_strain):
+        remarks.append(
+            f"strain is {reference_strain:+.2%} at the reference tension, so the reference length "
+            "was read elsewhere, or the line has lengthened since"
+        )
     if not waiting:
         remarks.append("the time since the last dynamic test is not stated, and K_0 depends on it")
     if cut:
@@ -270,6 +287,12 @@ def fit_pull(
     )
     rates = _rates(blocks)
     length = np.nan if reference_length is None else reference_length
+    begins = np.nan
+    if reference_tension is not None:
+        at = (reference_tension - centre) / half
+        strain_there = float(at ** np.arange(4) @ coefficient)
+        if abs(strain_there) > _OFF_ZERO * float(blocks.strain[-1] - blocks.strain[0]):
+            begins = strain_there
     return SlowPull(
         specimen=specimen,
         tension_centre=centre,
@@ -300,6 +323,7 @@ def fit_pull(
             fall=fall,
             rates=rates,
             reference_length=length,
+            reference_strain=begins,
             waiting=waiting_time is not None or bool(waiting),
             cut=stop - start < 2,
         ),

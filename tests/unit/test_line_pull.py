@@ -204,6 +204,13 @@ class TestPull:
         assert pull.tension_low == pytest.approx(100, abs=20) and pull.tension_high == load[-1]
         assert load[pull.first_sample] <= 100 and pull.last_sample == 1999
 
+    def test_a_strain_that_is_not_zero_at_the_reference_tension_is_said(self):
+        time, strain, load = rising()
+        pull = fit_pull(time, strain + 0.05, load, reference_tension=50.0)
+        assert any(note.startswith("strain is +5.1") for note in pull.notes)
+        plain = fit_pull(time, strain, load, reference_tension=50.0)
+        assert not any(note.startswith("strain is") for note in plain.notes)
+
     def test_conditions_that_are_missing_are_said(self):
         notes = fit_pull(*rising()).notes
         assert len(notes) == 2
