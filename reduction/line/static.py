@@ -165,7 +165,7 @@ def static_stiffness(
     -----
     Samples become means over equal steps of the logarithm of time first, so that the last
     decade does not decide alone; their scatter about the line is widened by their likeness.
-    [1]_ measures the property by holds; how is not taken from a standard.
+    Levels and times are the laboratory's: [1]_ was read in its abstract only, and no standard.
 
     Examples
     --------
@@ -262,7 +262,7 @@ def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan"
 
     Notes
     -----
-    Creep is the polymer strain of [1]_.
+    The rate is that of [2]_, a straight line in the logarithm of time.
 
     Examples
     --------
