@@ -72,9 +72,10 @@ class ReducedTest:
     """One reduced test with all its specimens.
 
     ``record`` is None for a stepwise test, which has readings (`stepwise`) and no log.
-    ``strain`` has shape (n_specimens, n_samples) [1], its standard uncertainty one value a
-    specimen.  Parts that the kind of test
-    does not give are None (or empty); `notes` are the quality notes a reader must see,
+    ``strain`` [1] and ``nominal_stress`` [Pa] have shape (n_specimens, n_samples), their
+    standard uncertainties one value a specimen; they are NaN where a sample is not usable,
+    while ``record`` keeps what was logged.  Parts that the kind of test does not give are
+    None (or empty); `notes` are the quality notes a reader must see,
     `steps` the history lines, `settings_json` every setting that was in force.
     """
 
@@ -90,6 +91,8 @@ class ReducedTest:
     phase: Integers | None = None
     strain: Floats | None = None
     strain_standard_uncertainty: Floats | None = None
+    nominal_stress: Floats | None = None
+    nominal_stress_standard_uncertainty: Floats | None = None
     strain_models: tuple[StrainModel, ...] = ()
     cycles: Cycles | None = None
     loops: Loops | None = None

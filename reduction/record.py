@@ -192,7 +192,10 @@ class SpliceMarks:
 class Record:
     """One test in SI, every row of the log kept.
 
-    A sample that is missing is NaN and carries a flag.
+    A sample that is missing is NaN and carries a flag.  Position and tension are as they
+    were logged: a sample that is flagged (a spike, a stuck or saturated channel) keeps its
+    number here, and `reduction.pipeline.locate` hands on a copy without those that no
+    number may rest on.
 
     Parameters
     ----------
@@ -204,9 +207,9 @@ class Record:
         Elapsed time as logged. [s]
     crosshead_position : ndarray, shape (n_samples,)
         Thimble-to-thimble length, or a displacement where
-        ``position_is_length`` is false. [m]
+        ``position_is_length`` is false; as logged, flagged samples too. [m]
     tension : ndarray, shape (n_specimens, n_samples)
-        Sign and zero applied. [N]
+        As logged, flagged samples too; sign and zero applied. [N]
     quality_flag : ndarray of uint16, shape (n_specimens, n_samples)
         Masks of `Quality` for tension.
     crosshead_position_quality_flag : ndarray of uint16, shape (n_samples,)

@@ -9,52 +9,44 @@ from reduction.archive.values import Values, texts
 from reduction.product import ReducedTest
 from reduction.record import Record
 
-__all__ = ["kept_samples", "row_account", "sample_values"]
-
-
-def kept_samples(record: Record) -> slice:
-    """Say which samples of a record go into its archive: all of them.
-
-    The one place where a selection for very long logs belongs; `row_account` counts
-    before it, so that no row goes uncounted.
-    """
-    return slice(0, record.n_samples)
+__all__ = ["row_account", "sample_values"]
 
 
 def sample_values(test: ReducedTest, record: Record) -> Values:
-    """Return everything that stands along ``sample``, with the declared uncertainties."""
-    kept = kept_samples(record)
+    """Return everything that stands along ``sample``, with the declared uncertainties.
+
+    Position and tension stand there as they were logged, in SI, with sign and zero
+    applied: a flagged sample keeps its number.  Strain and nominal stress are made from
+    usable samples and are NaN elsewhere.
+    """
     position = "crosshead_position" if record.position_is_length else "crosshead_displacement"
     values: Values = {
-        "time": record.time[kept],
-        position: record.crosshead_position[kept],
+        "time": record.time,
+        position: record.crosshead_position,
         f"{position}_standard_uncertainty": np.array(record.position_standard_uncertainty),
-        "crosshead_position_quality_flag": record.crosshead_position_quality_flag[kept],
-        "tension": record.tension[:, kept],
-        "quality_flag": record.quality_flag[:, kept],
+        "crosshead_position_quality_flag": record.crosshead_position_quality_flag,
+        "tension": record.tension,
+        "quality_flag": record.quality_flag,
     }
     if record.tension_standard_uncertainty:
         values["tension_standard_uncertainty"] = np.array(record.tension_standard_uncertainty)
     if record.measured_strain is not None:
-        values["measured_strain"] = record.measured_strain[:, kept]
+        values["measured_strain"] = record.measured_strain
     if record.cycle_counter is not None:
-        values["machine_cycle_number"] = record.cycle_counter[kept]
+        values["machine_cycle_number"] = record.cycle_counter
     if test.strain is not None:
-        values["strain"] = test.strain[:, kept]
+        values["strain"] = test.strain
     if test.strain_standard_uncertainty is not None:
         values["strain_standard_uncertainty"] = test.strain_standard_uncertainty
-    if any(specimen.diameter for specimen in test.specimens):
-        area = np.array([one.area if one.diameter else np.nan for one in test.specimens])
-        values["nominal_stress"] = record.tension[:, kept] / area[:, np.newaxis]
-        if record.tension_standard_uncertainty:
-            values["nominal_stress_standard_uncertainty"] = (
-                np.array(record.tension_standard_uncertainty) / area
-            )
+    if test.nominal_stress is not None:
+        values["nominal_stress"] = test.nominal_stress
+    if test.nominal_stress_standard_uncertainty is not None:
+        values["nominal_stress_standard_uncertainty"] = test.nominal_stress_standard_uncertainty
     if test.phase is not None:
-        values["phase"] = test.phase[kept]
+        values["phase"] = test.phase
     if test.cycles is not None:
-        values["cycle_number"] = test.cycles.cycle_number[kept]
-        values["branch"] = test.cycles.branch[kept]
+        values["cycle_number"] = test.cycles.cycle_number
+        values["branch"] = test.cycles.branch
     return values
 
 

@@ -32,6 +32,11 @@ dimension                      one entry for
 ``bound``                      lower and upper edge of a cell
 =============================  ============================================================
 
+``crosshead_position`` and ``tension`` are as they were logged (in SI, sign and zero
+applied): a sample with a flag keeps its number, and the flag beside it says what is known
+against it.  ``strain`` and ``nominal_stress``, and all that follows from them, rest on usable
+samples alone and are NaN where a sample is missing, saturated, stuck or a spike.
+
 A stepwise test has ``time``, ``tension``, ``strain``, ``branch`` and ``secant_modulus``
 along ``step`` and no ``sample``.  The coefficients of the strain methods are variables of
 their own along ``specimen`` (``relaxed_free_length``, ``splice_exponent``, ...), each with its

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +31,7 @@ from reduction.record import Floats, Quality, Record, Specimen, StepReadings
 from reduction.settings import ReductionSettings
 from reduction.strain.evaluate import extrapolated, free_length_strain_of
 from reduction.strain.model import StrainModel
-from reduction.strain.stress import check_constant_volume
+from reduction.strain.stress import check_constant_volume, nominal_stress
 
 __all__ = ["reduce_steps", "reduce_test"]
 
@@ -87,6 +88,7 @@ def reduce_test(
         located, strain, tension, specimens=specimens, history=history, settings=settings
     )
     parts |= parts_of_first_loading(located, strain, tension, specimens, settings, history)
+    parts |= _stress(record, tension, specimens)
     holds = reduce_holds(
         record.time, position, tension, strain, standstills,
         specimens=record.specimens, settings=settings.holds,
@@ -210,6 +212,21 @@ def _strain(
         fill, [(row, slice(low, low + _BLOCK)) for row in range(len(models)) for low in starts]
     )
     return strain
+
+
+def _stress(record: Record, tension: Floats, specimens: tuple[Specimen, ...]) -> dict[str, Any]:
+    """Nominal stress, where a diameter is known; NaN where tension is not usable."""
+    if not any(specimen.diameter for specimen in specimens):
+        return {}
+    stress = np.full_like(tension, np.nan)
+    for row, specimen in enumerate(specimens):
+        if specimen.diameter:
+            stress[row] = nominal_stress(tension[row], area=specimen.area)
+    spread = record.tension_standard_uncertainty
+    if not spread:
+        return {"nominal_stress": stress}
+    area = np.array([one.area if one.diameter else np.nan for one in specimens])
+    return {"nominal_stress": stress, "nominal_stress_standard_uncertainty": spread / area}
 
 
 def _no_hold(standstills: Standstills, settings: ReductionSettings) -> str:

@@ -111,13 +111,16 @@ def test_cycles_count_from_one_and_curves_are_under_their_own_names(rich_test):
             )
 
 
-def test_stress_is_tension_over_the_area_at_zero_tension(rich_test):
-    dataset = build(rich_test)
+def test_the_area_is_that_of_the_mean_diameter(rich_test):
     area = np.pi / 4 * np.array([0.02645, 0.0239]) ** 2
-    np.testing.assert_allclose(dataset["area"], area, rtol=1e-15)
-    np.testing.assert_allclose(
-        dataset["nominal_stress"], rich_test.record.tension / area[:, np.newaxis], rtol=1e-15
-    )
+    np.testing.assert_allclose(build(rich_test)["area"], area, rtol=1e-15)
+
+
+def test_tension_stands_as_logged_and_stress_as_it_was_reduced(rich_test):
+    dataset = build(rich_test)
+    np.testing.assert_array_equal(dataset["tension"], rich_test.record.tension)
+    np.testing.assert_array_equal(dataset["nominal_stress"], rich_test.nominal_stress)
+    assert dataset["nominal_stress_standard_uncertainty"].values[0] == 4000
 
 
 def test_without_a_diameter_there_is_no_stress(holds_only_test):

@@ -1,0 +1,72 @@
+"""One test from its located record to its product."""
+
+import numpy as np
+import pytest
+
+from reduction.pipeline.locate import locate
+from reduction.pipeline.reduce import reduce_test
+from reduction.product import TestDescription
+from reduction.record import Quality, Record, Specimen
+from reduction.settings import ReductionSettings
+from reduction.strain.model import StrainModel
+
+DIAMETER = 0.025
+SPIKE = 700
+MODEL = StrainModel("cord", "gauge-length", {"gauge_length": 1.0, "reference_position": 1.0})
+
+
+def reduced(specimen, load_cell=2.0):
+    """A slow pull of a linear cord, slack at first, with one spike of 5 kN in its tension."""
+    time = np.arange(0, 120, 0.1)
+    position = 1 + np.interp(time, [0, 20, 120], [0, 0, 0.5])
+    noise = np.random.default_rng(7)
+    tension = 400 * (position - 1) + noise.normal(0, 0.2, time.size)
+    tension[SPIKE] = 5000
+    flags = np.zeros((1, time.size), dtype=np.uint16)
+    flags[0, SPIKE] = Quality.SPIKE
+    record = Record(
+        test_id="Q-1",
+        specimens=("cord",),
+        time=time,
+        crosshead_position=position,
+        tension=tension[None],
+        quality_flag=flags,
+        crosshead_position_quality_flag=np.zeros(time.size, dtype=np.uint16),
+        tension_standard_uncertainty=(load_cell,),
+    )
+    settings = ReductionSettings()
+    return reduce_test(
+        locate(record, kind="quasi-static", settings=settings),
+        description=TestDescription("c", "Q-1", "quasi-static", "position", "triangular", 1, {}),
+        specimens=(specimen,),
+        models=(MODEL,),
+        history=None,
+        sources=(),
+        settings=settings,
+        settings_json="{}",
+    )
+
+
+@pytest.fixture(scope="module")
+def pulled():
+    return reduced(Specimen("cord", kind="elastomer", diameter=(DIAMETER,)))
+
+
+def test_stress_is_tension_over_the_area_at_zero_tension(pulled):
+    area = np.pi * DIAMETER**2 / 4
+    usable = np.arange(pulled.record.n_samples) != SPIKE
+    expected = pulled.record.tension[0, usable] / area
+    np.testing.assert_allclose(pulled.nominal_stress[0, usable], expected, rtol=1e-12)
+    np.testing.assert_allclose(pulled.nominal_stress_standard_uncertainty, [2.0 / area])
+
+
+def test_a_spike_stays_in_the_record_and_gives_no_stress(pulled):
+    assert pulled.record.tension[0, SPIKE] == 5000
+    assert np.isnan(pulled.nominal_stress[0, SPIKE])
+    assert np.nanmax(pulled.nominal_stress) < 0.5e6
+
+
+def test_a_rope_without_a_diameter_has_no_stress():
+    found = reduced(Specimen("cord", kind="rope"))
+    assert found.nominal_stress is None
+    assert found.nominal_stress_standard_uncertainty is None
