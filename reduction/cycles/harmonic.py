@@ -19,7 +19,7 @@ from reduction.cycles.energy import sums_over_cycles
 from reduction.errors import DataError
 from reduction.record import Floats, Integers, freeze_arrays
 
-__all__ = ["CycleBasis", "cycle_basis", "fundamental", "mean_drift"]
+__all__ = ["CycleBasis", "cycle_basis", "fundamental", "mean_drift", "part_means"]
 
 
 @dataclass(frozen=True)
@@ -139,19 +139,54 @@ def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats, Floa
     return cosine, sine, mean
 
 
-def mean_drift(mean: Floats, first: Integers, last: Integers) -> Floats:
-    r"""Steady drift of a series over each cycle, from the means of the cycles beside it.
-
-    .. math:: d = 2 a b / (a + b) \quad \text{where } a b > 0, \text{ else } 0
-
-    with a and b the changes of the mean from the cycle before and to the cycle after.
+def part_means(values: Floats, basis: CycleBasis, middle: Integers) -> tuple[Floats, Floats]:
+    """Mean over time of a series before and after a sample inside each cycle.
 
     Parameters
     ----------
-    mean : ndarray, shape (n_cycles,)
-        Mean over each cycle. [any]
-    first, last : ndarray of int, shape (n_cycles,)
-        First and last sample of each cycle. [1]
+    values : ndarray, shape (n_samples,)
+        Without NaN. [any]
+    basis : CycleBasis
+        From `cycle_basis`.
+    middle : ndarray of int, shape (n_cycles,)
+        Above the first and below the last sample of each cycle. [1]
+
+    Returns
+    -------
+    early, late : ndarray, shape (n_cycles,)
+        In the unit of the series. [any]
+
+    Raises
+    ------
+    IndexError
+        If the series is shorter than the cycles.
+
+    Examples
+    --------
+    >>> basis = cycle_basis(np.arange(9.0), np.array([0]), np.array([8]))
+    >>> early, late = part_means(np.repeat([1.0, 3.0], [4, 5]), basis, np.array([4]))
+    >>> print(early, late)
+    [1.] [3.]
+    """
+    first, last, share = basis.first, basis.last, basis.share
+    weighted = values * share
+    early = sums_over_cycles(weighted, first, middle) / sums_over_cycles(share, first, middle)
+    late = sums_over_cycles(weighted, middle, last) + values[last] * basis.end_share
+    return early, late / (sums_over_cycles(share, middle, last) + basis.end_share)
+
+
+def mean_drift(
+    early: Floats, late: Floats, *, first: Floats, middle: Floats, last: Floats
+) -> Floats:
+    """Steady drift of a series over each cycle, from its means across the ends of cycles.
+
+    Parameters
+    ----------
+    early, late : ndarray, shape (n_cycles,)
+        Means over the two parts of each cycle, from `part_means`. [any]
+    first, middle, last : ndarray, shape (n_cycles,)
+        Times between which they were taken; where the end of a cycle is the start of the
+        next, the two touch. [s]
 
     Returns
     -------
@@ -166,36 +201,44 @@ def mean_drift(mean: Floats, first: Integers, last: Integers) -> Floats:
 
     Notes
     -----
-    The difference of the two end samples of a cycle would do without noise; with it, that
-    difference puts 0.45 standard deviations of a reading into the sine, where the sum
-    over a hundred samples puts 0.14.  Means of cycles carry a tenth of that noise.
-
-    A drift is steady only where both changes say so.  Beside a transient (the first cycle after
-    a ramp, a change of amplitude) one of them is large and says nothing of this cycle: the
-    harmonic mean follows the smaller one, and is the geometric mean to 1 % where the changes
-    decay by a fifth from cycle to cycle.
+    A mean from the middle of one rise to the middle of the next, a period later, lies around
+    an end of a cycle, and the change from one end to the other is the drift.  At the middle of
+    a rise the series is near its mean, so a sample more or less, as noise puts the turns,
+    does not enter; in a mean from turn to turn it does, with the whole amplitude.  Beside a
+    transient (the first cycle after a ramp, a change of amplitude) one of these changes says
+    nothing of this cycle: the median of three neighbours is taken, and of two the lesser, or
+    zero where they disagree in sign.
 
     Examples
     --------
-    >>> first = np.array([0, 9, 18, 27])
-    >>> print(mean_drift(np.array([0.0, 4.0, 6.0, 7.0]), first, first + 9).round(3))
-    [2.667 2.667 1.333 1.333]
-    >>> print(mean_drift(np.array([9.0, 5.0, 5.0, 5.0]), first, first + 9))
+    Means that grow by 2 a cycle, and a transient in the first cycle of four.
+
+    >>> start = np.array([0.0, 8, 16, 24])
+    >>> times = dict(first=start, middle=start + 2, last=start + 8)
+    >>> print(mean_drift(2 * np.arange(4.0), 2 * np.arange(4.0), **times))
+    [2. 2. 2. 2.]
+    >>> print(mean_drift(np.array([9.0, 5, 5, 5]), np.array([6.0, 5, 5, 5]), **times))
     [0. 0. 0. 0.]
     """
-    drift = np.zeros(mean.size)
-    if mean.size < 3:
-        return drift
-    change = np.where(last[:-1] == first[1:], np.diff(mean), np.nan)
-    before, after = change[:-1], change[1:]
-    agree = before * after > 0
-    inner = np.where(np.isnan(before) | np.isnan(after), np.nan, 0.0)
-    inner[agree] = 2 * before[agree] * after[agree] / (before + after)[agree]
-    drift[1:-1] = inner
-    drift[[0, -1]] = np.nan
-    # the ends of a run have one neighbour, whose drift is the best guess of their own
-    touches = np.concatenate([[False], np.isfinite(change), [False]])
-    of_next = np.where(touches[1:], np.append(drift[1:], np.nan), np.nan)
-    of_last = np.where(touches[:-1], np.append(np.nan, drift[:-1]), np.nan)
-    drift = np.where(np.isnan(drift), np.where(np.isnan(of_next), of_last, of_next), drift)
-    return np.nan_to_num(drift, nan=0.0)
+    n_cycles = early.size
+    if n_cycles < 3:
+        return np.zeros(n_cycles)
+    before, after = (last - middle)[:-1], (middle - first)[1:]
+    around_end = (late[:-1] * before + early[1:] * after) / (before + after)
+    around_end[last[:-1] != first[1:]] = np.nan
+    change = np.full(n_cycles, np.nan)
+    change[1:-1] = np.diff(around_end)
+    beside = np.stack([np.append(np.nan, change[:-1]), change, np.append(change[1:], np.nan)])
+    n_known = np.isfinite(beside).sum(axis=0)
+    drift = np.where(n_known == 3, np.median(beside, axis=0), change)
+    two = n_known == 2
+    pair = np.sort(beside[:, two], axis=0)[:2]  # NaN is sorted last
+    lesser = np.where(np.abs(pair[0]) < np.abs(pair[1]), pair[0], pair[1])
+    drift[two] = np.where(pair[0] * pair[1] > 0, lesser, 0.0)
+    # an end of a run has no change of its own: that of its neighbour is the best guess
+    touches = np.isfinite(around_end)
+    of_next = np.append(np.where(touches, drift[1:], np.nan), np.nan)
+    of_last = np.append(np.nan, np.where(touches, drift[:-1], np.nan))
+    own = np.where(np.isfinite(change), drift, np.nan)
+    found = np.where(np.isfinite(own), own, np.where(np.isfinite(of_next), of_next, of_last))
+    return np.nan_to_num(found, nan=0.0)

@@ -14,7 +14,7 @@ import numpy as np
 
 from reduction.blocks import run_blocks
 from reduction.cycles.energy import loop_energy, sums_over_cycles, without_drift
-from reduction.cycles.harmonic import CycleBasis, cycle_basis, fundamental, mean_drift
+from reduction.cycles.harmonic import CycleBasis, cycle_basis, fundamental, mean_drift, part_means
 from reduction.cycles.product import Cycles, Loops
 from reduction.record import Bools, Floats, Integers
 
@@ -32,6 +32,7 @@ _REACH = 4
 _MEASURED = (
     "peak", "valley", "high", "low", "energy", "strain_step_norm", "force_cosine", "force_sine",
     "force_mean", "strain_cosine", "strain_sine", "strain_mean", "force_end", "strain_end",
+    "force_early", "force_late", "strain_early", "strain_late",
 )  # fmt: skip
 _FIELDS = (
     "frequency", "cycle_start_time", "mean_tension", "tension_amplitude", "mean_strain",
@@ -104,7 +105,9 @@ def _extremes(values: Floats, first: Integers, last: Integers) -> tuple[Floats, 
     return np.maximum(greatest, values[last]), np.minimum(least, values[last])
 
 
-def _measure(tension: Floats, strain: Floats, basis: CycleBasis, waveform: Waveform) -> Floats:
+def _measure(
+    tension: Floats, strain: Floats, basis: CycleBasis, middle: Integers, waveform: Waveform
+) -> Floats:
     """What only the samples tell, one row a quantity of `_MEASURED`, one column a cycle."""
     first, last = basis.first, basis.last
     force, lost_force = _filled(tension, first, last)
@@ -118,6 +121,8 @@ def _measure(tension: Floats, strain: Floats, basis: CycleBasis, waveform: Wavef
             *fundamental(stretch, basis),
             (force[first] + force[last]) / 2,
             (stretch[first] + stretch[last]) / 2,
+            *part_means(force, basis, middle),
+            *part_means(stretch, basis, middle),
         ]
     )
     measured[:, lost_force | lost_stretch] = np.nan
@@ -125,7 +130,12 @@ def _measure(tension: Floats, strain: Floats, basis: CycleBasis, waveform: Wavef
 
 
 def _derive(
-    measured: Floats, cycles: Cycles, *, noise: float, strain_noise: float
+    measured: Floats,
+    cycles: Cycles,
+    turns: dict[str, Floats],
+    *,
+    noise: float,
+    strain_noise: float,
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Quantities of each cycle of one specimen, and their standard uncertainties."""
     row = dict(zip(_MEASURED, measured, strict=True))
@@ -134,8 +144,8 @@ def _derive(
     amplitude = (peak - valley) / 2
     strain_amplitude = (row["high"] - row["low"]) / 2
     force_cos, strain_cos = row["force_cosine"], row["strain_cosine"]
-    force_drift = mean_drift(row["force_mean"], cycles.first, cycles.last)
-    strain_drift = mean_drift(row["strain_mean"], cycles.first, cycles.last)
+    force_drift = mean_drift(row["force_early"], row["force_late"], **turns)
+    strain_drift = mean_drift(row["strain_early"], row["strain_late"], **turns)
     force_sin = row["force_sine"] + force_drift / np.pi
     strain_sin = row["strain_sine"] + strain_drift / np.pi
     energy = without_drift(
@@ -276,6 +286,12 @@ def close_loops(
     """
     period = time[cycles.last] - time[cycles.first]
     measured = np.empty((tension.shape[0], len(_MEASURED), cycles.n_cycles))
+    # the middle of the rise, at least a sample from either end
+    middle = np.maximum(cycles.branch_first[:, 0] + cycles.branch_last[:, 0], 2 * cycles.first + 2)
+    middle //= 2
+    turns = {
+        "first": time[cycles.first], "middle": time[middle], "last": time[cycles.last]
+    }  # fmt: skip
 
     def measure_block(block: slice) -> None:
         low = max(int(cycles.first[block.start]) - _REACH, 0)
@@ -283,7 +299,7 @@ def close_loops(
         basis = cycle_basis(time[low:high], cycles.first[block] - low, cycles.last[block] - low)
         for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
             measured[index, :, block] = _measure(
-                force[low:high], stretch[low:high], basis, waveform
+                force[low:high], stretch[low:high], basis, middle[block] - low, waveform
             )
 
     run_blocks(measure_block, _blocks_of_cycles(cycles))
@@ -294,6 +310,7 @@ def close_loops(
         values, errors = _derive(
             measured[index],
             cycles,
+            turns,
             noise=reading_noise(force),
             strain_noise=reading_noise(stretch),
         )

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reduction.cycles.energy import loop_energy, sums_over_cycles
-from reduction.cycles.harmonic import cycle_basis, fundamental, mean_drift
+from reduction.cycles.harmonic import cycle_basis, fundamental, mean_drift, part_means
 from reduction.cycles.loops import close_loops, reading_noise
 from reduction.cycles.product import Cycles
 from reduction.errors import DataError
@@ -132,13 +132,18 @@ def test_fundamental_on_uneven_times():
     assert cosine[0] == pytest.approx(3, abs=2e-3) and sine[0] == pytest.approx(-1, abs=2e-3)
 
 
+def drift_of(values, first, last, middle):
+    time = np.arange(values.size, dtype=float)
+    early, late = part_means(values, cycle_basis(time, first, last), middle)
+    return mean_drift(early, late, first=time[first], middle=time[middle], last=time[last])
+
+
 def test_a_drift_linear_in_time_is_taken_off_by_the_means_of_the_cycles():
     t = np.arange(601.0)
     wave = 5 * np.cos(2 * np.pi * t / 200) + 2 * np.sin(2 * np.pi * t / 200)
     first = np.array([0, 200, 400])
-    basis = cycle_basis(t, first, first + 200)
-    cosine, sine, mean = fundamental(wave + 0.01 * t, basis)
-    drift = mean_drift(mean, first, first + 200)
+    cosine, sine, _ = fundamental(wave + 0.01 * t, cycle_basis(t, first, first + 200))
+    drift = drift_of(wave + 0.01 * t, first, first + 200, first + 50)
     assert drift == pytest.approx(2)
     assert sine == pytest.approx(2 - 2 / np.pi, abs=1e-3)
     assert cosine == pytest.approx(5, abs=1e-3)
@@ -146,11 +151,24 @@ def test_a_drift_linear_in_time_is_taken_off_by_the_means_of_the_cycles():
 
 
 def test_drift_is_known_where_three_cycles_touch():
-    # runs of one, two and four cycles
+    # runs of one, two and four cycles of ten samples on one straight line
     first = np.array([0, 20, 30, 50, 60, 70, 80])
-    mean = np.array([1.0, 5.0, 7.0, 4.0, 3.0, 2.0, 1.0])
-    expected = [0.0, 0.0, 0.0, -1.0, -1.0, -1.0, -1.0]
-    assert mean_drift(mean, first, first + 10).tolist() == expected
+    drift = drift_of(-0.1 * np.arange(91.0), first, first + 10, first + 3)
+    assert drift == pytest.approx([0.0, 0.0, 0.0, -1.0, -1.0, -1.0, -1.0])
+
+
+def test_a_turn_found_a_sample_off_is_no_drift():
+    # twenty cycles of twenty samples whose turns noise puts one sample early or late
+    rng = np.random.default_rng(6)
+    wave = -np.cos(2 * np.pi * np.arange(402) / 20)
+    turns = 20 * np.arange(21)
+    turns[1:-1] += rng.integers(-1, 2, 19)
+    first, last = turns[:-1], turns[1:]
+    drift = drift_of(wave, first, last, (first + last) // 4 + first // 2)
+    # each turn moves a mean from turn to turn by an amplitude over twenty samples
+    means = fundamental(wave, cycle_basis(np.arange(402.0), first, last))[2]
+    assert np.std(np.diff(means)) > 0.04
+    assert np.std(drift) < 0.01
 
 
 def test_a_transient_leaves_the_cycles_beside_it_alone():
