@@ -10,10 +10,13 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from reduction.cycles.dwells import dwells_of_cycles
 from reduction.phases.intervals import median_step
 from reduction.phases.standstill import Standstills
 from reduction.record import Bools, Floats, Integers
@@ -21,15 +24,16 @@ from reduction.record import Bools, Floats, Integers
 __all__ = ["HalfCycles", "find_half_cycles"]
 
 _DIFFERENT = 0.3  # share by which ranges of neighbouring half cycles may differ
+_SHORT = 0.05  # share of its neighbour by which one at an edge may end short of the level
+_STANDING = 0.04  # of a half cycle: movement in its first tenth of one that begins standing
 _PACE = 0.25  # share by which a half cycle at the end of a run may last longer or shorter
-_FEWEST_DWELLS = 3
-_DWELL_RATIO = 2.0
 _GAP_SHARE = 0.3  # of a half cycle
 _GAP_STEPS = 3.5  # median time steps
 _EDGE_SHARE = 0.1  # of a half cycle
 _BLOCK_SAMPLES = 1 << 16
 
 Indices = NDArray[np.intp]
+_Edge = Literal["reversal", "standstill", "record"]  # a gap is an end of the record
 
 
 @dataclass(frozen=True)
@@ -45,53 +49,6 @@ class HalfCycles:
     rises: Bools
     run: Indices
     notes: tuple[str, ...]
-
-
-def _dwells(
-    values: Floats, reversals: Indices, standstills: Standstills, band: float
-) -> tuple[Indices, Bools]:
-    """Reversal at which each standstill is (-1: none), and whether it is a dwell of cycles."""
-    at = np.full(standstills.n_standstills, -1, dtype=np.intp)
-    if at.size == 0 or reversals.size == 0:
-        return at, np.zeros(at.size, dtype=bool)
-    centre = (standstills.first + standstills.last) // 2
-    level = values[np.clip(centre, 0, values.size - 1)]
-    after = np.searchsorted(reversals, centre)
-    near = np.clip(np.stack([after - 1, after]), 0, reversals.size - 1)
-    distance = np.abs(reversals[near] - centre)
-    nearest = np.where(distance[0] <= distance[1], near[0], near[1])
-    is_level = np.abs(values[reversals[nearest]] - level) < band
-    at[is_level] = nearest[is_level]
-
-    holds = np.zeros(reversals.size, dtype=bool)
-    duration = np.zeros(reversals.size)
-    holds[at[is_level]] = True
-    duration[at[is_level]] = (standstills.end_time - standstills.start_time)[is_level]
-    stroke = np.abs(np.diff(values[reversals]))
-    of_cycles = np.zeros(reversals.size, dtype=bool)
-    for kind in (0, 1):  # peaks among peaks, valleys among valleys
-        held, lasting = holds[kind::2], duration[kind::2]
-        levels = values[reversals[kind::2]]
-        same = held[1:] & held[:-1]
-        same &= np.maximum(lasting[1:], lasting[:-1]) <= _DWELL_RATIO * np.minimum(
-            lasting[1:], lasting[:-1]
-        )
-        same &= np.abs(np.diff(levels)) <= _DIFFERENT * stroke[kind::2][: same.size]
-        in_a_row = _longest_row(same)
-        dwell = np.zeros(held.size, dtype=bool)
-        dwell[1:] |= in_a_row >= _FEWEST_DWELLS - 1
-        dwell[:-1] |= in_a_row >= _FEWEST_DWELLS - 1
-        of_cycles[kind::2] = dwell
-    return at, (at >= 0) & of_cycles[at]
-
-
-def _longest_row(true: Bools) -> Indices:
-    """Length of the row of true values that each belongs to; 0 where false."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], true, [False]]).astype(np.int8)))
-    length = edges[1::2] - edges[::2]
-    rows = np.zeros(true.size, dtype=np.intp)
-    rows[true] = np.repeat(length, length)
-    return rows
 
 
 def _gaps(time: Floats, values: Floats, longest: float) -> tuple[Indices, Indices]:
@@ -121,21 +78,30 @@ class _Run:
     """Extremes that follow each other, and whether the record or the movement ends at them."""
 
     nodes: Indices
-    begins_at_edge: bool
-    ends_at_edge: bool
+    begins_at: _Edge
+    ends_at: _Edge
 
 
 def _stretches(
-    values: Floats, reversals: Indices, breaks: tuple[Indices, Indices], band: float
+    values: Floats,
+    reversals: Indices,
+    breaks: tuple[Indices, Indices],
+    n_standstills: int,
+    band: float,
 ) -> list[_Run]:
-    """Extremes of each stretch between breaks; a break's own edge where a movement begins there."""
+    """Extremes of each stretch between breaks, of which the standstills are first.
+
+    The edge of a break is one where a movement begins there.
+    """
     order = np.argsort(breaks[0], kind="stable")
     finite = np.isfinite(values)
     start, stop = int(np.argmax(finite)), values.size - 1 - int(np.argmax(finite[::-1]))
     begins = np.concatenate([[start], breaks[1][order]])
     ends = np.concatenate([breaks[0][order], [stop]])
+    edges: list[_Edge] = ["standstill" if at < n_standstills else "record" for at in order]
+    edges = ["record", *edges, "record"]
     found = []
-    for begin, end in zip(begins, ends, strict=True):
+    for place, (begin, end) in enumerate(zip(begins, ends, strict=True)):
         nodes = reversals[slice(*np.searchsorted(reversals, [begin + 1, end]))]
         # the edge is an extreme of its own where the nearest one is a band away
         inner = nodes if nodes.size else np.array([end])
@@ -146,8 +112,23 @@ def _stretches(
             nodes = np.concatenate([nodes, [end]])
         if nodes.size > 1:
             near = _EDGE_SHARE * (nodes[-1] - nodes[0]) / (nodes.size - 1)
-            found.append(_Run(nodes, nodes[0] - begin <= near, end - nodes[-1] <= near))
+            edge = edges[place]
+            if _is_standing(values, nodes, begin, ceil(near)):
+                edge = "standstill"
+            found.append(
+                _Run(
+                    nodes,
+                    edge if nodes[0] - begin <= near else "reversal",
+                    edges[place + 1] if end - nodes[-1] <= near else "reversal",
+                )
+            )
     return found
+
+
+def _is_standing(values: Floats, nodes: Indices, begin: int, n_steps: int) -> bool:
+    """Whether the movement begins at a stand, if for too short a time to be a standstill."""
+    moved = values[min(begin + n_steps, values.size - 1)] - values[begin]
+    return bool(abs(moved) < _STANDING * abs(values[nodes[1]] - values[nodes[0]]))
 
 
 def _parts(values: Floats, run: _Run) -> list[_Run]:
@@ -160,8 +141,8 @@ def _parts(values: Floats, run: _Run) -> list[_Run]:
     return [
         _Run(
             nodes[begin:end].copy(),
-            run.begins_at_edge and begin == 0,
-            run.ends_at_edge and end == nodes.size,
+            run.begins_at if begin == 0 else "reversal",
+            run.ends_at if end == nodes.size else "reversal",
         )
         for begin, end in zip(begins, ends, strict=True)
     ]
@@ -187,17 +168,26 @@ def _keeps_pace(turns: Floats, end: int, turn: int, beside: int, at_edge: bool) 
     return not at_edge or bool(abs(lasts - usual) <= _PACE * usual)
 
 
+def _allowed(neighbour: float, n_steps: int, edge: _Edge, *, begins: bool, still: float) -> float:
+    """How far a half cycle at an edge may be short of the level of its neighbour."""
+    if begins and edge == "standstill":
+        return _DIFFERENT * neighbour  # nothing was broken off: a machine settles as it starts
+    within = max(_SHORT * neighbour, neighbour / n_steps)
+    return max(within, still) if edge == "standstill" else within
+
+
 def _fit_ends(
-    time: Floats, values: Floats, run: _Run, *, is_sinusoidal: bool
+    time: Floats, values: Floats, run: _Run, *, is_sinusoidal: bool, still: float
 ) -> tuple[Indices, list[int], list[int], list[int]]:
     """Extremes of a run that cycles; ends that ran on, fell short, or kept another pace."""
     nodes = run.nodes
     ranges = np.abs(np.diff(values[nodes]))
     cut, short, paced = [], [], []
     left_out = [0, 0]
-    for side, (end, turn, beside, at_edge) in enumerate(
-        ((0, 1, 2, run.begins_at_edge), (-1, -2, -3, run.ends_at_edge))
+    for side, (end, turn, beside, edge) in enumerate(
+        ((0, 1, 2, run.begins_at), (-1, -2, -3, run.ends_at))
     ):
+        at_edge = edge != "reversal"
         own, neighbour = ranges[end], ranges[-2 if end else 1]
         ran_on = own > (1 + _DIFFERENT) * neighbour
         # a machine that begins or ends a sine at its mean moves half a range, then away
@@ -214,7 +204,9 @@ def _fit_ends(
             nodes[end] = _passing(values, nodes[turn], nodes[end], values[nodes[beside]])
             ranges[end] = neighbour
         # a short one between true reversals is whole: an amplitude that grows or decays
-        elif at_edge and own < (1 - _DIFFERENT) * neighbour:
+        elif at_edge and neighbour - own > _allowed(
+            neighbour, abs(int(nodes[turn] - nodes[beside])), edge, begins=side == 0, still=still
+        ):
             left_out[side] = 1
             short.append(int(nodes[end]))
     return nodes[left_out[0] : nodes.size - left_out[1]], cut, short, paced
@@ -268,9 +260,12 @@ def find_half_cycles(
 
     *Ends.* A first or last half cycle with a range over 1.3 times its neighbour's is cut
     where it passes the neighbour's level, cf. the return to slack after the tenth peak
-    in [1]_.  One below 0.7 times that begins or ends with the record, at a standstill or
-    at a gap is incomplete and left out; between two reversals it is whole, but for one
-    beside a move away: a sine that begins or ends at its mean has moved half a range there.
+    in [1]_.  One that begins or ends with the record or at a gap, or ends at a standstill,
+    short of the neighbour's level by more than 5 % of its range, the travel of a sample and
+    the tolerance of the standstill, is incomplete and left out; so is one that begins at a
+    standstill, or at an edge where the signal stands, with less than 0.7 times its range.
+    Between two reversals it is whole, but for one beside a move away: a sine that begins or
+    ends at its mean has moved half a range there.
     In a sinusoidal test an end that ran on, or takes 25 % more or less time, is left out.
 
     Examples
@@ -288,22 +283,25 @@ def find_half_cycles(
     [2 3 5 6] [3 5 6 7] [ True False  True False]
     """
     half_duration = float(np.median(np.diff(time[reversals])))
-    at, is_dwell = _dwells(values, reversals, standstills, band)
+    at, is_dwell = dwells_of_cycles(values, reversals, standstills, band=band)
     longest = max(_GAP_SHARE * half_duration, _GAP_STEPS * median_step(time))
     gap_before, gap_after = _gaps(time, values, longest)
     breaks = (
         np.concatenate([standstills.first[~is_dwell], gap_before]),
         np.concatenate([standstills.last[~is_dwell], gap_after]),
     )
+    # of the channel that stands still: the tension where it is held, else the position
+    still = standstills.tension_tolerance
+    tolerance = standstills.position_tolerance if still is None else still
     runs: list[Indices] = []
     cut: list[int] = []
     short: list[int] = []
     paced: list[int] = []
-    for stretch in _stretches(values, reversals, breaks, band):
+    for stretch in _stretches(values, reversals, breaks, int(np.sum(~is_dwell)), band):
         for run in _parts(values, stretch):
             if _is_cycling(np.abs(np.diff(values[run.nodes]))):
                 nodes, ran_on, fell_short, other_pace = _fit_ends(
-                    time, values, run, is_sinusoidal=is_sinusoidal
+                    time, values, run, is_sinusoidal=is_sinusoidal, still=tolerance
                 )
                 runs.append(nodes)
                 cut += ran_on
@@ -313,7 +311,7 @@ def find_half_cycles(
     notes = []
     for samples, what in (
         (cut, "half cycles at the end of a run, cut where they pass their neighbours' level"),
-        (short, "half cycles at the end of a run, 30 % short of their neighbours, not counted"),
+        (short, "half cycles at the end of a run, short of their neighbours' level, not counted"),
         (paced, "half cycles at the end of a run that are no part of the sine, not counted"),
         (gap_before, "gaps of the record longer than 30 % of a half cycle, each the end of a run"),
     ):

@@ -107,14 +107,16 @@ def test_reversals_alone_find_the_peaks_of_every_row_with_a_stroke(name):
 
 
 @pytest.mark.parametrize("name", TESTS)
-def test_reversals_alone_give_the_ten_contiguous_cycles_and_their_minima(name):
+def test_reversals_alone_give_the_whole_ones_of_ten_contiguous_cycles_and_their_minima(name):
     # The count changes some 15 ms before the valley: the least position of a counted cycle
-    # is the valley that it begins with.  The first count begins at a standstill.
+    # is the valley that it begins with.  The first count begins at a standstill, and the log
+    # breaks off before the tenth cycle's last valley: 1.4 % of the stroke short of the one
+    # before in the glove, 9 % in the silicone.
     tracking, trends = read(name, "steps.tracking"), read(name, "steps.trends")
     tracking = tracking[tracking["Total Cycles"] <= 10]
     cycles = reduce(tracking, counted=False)
-    assert cycles.n_cycles == 10
-    valleys = tracking["Position (mm)"].to_numpy()[cycles.first[1:]]
+    assert cycles.n_cycles == {"latex_glove": 10, "silicone_10a": 9}[name]
+    valleys = tracking["Position (mm)"].to_numpy()[cycles.last[:9]]
     printed = trends["Position:Minimum (mm)"].to_numpy()[1:10]
     assert np.abs(valleys - printed).max() <= HALF_DIGIT
 

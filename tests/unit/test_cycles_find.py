@@ -151,7 +151,7 @@ def test_two_holds_of_the_set_up_are_no_dwells():
 
 @pytest.mark.parametrize(
     ("begin", "end", "n_cycles"),
-    [(12, 189, 17), (2, 189, 18), (1, 199, 20), (6, 194, 18), (0, 200, 20)],
+    [(12, 189, 16), (2, 189, 17), (1, 199, 18), (6, 194, 18), (0.2, 199.8, 20), (0, 200, 20)],
 )
 def test_a_record_that_begins_and_ends_in_a_cycle_counts_whole_ones(begin, end, n_cycles):
     time, position = path(strokes(0, 20))
@@ -164,9 +164,70 @@ def test_a_broken_first_half_cycle_is_noted():
     cycles = find(time[20:], position[20:])
     assert cycles.n_cycles == 19
     assert cycles.notes == (
-        "half cycles at the end of a run, 30 % short of their neighbours, not counted: 1, "
+        "half cycles at the end of a run, short of their neighbours' level, not counted: 1, "
         f"first near {time[20 + np.argmin(position[20:30])]:g} s",
     )
+
+
+@pytest.mark.parametrize("share", [0.74, 0.80, 0.87, 0.93])
+@pytest.mark.parametrize("edge", ["end", "begin", "stop", "gap"])
+@pytest.mark.parametrize("waveform", ["triangular", "sinusoidal"])
+def test_a_half_cycle_broken_off_at_an_edge_is_not_counted_and_the_rest_has_the_right_pace(
+    share, edge, waveform
+):
+    # six cycles of 10 s, of the outermost half cycle only a share of the stroke
+    time = np.arange(0, 60.05, 0.1)
+    phase = np.arccos(1 - 2 * share) / np.pi if waveform == "sinusoidal" else share
+    last = 55 + 5 * phase
+    wave = 4.5 - 0.5 * np.cos(2 * np.pi * time / 10)
+    if waveform == "triangular":
+        wave = 5 - np.abs(time % 10 - 5) / 5
+    kept = time <= last
+    time, wave = time[kept], wave[kept]
+    if edge == "begin":
+        wave = wave[::-1]
+    elif edge == "stop":
+        time = np.arange(0, last + 30, 0.1)
+        wave = np.concatenate([wave, np.full(time.size - wave.size, wave[-1])])
+    elif edge == "gap":
+        time = np.concatenate([time, time + 200])
+        wave = np.concatenate([wave, wave])
+    wave = wave + np.random.default_rng(5).normal(0, 0.001, wave.size)
+    cycles = find(time, wave, waveform=waveform)
+    n_whole = 10 if edge == "gap" else 5
+    assert cycles.n_cycles == n_whole
+    assert time[cycles.last] - time[cycles.first] == pytest.approx(10, abs=0.5)
+    noted = [note for note in cycles.notes if f"not counted: {n_whole // 5}, first near" in note]
+    assert len(noted) == 1
+
+
+@pytest.mark.parametrize("n_samples", [12, 19, 31])
+def test_a_slow_log_that_misses_the_last_valley_by_less_than_a_sample_has_all_its_cycles(n_samples):
+    # the outermost samples lie up to one sample's travel off the valleys, as the others do
+    for shift in (0.2, 0.5, 0.8):
+        time = np.arange(10 * n_samples) + shift
+        stroke = 1 - np.abs(2 * (time / n_samples % 1) - 1)
+        assert find(time, 3 + 2 * stroke).n_cycles == 10
+
+
+def test_an_amplitude_that_decays_between_reversals_keeps_its_cycles_to_the_last_reversal():
+    # 12 % less from one half cycle to the next, then away to slack
+    levels = 4 + np.cumsum(np.concatenate([[0.0], (-1.0) ** np.arange(24) * 0.88 ** np.arange(24)]))
+    points = [(0, 3), (20, 3), (40, 4)]
+    points += [(50 + 5 * i, level) for i, level in enumerate(levels)]
+    time, position = path([*points, (points[-1][0] + 5, 3), (points[-1][0] + 55, 3)], noise=0.0005)
+    # ranges fall below the band of 0.1 typical stroke after the last counted ones
+    cycles = find(time, position, band=0.02)
+    assert cycles.n_cycles == 12
+
+
+@pytest.mark.parametrize(("stands", "n_cycles"), [(1.0, 6), (30.0, 6), (0.0, 5)])
+def test_a_machine_that_starts_from_a_stand_may_settle_in_its_first_stroke(stands, n_cycles):
+    # the first stroke begins 12 % above the valleys that follow
+    levels = [4.12, 5.0, *(level for _ in range(5) for level in (4.0, 5.0)), 4.0]
+    points = [(stands + 5 * i, level) for i, level in enumerate(levels)]
+    points = [(0, 4.12), *points] if stands else points
+    assert find(*path(points)).n_cycles == n_cycles
 
 
 def test_a_gap_of_the_record_ends_a_run_and_cycles_across_it_are_not_counted(twenty):
