@@ -16,7 +16,7 @@ from reduction.errors import DataError
 from reduction.phases.noise import noise_range
 from reduction.record import Floats
 
-__all__ = ["estimate_band", "find_reversals", "first_pass", "typical_range"]
+__all__ = ["find_reversals", "first_pass", "typical_range"]
 
 _BAND_SHARE = 0.1
 _SLOW_PASS = 0.1
@@ -227,30 +227,3 @@ def first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
         # dropping with the smaller band first changes nothing
         reversals, band = reversals[find_reversals(values[reversals], band=wider)], wider
     return reversals, band
-
-
-def estimate_band(values: ArrayLike) -> float:
-    """Band for a record that states none, see `first_pass`.
-
-    Parameters
-    ----------
-    values : array_like, shape (n_samples,)
-        Control channel; NaN is left out. [any unit]
-
-    Returns
-    -------
-    band : float
-        Smallest range that makes a reversal. [unit of the values]
-
-    Raises
-    ------
-    DataError
-        If fewer than 8 samples are finite.
-
-    Examples
-    --------
-    >>> stroke = np.tile(np.concatenate([np.arange(0, 2, 0.01), np.arange(2, 0, -0.01)]), 5)
-    >>> print(round(estimate_band(stroke), 2))
-    0.2
-    """
-    return first_pass(values)[1]

@@ -44,8 +44,6 @@ class PronyFit:
         [N], [s]
     long_time_tension, long_time_tension_standard_uncertainty : float
         [N]
-    rms_tension : float
-        Root mean square residual of a value of unit weight. [N]
     criterion : str
         How the number of terms was chosen.
     """
@@ -56,7 +54,6 @@ class PronyFit:
     time_standard_uncertainty: Floats
     long_time_tension: float
     long_time_tension_standard_uncertainty: float
-    rms_tension: float
     criterion: str
 
     def __post_init__(self) -> None:
@@ -246,6 +243,5 @@ def _reported(fit: SeparableFit, ramp_duration: float, criterion: str) -> PronyF
         time_standard_uncertainty=np.sqrt(variance[n_terms:]),
         long_time_tension=float(fit.amplitude[0]),
         long_time_tension_standard_uncertainty=float(np.sqrt(covariance[0, 0])),
-        rms_tension=float(np.sqrt(fit.residual_sum_of_squares / fit.residual.size)),
         criterion=criterion,
     )

@@ -35,7 +35,6 @@ __all__ = [
     "hyperelastic_stress",
     "ogden_columns",
     "polynomial_columns",
-    "small_strain_modulus",
 ]
 
 Law = Literal["neo-hookean", "mooney-rivlin", "yeoh", "ogden-2"]
@@ -208,39 +207,3 @@ def hyperelastic_stress(
     if law == "ogden-2":
         return np.asarray(ogden_columns(stretch, values[2:], deformation=deformation) @ values[:2])
     return np.asarray(polynomial_columns(stretch, law=law, deformation=deformation) @ values)
-
-
-def small_strain_modulus(*, law: Law, parameters: dict[str, float]) -> float:
-    r"""Modulus of a law at zero strain, three times its shear modulus.
-
-    Parameters
-    ----------
-    law : str
-        One of `LAWS`.
-    parameters : dict of str to float
-        By the names of `PARAMETERS`. [Pa], [1]
-
-    Returns
-    -------
-    modulus : float
-        :math:`E_0 = 3 \mu`. [Pa]
-
-    Raises
-    ------
-    DataError
-        If the law is unknown.
-
-    Examples
-    --------
-    >>> small_strain_modulus(law="mooney-rivlin", parameters={"c10": 1e5, "c01": 5e4})
-    900000.0
-    """
-    if law == "neo-hookean":
-        return 3 * parameters["shear_modulus"]
-    if law == "mooney-rivlin":
-        return 6 * (parameters["c10"] + parameters["c01"])
-    if law == "yeoh":
-        return 6 * parameters["c10"]
-    if law == "ogden-2":
-        return 1.5 * sum(parameters[f"modulus_{i}"] * parameters[f"exponent_{i}"] for i in (1, 2))
-    raise DataError("no such law", found=str(law), needed=", ".join(LAWS))

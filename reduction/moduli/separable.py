@@ -45,15 +45,12 @@ class SeparableFit:
         Amplitudes first; residual variance times the inverse normal matrix.
     residual : ndarray, shape (n_samples,)
         Values minus model, times the square root of the weight.
-    degrees_of_freedom : int
-        Samples minus parameters.
     """
 
     amplitude: Floats
     shape: Floats
     covariance: Floats
     residual: Floats
-    degrees_of_freedom: int
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -274,5 +271,4 @@ def fit_separable(
         shape=found[n_amplitudes:],
         covariance=_covariance(jacobian(found), found, float(residual @ residual) / freedom),
         residual=residual,
-        degrees_of_freedom=freedom,
     )

@@ -9,7 +9,7 @@ References
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,51 +20,12 @@ from reduction.errors import DataError
 from reduction.record import Floats, Specimen
 
 __all__ = [
-    "area_from_diameters",
     "check_constant_volume",
     "constant_volume_diameter",
     "nominal_stress",
 ]
 
 _CONFIDENCE = 0.95
-
-
-def area_from_diameters(diameter: ArrayLike) -> float:
-    r"""Area of a round section from the mean of its diameter readings.
-
-    .. math:: A = \pi \bar d^2 / 4
-
-    Parameters
-    ----------
-    diameter : array_like, shape (n_readings,)
-        Readings before stretch. [m]
-
-    Returns
-    -------
-    area : float
-        Cross-sectional area at zero tension. [m2]
-
-    Raises
-    ------
-    DataError
-        If there is no reading, or one is not positive.
-
-    Notes
-    -----
-    The mean diameter is squared, not the squares averaged, as `Specimen.area`
-    does; for readings that scatter by 1 % the two differ by 0.01 %.
-
-    Examples
-    --------
-    The used tether of Table 2 of [1]_, 0.94 in, has 0.6940 in2.
-
-    >>> print(round(area_from_diameters([0.94 * 0.0254]) / 0.0254**2, 4))
-    0.694
-    """
-    readings = as_positive("diameter", diameter)
-    if readings.size == 0:
-        raise DataError("there is no diameter reading", needed="at least one, before stretch")
-    return pi * float(np.mean(readings)) ** 2 / 4
 
 
 def nominal_stress(tension: ArrayLike, *, area: float) -> Floats:

@@ -37,6 +37,12 @@ def test_area_uses_the_mean_of_the_readings():
     assert specimen.area == pytest.approx(math.pi)
 
 
+def test_the_used_tether_has_the_area_of_its_printed_diameter():
+    """WHOI-2005-10, Table 2: 0.94 in, and so 0.694 in2."""
+    specimen = Specimen("used", diameter=(0.94 * 0.0254,))
+    assert round(specimen.area / 0.0254**2, 3) == 0.694
+
+
 def test_a_specimen_without_a_diameter_has_no_area():
     with pytest.raises(DataError, match=r"specimen 'a' has no diameter.*specimens\.a\.diameter"):
         _ = Specimen("a").area

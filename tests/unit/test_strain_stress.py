@@ -6,26 +6,10 @@ import pytest
 from reduction.errors import DataError
 from reduction.record import Specimen
 from reduction.strain.stress import (
-    area_from_diameters,
     check_constant_volume,
     constant_volume_diameter,
     nominal_stress,
 )
-
-
-def test_area_of_a_specimen_is_that_of_its_mean_diameter():
-    readings = (0.0258, 0.0264, 0.0262)
-    assert area_from_diameters(readings) == pytest.approx(Specimen("a", diameter=readings).area)
-
-
-def test_no_diameter_has_no_area():
-    with pytest.raises(DataError, match="no diameter reading"):
-        area_from_diameters([])
-
-
-def test_a_diameter_of_zero_is_refused():
-    with pytest.raises(DataError, match="1 of 2 values of diameter are not positive"):
-        area_from_diameters([0.02, 0.0])
 
 
 def test_stress_is_tension_over_area_and_missing_where_tension_is():
