@@ -32,7 +32,7 @@ _YES = {"yes": True, "y": True, "true": True, "1": True,
         "no": False, "n": False, "false": False, "0": False}  # fmt: skip
 _OF_BREAK_STRENGTH = re.compile(r"%\s*(RBS|MBS|MBL)", re.IGNORECASE)
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
-_QUANTITY = {name: name for name in _DIMENSION}
+_QUANTITY: dict[str, OutcomeQuantity] = {name: name for name in _DIMENSION}
 _PLACE: dict[str, Place] = {name: name for name in get_args(Place)} | {"": "not_stated"}
 _T = TypeVar("_T")
 

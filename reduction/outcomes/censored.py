@@ -34,7 +34,7 @@ Scatter = Literal["normal", "smallest_extreme_value"]
 
 _MOST_STEPS = 200
 _DECREMENT = 1e-18  # of the log likelihood, below which a Newton step changes nothing
-_LEAST_SPREAD = 1e-9  # scatter over the range of the values
+_LEAST_SCATTER = 1e-12  # over the greatest value
 _HALF_LOG_2_PI = log(2 * pi) / 2
 
 
@@ -94,6 +94,26 @@ def _terms(deviate: Floats, is_bound: Bools, scatter: Scatter) -> tuple[Floats, 
     return np.where(is_bound, -power, deviate - power), np.where(is_bound, 0.0, 1.0) - power, -power
 
 
+def _check_maximum(response: Floats, design: Floats, is_bound: Bools) -> None:
+    """Refuse what has no maximum: a coefficient, or the precision, that may grow for ever."""
+    failed, columns = response[~is_bound], design[~is_bound]
+    if np.linalg.matrix_rank(columns) < design.shape[1]:
+        raise FitError(
+            "the failures leave a coefficient open",
+            found=f"{failed.size} failures for {design.shape[1]} coefficients",
+            needed="failures at more levels",
+        )
+    coefficient = np.linalg.lstsq(columns, failed)[0]
+    on_the_law = np.abs(failed - columns @ coefficient).max(initial=0.0) < _LEAST_SCATTER
+    # a lower bound above the law shows that there is scatter even so
+    if on_the_law and not (response - design @ coefficient)[is_bound].max(initial=0.0) > 0:
+        raise FitError(
+            "the failures have no scatter about the law",
+            found=f"{failed.size} failures",
+            needed="more failures than coefficients, not all equal",
+        )
+
+
 def fit_censored(
     response: Floats,
     design: Floats,
@@ -137,6 +157,7 @@ def fit_censored(
     [3.] 4.666667
     """
     size = float(np.abs(response).max()) or 1.0
+    _check_maximum(response / size, design, is_bound)
     matrix = np.column_stack([-design, response / size])
     n_failed = int((~is_bound).sum())
     last = design.shape[1]
@@ -158,32 +179,20 @@ def fit_censored(
     parameters[last] = 1.0
     total, gradient, hessian = evaluate(parameters)
     for _ in range(_MOST_STEPS):
-        try:
-            step = np.linalg.solve(-hessian, gradient)
-        except np.linalg.LinAlgError as error:
-            raise FitError(
-                "the failures leave a coefficient open", needed="failures at more levels"
-            ) from error
+        step = np.linalg.solve(-hessian, gradient)
         decrement = float(gradient @ step)
         if decrement < _DECREMENT * (1 + abs(total)):
             break
         share = 1.0
         trial = evaluate(parameters + step)
-        # the second part of the bound is rounding: at the maximum no step can gain
+        # the last part of the bound is rounding: at the maximum no step can gain
         while trial[0] < total + 1e-4 * share * decrement - 1e-13 * (1 + abs(total)):
             share /= 2
             trial = evaluate(parameters + share * step)
         parameters = parameters + share * step
         total, gradient, hessian = trial
-        if parameters[last] * _LEAST_SPREAD > 1:
-            break
     else:
-        raise FitError("the likelihood has no maximum", found=f"{_MOST_STEPS} steps")
-    if parameters[last] * _LEAST_SPREAD > 1:
-        raise FitError(
-            "the failures have no scatter about the law",
-            needed="more failures than coefficients, not all equal",
-        )
+        raise FitError("the likelihood is not at its maximum", found=f"{_MOST_STEPS} steps")
     precision = float(parameters[last])
     # (b, scale) = (gamma, 1) / theta
     change = np.eye(last + 1) / precision

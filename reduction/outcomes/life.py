@@ -167,7 +167,7 @@ def fit_life(
     failed = logs[~suspended]
     unknown = LifeFit(distribution, failed_share, confidence, failed.size, int(suspended.sum()))
     if failed.size == 0:
-        low = runout_bound(np.exp(logs), failed_share=failed_share, confidence=confidence)
+        low = runout_bound(cycles, failed_share=failed_share, confidence=confidence)
         return replace(unknown, low=low, high=inf, reason=5)
     if failed.size == 1:
         return replace(unknown, reason=6)

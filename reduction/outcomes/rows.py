@@ -8,7 +8,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import exp, nan
+from math import exp, isfinite, nan
 
 import numpy as np
 
@@ -225,7 +225,8 @@ def _fatigue_of(grouped: Grouped, part: Integers, distribution: LifeDistribution
         "median_life": fit.life,
         "median_life_standard_uncertainty": fit.life_standard_uncertainty,
         "median_life_low": fit.low,
-        "median_life_high": fit.high,
+        # a table has no infinity; the reason says that there is a lower bound alone
+        "median_life_high": fit.high if isfinite(fit.high) else nan,
         "log_life_scale": fit.log_scale,
         "log_life_scale_standard_uncertainty": fit.log_scale_uncertainty,
         "life_reason": REASONS[fit.reason],

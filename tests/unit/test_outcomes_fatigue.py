@@ -1,0 +1,86 @@
+"""Life against load: levels, run-outs, and what cannot be fitted."""
+
+import math
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError, FitError
+from reduction.outcomes.fatigue import fit_load_life, life_at_load, load_levels
+
+LOAD = np.repeat([0.3, 0.4, 0.5, 0.7], 3)
+LIVES = 500 * LOAD**-5.0 * np.tile([0.7, 1.0, 1.4], 4)
+NONE = np.zeros(12, dtype=bool)
+
+
+def test_complete_lives_give_the_line_of_least_squares():
+    fit = fit_load_life(LOAD, LIVES, NONE)
+    slope, _ = np.polyfit(np.log(LOAD), np.log(LIVES), 1)
+    assert fit.exponent == pytest.approx(-slope)
+    assert fit.reference_load_ratio == pytest.approx(np.exp(np.log(LOAD).mean()))
+    assert fit.log_life == pytest.approx(np.log(LIVES).mean())
+    # one shape at all loads, so medians of their own gain nothing
+    assert fit.lack_of_fit_p_value == pytest.approx(1.0)
+    assert fit.lack_of_fit_degrees_of_freedom == 2
+
+
+def test_a_limit_below_which_nothing_fails_is_no_line():
+    lives = np.where(LOAD < 0.35, 1e7, LIVES)
+    fit = fit_load_life(LOAD, lives, LOAD < 0.35)
+    assert fit.lack_of_fit_p_value < 0.01
+    assert (fit.n_failed, fit.n_suspended) == (9, 3)
+    assert (fit.load_ratio_low, fit.load_ratio_high) == (0.3, 0.7)
+
+
+def test_runouts_make_the_line_steeper_than_failures_there():
+    lives = np.where(LOAD < 0.35, 2e5, LIVES)
+    assert (
+        fit_load_life(LOAD, lives, LOAD < 0.35).exponent > fit_load_life(LOAD, lives, NONE).exponent
+    )
+
+
+def test_bounds_are_narrowest_amid_the_loads_and_a_load_outside_is_told():
+    fit = fit_load_life(LOAD, LIVES, NONE)
+    life, low, high, inside = life_at_load(fit, [0.2, fit.reference_load_ratio, 0.9])
+    assert inside.tolist() == [False, True, False]
+    width = np.log(high / low)
+    assert width[1] < width.min(initial=9, where=[True, False, True])
+    assert (np.diff(life) < 0).all()
+
+
+def test_a_tenth_fails_before_half_does():
+    for distribution in ("lognormal", "weibull"):
+        fit = fit_load_life(LOAD, LIVES, NONE, distribution=distribution)
+        assert life_at_load(fit, 0.5, failed_share=0.1)[0] < life_at_load(fit, 0.5)[0]
+
+
+def test_two_failures_and_a_runout_give_a_line_without_bounds():
+    fit = fit_load_life([0.5, 0.7, 0.3], [3e4, 4e3, 2e6], [False, False, True])
+    _, low, high, _ = life_at_load(fit, 0.5)
+    assert math.isnan(low) and math.isnan(high)
+
+
+def test_loads_that_a_machine_does_not_repeat_are_one_level():
+    assert load_levels([0.305, 0.30, 0.31, 0.33]).tolist() == [0, 0, 0, 1]
+
+
+def test_failures_at_one_load_are_refused():
+    with pytest.raises(
+        FitError, match="needs failures at two loads; found failures at 1; needed 2"
+    ):
+        fit_load_life([0.3, 0.5, 0.502], [2e5, 3e4, 4e4], [True, False, False])
+
+
+def test_failures_that_lie_on_a_line_are_refused():
+    with pytest.raises(FitError, match="the failures have no scatter about the law"):
+        fit_load_life([0.3, 0.5], [2e5, 3e4], [False, False])
+
+
+def test_loads_that_do_not_pair_up_are_refused():
+    with pytest.raises(DataError, match="loads and cycles do not pair up; found shapes"):
+        fit_load_life([0.3], [2e5, 3e4], [False, False])
+
+
+def test_a_load_of_nothing_is_refused():
+    with pytest.raises(DataError, match="values of peak_load_ratio are not positive"):
+        load_levels([0.0])

@@ -1,0 +1,40 @@
+"""Ends of an interval on a profile."""
+
+import math
+
+import pytest
+from scipy import stats
+
+from reduction.errors import DataError
+from reduction.outcomes.profile import cutoff, profile_bounds
+
+
+def test_few_failures_need_a_larger_drop_than_chi_square():
+    drops = [cutoff(0.95, n_failed=n, n_coefficients=1) for n in (2, 3, 5, 20)]
+    assert drops == sorted(drops, reverse=True)
+    assert drops[-1] > stats.chi2.ppf(0.95, 1)
+
+
+def test_no_failure_to_spare_gives_no_drop_and_no_bounds():
+    assert math.isnan(cutoff(0.95, n_failed=2, n_coefficients=2))
+    bounds = profile_bounds(lambda v: -(v**2), estimate=0, maximum=0, step=1, drop=math.nan)
+    assert all(map(math.isnan, bounds))
+
+
+def test_a_side_that_never_drops_is_open():
+    low, high = profile_bounds(
+        lambda value: -math.exp(-value), estimate=0, maximum=-1.0, step=0.5, drop=2.0
+    )
+    assert high == math.inf
+    assert low == pytest.approx(-math.log(2))
+
+
+@pytest.mark.parametrize("confidence", [0, 1, 95])
+def test_a_confidence_outside_its_range_is_refused(confidence):
+    with pytest.raises(DataError, match="a confidence is not between 0 and 1; found"):
+        cutoff(confidence, n_failed=5, n_coefficients=1)
+
+
+def test_a_step_of_nothing_is_refused():
+    with pytest.raises(DataError, match="a first step is not above zero; found 0"):
+        profile_bounds(lambda value: 0.0, estimate=0, maximum=0, step=0.0, drop=1.0)
