@@ -16,11 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction.checks import as_same_shape
 from reduction.cycles.counter import counted_cycles
-from reduction.cycles.halves import HalfCycles, find_half_cycles
+from reduction.cycles.halves import find_half_cycles
 from reduction.cycles.jumps import drop_jumps
 from reduction.cycles.product import Cycles
 from reduction.cycles.reversals import find_reversals, first_pass
 from reduction.cycles.trim import constant_rate_span, stroke_span
+from reduction.cycles.whole import whole_cycles
 from reduction.errors import DataError
 from reduction.phases.noise import estimate_noise
 from reduction.phases.standstill import Standstills
@@ -64,15 +65,6 @@ def _reversals(values: Floats, settings: CycleSettings) -> tuple[Indices, float]
             hint=_HINT,
         )
     return reversals, band
-
-
-def _whole_cycles(halves: HalfCycles) -> tuple[Indices, Indices]:
-    """Branches, shape (n_cycles, 2): an ascending half cycle and the descending one after it."""
-    rising = np.flatnonzero(
-        halves.rises[:-1] & ~halves.rises[1:] & (halves.run[:-1] == halves.run[1:])
-    )
-    both = np.stack([rising, rising + 1], axis=1)
-    return halves.first[both], halves.last[both]
 
 
 def _labels(first: Indices, last: Indices, values: NDArray[Any], n_samples: int) -> NDArray[Any]:
@@ -166,13 +158,13 @@ def find_cycles(
 
     Notes
     -----
-    Reversals by a hysteresis band (`first_pass` where none is stated), half cycles by
-    the rules of `find_half_cycles`.  An ascending half cycle with the descending one after
-    it is a cycle; a run that begins at a peak loses its first half cycle.  At a dwell the
-    branches end where the crosshead arrives and begin where it leaves.  A sample that
-    two branches or cycles share is labelled with the later cycle and the earlier branch
-    of a cycle.  Constant rate: `constant_rate_span`; without a triangular waveform
-    `stroke_span`.
+    Reversals by a hysteresis band (`first_pass` where none is stated), half cycles by the
+    rules of `find_half_cycles`. An ascending half cycle with the descending one after it is a
+    cycle; a run that begins at a peak loses its first half cycle. A pair of which one branch
+    is of one amplitude and the other of the next is left out (`whole_cycles`). At a dwell the
+    branches end where the crosshead arrives and begin where it leaves. A sample that two
+    branches or cycles share is labelled with the later cycle and the earlier branch of a
+    cycle. Constant rate: `constant_rate_span`; without a triangular waveform `stroke_span`.
 
     Examples
     --------
@@ -203,7 +195,7 @@ def find_cycles(
         time, values, reversals, standstills, band=band,
         is_sinusoidal=settings.waveform == "sinusoidal",
     )  # fmt: skip
-    branch_first, branch_last = _whole_cycles(halves)
+    branch_first, branch_last, left_out = whole_cycles(values, halves)
     first, last = branch_first[:, 0], branch_last[:, 1]
     counted_by = "reversals"
     if cycle_counter is not None and (cycle_counter[1:] != cycle_counter[:-1]).any():
@@ -213,6 +205,11 @@ def find_cycles(
         notes += _counter_notes(number, values, first, branch_first, branch_last, n_reversals, band)
     else:
         notes += halves.notes
+        if left_out.size:
+            notes.append(
+                f"cycles between two amplitudes, one branch of each, not counted: {left_out.size}, "
+                f"first at {time[left_out[0]]:g} s"
+            )
         if cycle_counter is not None:
             notes.append("the machine's cycle counter never changes: reversals are counted instead")
     if first.size == 0:

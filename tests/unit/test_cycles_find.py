@@ -261,6 +261,46 @@ def test_levels_may_change_from_block_to_block_without_a_break():
     assert find(time, position).n_cycles == 18
 
 
+@pytest.mark.parametrize("starts", [1, -1])
+@pytest.mark.parametrize("amplitudes", [(0.1, 0.05, 0.02), (0.02, 0.05, 0.1)])
+@pytest.mark.parametrize("waveform", ["triangular", "sinusoidal"])
+def test_cycles_between_two_amplitudes_are_left_out_and_noted(starts, amplitudes, waveform):
+    # ten cycles of each amplitude about one mean, each block from the mean and back to it
+    angle = np.arange(0, 30, 0.01)  # in cycles
+    wave = np.sin(2 * np.pi * angle)
+    if waveform == "triangular":
+        wave = 2 / np.pi * np.arcsin(wave)
+    ranges = np.repeat(amplitudes, 1000) * starts
+    noise = np.random.default_rng(6).normal(0, 0.0001, angle.size)
+    time, position = 5 * angle, 4 + ranges * wave + noise
+    cycles = find(time, position, waveform=waveform, band=0.01)
+    stroke = position[cycles.branch_last] - position[cycles.branch_first]
+    amplitude = np.abs(stroke) / 2
+    # every counted branch has one of the amplitudes, and both branches of a cycle the same
+    nearest = np.argmin(np.abs(amplitude[..., None] - np.array(amplitudes)), axis=-1)
+    assert amplitude == pytest.approx(np.array(amplitudes)[nearest], rel=0.05)
+    assert (nearest[:, 0] == nearest[:, 1]).all()
+    # rising from the mean, a block holds nine from valley to valley; else all ten of the last
+    # end at a valley, and the record ends on the way up to the mean
+    assert np.bincount(nearest[:, 0]).tolist() == [9, 9, 9]
+    # at the border of two blocks the valleys differ: the pairs that hold it are no cycle
+    noted = [note for note in cycles.notes if note.startswith("cycles between two amplitudes")]
+    border = 5 * (9.75 if starts == 1 else 9.25)
+    assert len(noted) == 1
+    assert noted[0].split("not counted: ")[1].startswith("2, first at ")
+    assert float(noted[0].split("first at ")[1][:-2]) == pytest.approx(border, abs=0.2)
+
+
+@pytest.mark.parametrize("factor", [0.75, 0.85, 1.2, 1.3])
+def test_an_amplitude_that_grows_or_decays_steadily_keeps_its_cycles(factor):
+    # 30 % and less from one half cycle to the next, between two moves from and to slack
+    ranges = 0.05 * factor ** (np.arange(10) if factor > 1 else np.arange(-9, 1))
+    levels = 5 + np.cumsum(np.concatenate([[0.0], (-1.0) ** np.arange(10) * ranges]))
+    points = [(0, 3), (20, 3)] + [(40 + 5 * i, level) for i, level in enumerate(levels)]
+    time, position = path(back(points), noise=0.0001)
+    assert find(time, position, band=0.02).n_cycles == 5
+
+
 def test_a_growing_amplitude_counts_from_the_first_valley():
     time = np.arange(0, 100, 0.05)
     amplitude = 0.5 * np.minimum(time / 20, 1)
