@@ -1,6 +1,8 @@
 """results.csv: units, words, and every row that cannot be used."""
 
 import math
+import re
+from pathlib import Path
 
 import pytest
 
@@ -172,3 +174,14 @@ def test_files_that_cannot_be_read_are_refused(tmp_path):
         read_results(path)
     with pytest.raises(LogError, match="the table of results cannot be read; found No such file"):
         read_results(tmp_path / "none.csv")
+
+
+def test_the_table_of_the_documents_is_read(tmp_path):
+    text = (Path(__file__).parents[2] / "docs" / "campaign.md").read_text(encoding="utf-8")
+    section = text.partition("## Outcomes without a log")[2].partition("\n## ")[0]
+    (table,) = re.findall(r"^```csv\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
+    rows = read(tmp_path, *table.splitlines()[1:], header=table.splitlines()[0])
+    assert [row.use for row in rows] == (
+        ["value"] * 2 + ["lower_bound", "value", "lower_bound"] + ["value"] * 2
+    )
+    assert all(f"`{name}" in section for name in table.splitlines()[0].split(",") if name != "unit")
