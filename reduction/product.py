@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from reduction.cycles.product import Cycles, Loops
 from reduction.holds.product import HoldResult, hold_numbers
+from reduction.line.product import LineParameters, SlowPull
 from reduction.moduli.product import (
     AmplitudeSummary,
     CycleIdentity,
@@ -77,6 +78,9 @@ class ReducedTest:
     while ``record`` keeps what was logged.  Parts that the kind of test does not give are
     None (or empty); `notes` are the quality notes a reader must see,
     `steps` the history lines, `settings_json` every setting that was in force.
+    ``line`` has one entry a cycle and ``line_of_test`` one a specimen, from the means over the
+    cycles, with ``quasi_static_standard_uncertainty`` [N] of the K_0 that both used; ``pulls``
+    is what a slow pull gave, None for a specimen of which it gave nothing.
     """
 
     description: TestDescription
@@ -113,6 +117,11 @@ class ReducedTest:
     slack_strain_at_unloading: Floats | None = None
     slack_strain_at_unloading_standard_uncertainty: Floats | None = None
     stepwise: StepwiseResult | None = None
+    line: LineParameters | None = None
+    line_of_test: LineParameters | None = None
+    quasi_static_standard_uncertainty: Floats | None = None
+    line_notes: tuple[str, ...] = ()
+    pulls: tuple[SlowPull | None, ...] = ()
 
     def all_notes(self) -> tuple[tuple[str, str], ...]:
         """Every note as (stage, text), in the order of the stages, none twice.
@@ -142,6 +151,7 @@ class ReducedTest:
         for stage, product in stages:
             if product is not None:
                 yield from ((stage, text) for text in product.notes)
+        yield from (("line", text) for text in self.line_notes)
         for ratio in self.ratios:
             yield from (("comparison", text) for text in ratio.notes)
         for fit in self.elastomers:

@@ -110,12 +110,73 @@ _ROWS = (
     Quantity("relaxation_time", "s", "relaxation time of the three-parameter line", "003 tau"),
     Quantity("quasi_static_spring_constant", "N", "slope of the slow pull", "003 K0"),
     # mean over the cycles of a test after break-in
+    Quantity("test_frequency", "Hz", "cycle frequency, mean over the test"),
     Quantity("test_mean_strain", "1", "mean strain of the cycles, mean over the test"),
     Quantity("test_strain_amplitude", "1", "strain amplitude, mean over the test"),
-    Quantity("test_frequency", "Hz", "cycle frequency, mean over the test"),
+    Quantity("test_mean_tension", "N", "mean tension of the cycles, mean over the test"),
+    Quantity("test_tension_amplitude", "N", "tension amplitude, mean over the test"),
+    Quantity(
+        "test_apparent_spring_constant", "N", "apparent spring constant, mean over the test"
+    ),
     Quantity("test_dynamic_modulus", "Pa", "dynamic modulus, mean over the test"),
-    Quantity("test_loss_factor", "1", "loss factor, mean over the test"),
     Quantity("test_hysteresis_energy", "J m-1", "hysteresis energy of a cycle, mean over the test"),
+    Quantity("test_storage_spring_constant", "N", "storage spring constant, mean over the test"),
+    Quantity("test_loss_spring_constant", "N", "loss spring constant, mean over the test"),
+    Quantity("test_loss_factor", "1", "loss factor, mean over the test"),
+    # the three-parameter line, of each cycle and from the means over the cycles of a test
+    Quantity("dashpot_coefficient", "N s", "dashpot coefficient, K_1 times tau", "003 N"),
+    Quantity("line_refusal", "1", "why a cycle has no K_1 and tau"),
+    Quantity(
+        "test_quasi_static_spring_constant",
+        "N",
+        "slope of the slow pull at the mean tension of the test",
+    ),
+    Quantity(
+        "test_dissipation_spring_constant",
+        "N",
+        "dissipation spring constant from the means over the cycles of the test",
+    ),
+    Quantity(
+        "test_relaxation_time", "s", "relaxation time from the means over the cycles of the test"
+    ),
+    Quantity(
+        "test_dashpot_coefficient",
+        "N s",
+        "dashpot coefficient from the means over the cycles of the test",
+    ),
+    Quantity(
+        "test_line_conditioning",
+        "1",
+        "relative error of K_1's excess over K_0 for a relative error of K_0: K_0 / (E' - K_0)",
+    ),
+    Quantity("test_line_refusal", "1", "why the test has no K_1 and tau"),
+    # the slow pull
+    Quantity("tension_grid", "N", "tension at which the slow pull is given"),
+    Quantity("quasi_static_strain", "1", "strain of the slow pull, by the cubic"),
+    Quantity("pull_term", "1", "power of tension in the load-strain cubic"),
+    Quantity(
+        "pull_strain_coefficient",
+        "1",
+        "coefficient of the load-strain cubic, tension as a number of newtons",
+        "003 Tables 8, 9",
+    ),
+    Quantity(
+        "pull_spring_constant_coefficient",
+        "N",
+        "coefficient of K_0 as a cubic of tension as a number of newtons",
+        "003 Tables 6, 7",
+    ),
+    Quantity("pull_tension_low", "N", "lower end of the range of use of the slow pull"),
+    Quantity("pull_tension_high", "N", "upper end of the range of use of the slow pull"),
+    Quantity("pull_strain_rate", "s-1", "mean strain rate of the slow pull"),
+    Quantity("pull_waiting_time", "s", "time between the last dynamic test and the slow pull"),
+    Quantity("pull_waiting", "", "time before the slow pull in the laboratory's words"),
+    Quantity("pull_residual", "1", "standard deviation of strain about the load-strain cubic"),
+    Quantity("pull_reference_tension", "N", "tension at which the reference length was read"),
+    Quantity("break_share", "1", "share of the rated break strength"),
+    Quantity(
+        "strain_at_break_share", "1", "strain of the slow pull at a share of the break strength"
+    ),
     Quantity("peak_tension_per_decade", "N", "change of peak tension per decade of cycles"),
     Quantity("dynamic_modulus_per_decade", "Pa", "change of dynamic modulus per decade of cycles"),
     Quantity(

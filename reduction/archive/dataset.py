@@ -19,6 +19,7 @@ from reduction.archive.curves import (
     stress_at_strain_values,
 )
 from reduction.archive.holds import hold_values, standstill_values
+from reduction.archive.line import line_values, pull_values
 from reduction.archive.notes import note_values
 from reduction.archive.per_cycle import (
     amplitude_values,
@@ -110,6 +111,10 @@ def _all_values(test: ReducedTest) -> Values:
         values |= identity_values(test.identity)
     if test.amplitude is not None:
         values |= amplitude_values(test.amplitude)
+    if test.line is not None and test.line_of_test is not None:
+        values |= line_values(test.line, test.line_of_test, test.quasi_static_standard_uncertainty)
+    if any(test.pulls):
+        values |= pull_values(test.pulls, test.specimens)
     if test.trend is not None:
         values |= trend_values(test.trend)
     if test.slips is not None:

@@ -21,6 +21,9 @@ dimension                      one entry for
 ``coefficient_name``           each coefficient of the strain methods in the file
 ``mark``                       each reading of the splice marks (``mark_specimen``, ...)
 ``reading``                    each diameter reading, ``stretched_reading`` when stretched
+``tension_grid``               each tension at which a slow pull is given
+``pull_term``                  each power of tension in its load-strain cubic
+``break_share``                each share of the break strength at which its strain is given
 ``slip``                       each step of a splice (``slip_specimen``, ...)
 ``hold``                       each hold and specimen (``hold_specimen``, ...)
 ``hold_time``, ``prony_term``  each stated time after the ramp; each term of a Prony series
@@ -51,6 +54,7 @@ from __future__ import annotations
 
 from itertools import chain
 
+from reduction.archive.line import LINE_ROWS
 from reduction.archive.variable import Variable, count, flag, label, mask, measured, stated
 from reduction.record import Quality
 from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES
@@ -247,17 +251,23 @@ _ROWS = chain(
     chain.from_iterable(
         measured(name, _S)
         for name in (
+            "test_frequency",
             "test_mean_strain",
             "test_strain_amplitude",
-            "test_frequency",
+            "test_mean_tension",
+            "test_tension_amplitude",
+            "test_apparent_spring_constant",
             "test_dynamic_modulus",
-            "test_loss_factor",
             "test_hysteresis_energy",
+            "test_storage_spring_constant",
+            "test_loss_spring_constant",
+            "test_loss_factor",
             "peak_tension_per_decade",
             "dynamic_modulus_per_decade",
         )
     ),
     stated("peak_tension_change", _S, NOT_EVALUATED),
+    LINE_ROWS,
     # curves
     stated("strain_window", (), SETTING),
     measured("tangent_modulus", _B, "_count", "_minimum", "_maximum", "_scatter"),

@@ -10,6 +10,7 @@ from typing import Any
 
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
+from reduction.line.product import SlowPull
 from reduction.product import History, TestDescription
 from reduction.record import Floats
 from reduction.strain.model import StrainModel
@@ -42,7 +43,11 @@ def _plain(values: Floats) -> list[float | None]:
 
 
 def settings_json(
-    campaign: Campaign, survey: Survey, models: Sequence[StrainModel], history: History | None
+    campaign: Campaign,
+    survey: Survey,
+    models: Sequence[StrainModel],
+    history: History | None,
+    pulls: Sequence[SlowPull | None] | None = None,
 ) -> str:
     """Every setting that was in force, so that a product says how it can be made again."""
     plan = survey.plan
@@ -82,4 +87,15 @@ def settings_json(
             "permanent_set": _plain(history.permanent_set),
         },
     }
+    if pulls is not None:
+        document["quasi_static"] = {
+            name: None
+            if pull is None
+            else {
+                "strain_coefficient": pull.strain_coefficient.tolist(),
+                "tension_low": pull.tension_low,
+                "tension_high": pull.tension_high,
+            }
+            for name, pull in zip(plan.specimens, pulls, strict=True)
+        }
     return json.dumps(document, sort_keys=True, ensure_ascii=False, allow_nan=False)

@@ -14,10 +14,12 @@ from reduction.batch.describe import describe, settings_json
 from reduction.batch.history import history_of, history_remarks
 from reduction.batch.models import fit_strain_models
 from reduction.batch.outcome import note_message, status_row
+from reduction.batch.pulls import fit_pulls, pull_conditions, pulls_of
 from reduction.batch.status import TestStatus, read_status, status_csv
 from reduction.batch.survey import Survey, as_reduction_error, located_again, survey_campaign
 from reduction.campaign.plan import Campaign
 from reduction.errors import ArchiveError, SettingsError
+from reduction.line.product import SlowPull
 from reduction.pipeline.reduce import reduce_steps, reduce_test
 from reduction.product import History, ReducedTest
 from reduction.report.page import write_report
@@ -128,6 +130,7 @@ def reduce_survey(
     models: Sequence[StrainModel],
     history: History | None,
     settings: str,
+    pulls: Sequence[SlowPull | None] | None = None,
 ) -> ReducedTest:
     """Reduce one surveyed test.
 
@@ -143,6 +146,8 @@ def reduce_survey(
         What the specimens had seen before.
     settings : str
         Every setting in force, as JSON, for the product.
+    pulls : sequence of SlowPull or None, optional
+        Slow pull of each specimen, where the test is a run of an experiment.
 
     Returns
     -------
@@ -174,6 +179,8 @@ def reduce_survey(
         sources=survey.sources,
         settings=survey.plan.settings,
         settings_json=settings,
+        pulls=pulls,
+        pull_conditions=pull_conditions(campaign, survey),
     )
 
 
@@ -226,6 +233,7 @@ def run_campaign(
     surveys = survey_campaign(campaign, progress=progress)
     chosen = _selected(surveys, tests)
     models, errors = fit_strain_models(campaign, surveys)
+    slow_pulls = fit_pulls(campaign, surveys, models)
     statuses: list[TestStatus] = []
     for survey in chosen:
         name = survey.plan.id
@@ -241,7 +249,8 @@ def run_campaign(
             models[name, entry] for entry in survey.plan.specimens if (name, entry) in models
         ]
         history = history_of(survey, surveys, models)
-        settings = settings_json(campaign, survey, of_test, history)
+        pulls = pulls_of(campaign, survey, slow_pulls)
+        settings = settings_json(campaign, survey, of_test, history, pulls)
         standing = None if force else _standing_notes(path, survey, settings)
         if standing is not None:
             message = note_message(standing)
@@ -250,7 +259,7 @@ def run_campaign(
             )
             continue
         try:
-            product = reduce_survey(campaign, survey, of_test, history, settings)
+            product = reduce_survey(campaign, survey, of_test, history, settings, pulls)
             remarks = history_remarks(survey, surveys)
             product = replace(product, notes=(*product.notes, *remarks))
             write_archive(to_dataset(product, version=__version__, command=command), path)

@@ -22,7 +22,11 @@ from reduction.record import Floats
 
 __all__ = ["summarise_amplitude"]
 
-_QUANTITIES = ("mean_strain", "strain_amplitude", "frequency", "loss_factor", "hysteresis_energy")
+_QUANTITIES = (
+    "frequency", "mean_strain", "strain_amplitude", "mean_tension", "tension_amplitude",
+    "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
+    "loss_spring_constant", "loss_factor",
+)  # fmt: skip
 
 
 def _mean_over_cycles(values: Floats, uncertainty: Floats | None) -> tuple[Floats, Floats]:
@@ -50,7 +54,7 @@ def summarise_amplitude(
     loops : Loops
         One row a cycle and specimen. [SI]
     area : array_like, shape (n_specimens,)
-        Cross-sectional area at zero tension. [m2]
+        Cross-sectional area at zero tension; NaN for a rope that has none stated. [m2]
     break_in_cycles : int
         First cycles that are left out. [1]
 
@@ -90,7 +94,8 @@ def summarise_amplitude(
     >>> print(summary.dynamic_modulus, summary.uncertainty["dynamic_modulus"])
     [1050000.] [50000.]
     """
-    areas = np.atleast_1d(as_positive("area", area))
+    areas = np.atleast_1d(np.asarray(area, dtype=np.float64))
+    as_positive("area", areas[~np.isnan(areas)])
     n_specimens, n_cycles = loops.frequency.shape
     if areas.shape != (n_specimens,):
         raise DataError(
@@ -106,12 +111,12 @@ def summarise_amplitude(
         )
     means: dict[str, Floats] = {}
     uncertainty: dict[str, Floats] = {}
-    for name in (*_QUANTITIES, "apparent_spring_constant"):
+    for name in _QUANTITIES:
         own = loops.uncertainty.get(name)
         means[name], uncertainty[name] = _mean_over_cycles(
             getattr(loops, name)[:, break_in_cycles:],
             None if own is None else own[:, break_in_cycles:],
         )
-    means["dynamic_modulus"] = means.pop("apparent_spring_constant") / areas
-    uncertainty["dynamic_modulus"] = uncertainty.pop("apparent_spring_constant") / areas
+    means["dynamic_modulus"] = means["apparent_spring_constant"] / areas
+    uncertainty["dynamic_modulus"] = uncertainty["apparent_spring_constant"] / areas
     return AmplitudeSummary(**means, uncertainty=uncertainty)

@@ -142,18 +142,23 @@ class CycleIdentity:
 
 @dataclass(frozen=True)
 class AmplitudeSummary:
-    """Dynamic modulus, loss factor and energy of a test against mean strain and amplitude.
+    """Dynamic quantities of a test at its frequency, means and amplitudes.
 
     One value a specimen, shape (n_specimens,), mean over the cycles after break-in,
     each with its standard uncertainty in ``uncertainty``.
     """
 
+    frequency: Floats
     mean_strain: Floats
     strain_amplitude: Floats
-    frequency: Floats
+    mean_tension: Floats
+    tension_amplitude: Floats
+    apparent_spring_constant: Floats
     dynamic_modulus: Floats
-    loss_factor: Floats
     hysteresis_energy: Floats
+    storage_spring_constant: Floats
+    loss_spring_constant: Floats
+    loss_factor: Floats
     uncertainty: dict[str, Floats]
 
     def __post_init__(self) -> None:

@@ -44,8 +44,10 @@ def parts_of_cycles(
     area = areas_of(specimens)
     break_in = settings.cycles.break_in_cycles
     loops = close_loops(record.time, tension, strain, cycles, waveform=settings.cycles.waveform)
+    amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in)
     if np.isnan(area).any():
-        return {"loops": loops}  # a rope without a diameter has spring constants alone
+        # a rope without a diameter has spring constants alone
+        return {"loops": loops, "amplitude": amplitude}
     curves = tangent_curves(
         strain, tension, area=area, cycles=cycles, settings=settings.modulus,
         break_in_cycles=break_in,
@@ -58,7 +60,7 @@ def parts_of_cycles(
         "identity": check_identity(
             strain, tension, area=area, cycles=cycles, names=record.specimens
         ),
-        "amplitude": summarise_amplitude(loops, area=area, break_in_cycles=break_in),
+        "amplitude": amplitude,
         "trend": fit_peak_trend(loops, area=area, break_in_cycles=break_in),
     }
     ratios = compare_specimens(curves, specimens, history)

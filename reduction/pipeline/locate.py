@@ -15,7 +15,7 @@ from reduction.phases.standstill import Standstills, find_standstills
 from reduction.record import Floats, Quality, Record
 from reduction.settings import ReductionSettings
 
-__all__ = ["HELD", "Located", "locate", "usable"]
+__all__ = ["HELD", "PULLED", "Located", "locate", "usable"]
 
 CYCLIC = ("cyclic", "fatigue")
 PULLED = ("quasi-static", "tensile")

@@ -17,13 +17,15 @@ from reduction.blocks import run_blocks
 from reduction.cycles.label import label_phases
 from reduction.errors import DataError
 from reduction.holds.reduce import reduce_holds
+from reduction.line.product import SlowPull
 from reduction.moduli.slack import slack_strain_at_unloading
 from reduction.moduli.stepwise import reduce_stepwise
 from reduction.phases.standstill import Standstills
 from reduction.pipeline.cyclic import parts_of_cycles
 from reduction.pipeline.loading import parts_of_first_loading
-from reduction.pipeline.locate import HELD, Located
+from reduction.pipeline.locate import HELD, PULLED, Located
 from reduction.pipeline.plausibility import plausibility_notes
+from reduction.pipeline.rope import PullConditions, parts_of_line, pull_specimens
 from reduction.pipeline.spread import strain_spread
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
@@ -33,7 +35,7 @@ from reduction.strain.evaluate import extrapolated, free_length_strain_of
 from reduction.strain.model import StrainModel
 from reduction.strain.stress import check_constant_volume, nominal_stress
 
-__all__ = ["reduce_steps", "reduce_test"]
+__all__ = ["reduce_steps", "reduce_test", "strain_of_record"]
 
 _BLOCK = 1 << 16  # samples that stay in the cache
 
@@ -48,6 +50,8 @@ def reduce_test(
     sources: tuple[Source, ...],
     settings: ReductionSettings,
     settings_json: str,
+    pulls: Sequence[SlowPull | None] | None = None,
+    pull_conditions: PullConditions | None = None,
 ) -> ReducedTest:
     """Reduce one located test.
 
@@ -69,6 +73,10 @@ def reduce_test(
         In force.
     settings_json : str
         The same with everything else that was in force, for the product.
+    pulls : sequence of SlowPull or None, length n_specimens, optional
+        Slow pull of each specimen; with it the loops give a three-parameter line.
+    pull_conditions : PullConditions, optional
+        What a slow pull cannot tell of itself.
 
     Returns
     -------
@@ -83,12 +91,19 @@ def reduce_test(
     record, standstills, cycles = located.record, located.standstills, located.cycles
     position, tension = located.position, located.tension
     phase = label_phases(record.n_samples, standstills=standstills, cycles=cycles)
-    strain = _strain(record, position, tension, models)
+    strain = strain_of_record(record, position, tension, models)
     parts = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings
     )
     parts |= parts_of_first_loading(located, strain, tension, specimens, settings, history)
     parts |= _stress(record, tension, specimens)
+    if pulls is not None and "loops" in parts:
+        parts |= parts_of_line(parts["loops"], pulls, settings.cycles)
+    if description.kind in PULLED:
+        parts["pulls"], refused = pull_specimens(
+            located, strain, tension, pull_conditions or PullConditions()
+        )
+        parts["notes"] = [*parts.get("notes", []), *refused]
     holds = reduce_holds(
         record.time, position, tension, strain, standstills,
         specimens=record.specimens, settings=settings.holds,
@@ -191,7 +206,7 @@ def _flag(located: Located, models: Sequence[StrainModel]) -> Record:
     return replace(record, quality_flag=flags, crosshead_position_quality_flag=of_position)
 
 
-def _strain(
+def strain_of_record(
     record: Record, position: Floats, tension: Floats, models: Sequence[StrainModel]
 ) -> Floats:
     """Strain of each specimen; NaN where position, or a tension that it needs, is not usable."""

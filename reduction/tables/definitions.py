@@ -54,10 +54,27 @@ _PER_CYCLE = tuple(
 )
 _IDENTITY = ("stroke_mean_modulus_difference", "tension_loss_modulus", "identity_residual")
 _TREND = ("peak_tension_per_decade", "dynamic_modulus_per_decade", "peak_tension_change")
+_LINE = (
+    "test_quasi_static_spring_constant",
+    "test_dissipation_spring_constant",
+    "test_relaxation_time",
+    "test_dashpot_coefficient",
+    "test_line_conditioning",
+    "test_line_refusal",
+)
 _AMPLITUDE = tuple(
     name
     for name in SCHEMA
-    if name.startswith("test_") and not name.endswith("_standard_uncertainty")
+    if name.startswith("test_") and name not in _LINE and not name.endswith("_standard_uncertainty")
+)
+_PULL = (
+    "pull_tension_low",
+    "pull_tension_high",
+    "pull_strain_rate",
+    "pull_waiting_time",
+    "pull_waiting",
+    "pull_residual",
+    "pull_reference_tension",
 )
 
 TABLES = (
@@ -170,6 +187,30 @@ TABLES = (
         ("strain_method",),
     ),
     Table("amplitude", ("specimen",), _AMPLITUDE, _AMPLITUDE),
+    Table(
+        "line",
+        ("specimen",),
+        ("test_frequency", "test_mean_tension", "test_tension_amplitude", *_LINE),
+        ("test_line_refusal",),
+    ),
+    Table(
+        "slow_pull",
+        ("specimen", "tension_grid"),
+        ("quasi_static_spring_constant", "quasi_static_strain"),
+        ("quasi_static_spring_constant", "quasi_static_strain"),
+    ),
+    Table(
+        "slow_pull_cubic",
+        ("specimen", "pull_term"),
+        ("pull_strain_coefficient", "pull_spring_constant_coefficient", *_PULL),
+        ("pull_strain_coefficient",),
+    ),
+    Table(
+        "strain_at_break_share",
+        ("specimen", "break_share"),
+        ("strain_at_break_share",),
+        ("strain_at_break_share",),
+    ),
     Table(
         "slips",
         ("slip",),

@@ -12,6 +12,8 @@ from reduction.archive.dataset import to_dataset
 from reduction.archive.write import write_archive
 from reduction.cycles.product import Cycles, Loops
 from reduction.holds.product import HoldResult
+from reduction.line.product import LineParameters
+from reduction.line.pull import fit_pull
 from reduction.moduli.product import (
     AmplitudeSummary,
     CycleIdentity,
@@ -250,6 +252,27 @@ def make_specimens():
     return new, Specimen("used", diameter=(0.0239,), condition="used")
 
 
+def make_line(rng, *shape):
+    arrays = {
+        item.name: array(rng, *shape)
+        for item in fields(LineParameters)
+        if item.name not in ("reason", "reading", "notes") and not item.name.endswith("uncertainty")
+    }
+    spread = {name: array(rng, *shape) for name in arrays}
+    return LineParameters(
+        **arrays, reason=np.full(shape, 6, np.int8), random_uncertainty=spread,
+        shared_uncertainty=spread, uncertainty=spread,
+    )  # fmt: skip
+
+
+def make_pull(rng):
+    load = np.linspace(0, 2000.0, 400)
+    return fit_pull(
+        np.arange(400.0), load / 4e4 + rng.normal(0, 1e-5, 400), load, specimen="new",
+        waiting_time=86400.0, waiting="24 h", reference_tension=5.0, reference_length=3.0,
+    )  # fmt: skip
+
+
 @pytest.fixture(scope="session")
 def rich_test():
     """Every part filled, two specimens."""
@@ -321,6 +344,11 @@ def rich_test():
             **{name: array(rng, 2) for name in of_test},
             uncertainty={name: array(rng, 2) for name in of_test},
         ),
+        line=make_line(np.random.default_rng(1), 2, N_CYCLES),
+        line_of_test=make_line(np.random.default_rng(2), 2),
+        quasi_static_standard_uncertainty=np.array([10.0, 20.0]),
+        line_notes=("new: no slow pull",),
+        pulls=(make_pull(np.random.default_rng(3)), None),
         trend=PeakTrend(**{item.name: array(rng, 2) for item in fields(PeakTrend)}),
         slips=make_slips(rng),
         ratios=(make_ratio(rng), make_ratio(rng)),

@@ -282,6 +282,8 @@ def test_a_log_without_a_whole_cycle_still_makes_an_archive(rich_test, write):
         ratios=(),
         amplitude=None,
         trend=None,
+        line=None,
+        line_of_test=None,
     )
     path = write(without)
     with open_archive(path) as archive:

@@ -1,0 +1,147 @@
+"""The three-parameter line and the slow pull: their variables, and the values of a product."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import chain
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.archive.values import Values, texts
+from reduction.archive.variable import Variable, count, flag, label, measured, stated
+from reduction.line.product import LineParameters, SlowPull
+from reduction.line.quasistatic import (
+    quasi_static_spring_constant,
+    strain_at_break_share,
+    strain_at_tension,
+)
+from reduction.record import Floats, Specimen
+
+__all__ = ["LINE_REFUSALS", "LINE_ROWS", "line_values", "pull_values"]
+
+LINE_REFUSALS = {
+    "given": 0,
+    "quasi_static_unknown": 1,
+    "quasi_static_not_positive": 2,
+    "reading_missing": 3,
+    "reading_not_positive": 4,
+    "loss_reaches_apparent": 5,
+    "storage_not_above_quasi_static": 6,
+}
+"""Meanings of the codes of `reduction.line.product.REASONS`, as a flag has them."""
+
+BREAK_SHARES = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5)
+_GRID_STEPS = 40
+_LINE = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
+_S = ("specimen",)
+_C = ("specimen", "cycle")
+_T = ("specimen", "tension_grid")
+_P = ("specimen", "pull_term")
+_CALIBRATION = "a rate of readings: its uncertainty is that of the channels"
+
+LINE_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        chain.from_iterable(measured(name, _C) for name in _LINE),
+        flag("line_refusal", _C, LINE_REFUSALS),
+        measured("test_quasi_static_spring_constant", _S),
+        chain.from_iterable(measured(f"test_{name}", _S) for name in _LINE),
+        stated("test_line_conditioning", _S, "a sensitivity"),
+        flag("test_line_refusal", _S, LINE_REFUSALS),
+        stated("tension_grid", ("tension_grid",), "axis of the curve"),
+        measured("quasi_static_spring_constant", _T),
+        measured("quasi_static_strain", _T),
+        count("pull_term", ("pull_term",)),
+        measured("pull_strain_coefficient", _P),
+        stated("pull_spring_constant_coefficient", _P, "a re-expression of the load-strain cubic"),
+        stated("pull_tension_low", _S, "bound"),
+        stated("pull_tension_high", _S, "bound"),
+        stated("pull_strain_rate", _S, _CALIBRATION),
+        stated("pull_waiting_time", _S, "stated by the laboratory"),
+        label("pull_waiting", _S),
+        stated("pull_residual", _S, "is itself a measure of spread"),
+        stated("pull_reference_tension", _S, "stated by the laboratory"),
+        stated("break_share", ("break_share",), "setting"),
+        measured("strain_at_break_share", ("specimen", "break_share")),
+    )
+)
+
+
+def line_values(
+    cycles: LineParameters, test: LineParameters, constant_spread: Floats | None
+) -> Values:
+    """Return parameters of each cycle and of the test, with the uncertainty of its K_0."""
+    values: Values = {
+        "line_refusal": cycles.reason,
+        "test_line_refusal": test.reason,
+        "test_line_conditioning": test.conditioning,
+        "test_quasi_static_spring_constant": test.quasi_static_spring_constant,
+    }
+    if constant_spread is not None:
+        values["test_quasi_static_spring_constant_standard_uncertainty"] = constant_spread
+    for name in _LINE:
+        # a cycle carries its own noise; what K_0 adds all cycles share, and the test's has it
+        values[name] = getattr(cycles, name)
+        values[f"{name}_standard_uncertainty"] = cycles.uncertainty[name]
+        values[f"test_{name}"] = getattr(test, name)
+        values[f"test_{name}_standard_uncertainty"] = test.uncertainty[name]
+    return values
+
+
+def pull_values(pulls: tuple[SlowPull | None, ...], specimens: tuple[Specimen, ...]) -> Values:
+    """Return the slow pull of each specimen on one grid of tension; NaN where one has none."""
+    given = [one for one in pulls if one is not None]
+    if not given:
+        return {}
+    low, high = min(one.tension_low for one in given), max(one.tension_high for one in given)
+    grid = np.linspace(low, high, _GRID_STEPS + 1)
+    values: Values = {"tension_grid": grid, "pull_term": np.arange(4)}
+    values |= _on_axis("quasi_static_spring_constant", pulls, quasi_static_spring_constant, grid)
+    values |= _on_axis("quasi_static_strain", pulls, strain_at_tension, grid)
+    columns: dict[str, Callable[[SlowPull], ArrayLike]] = {
+        "pull_strain_coefficient": lambda one: one.strain_coefficient,
+        "pull_strain_coefficient_standard_uncertainty": lambda one: np.sqrt(
+            np.diag(one.strain_coefficient_covariance)
+        ),
+        "pull_spring_constant_coefficient": lambda one: one.polynomial_coefficient,
+        "pull_tension_low": lambda one: one.tension_low,
+        "pull_tension_high": lambda one: one.tension_high,
+        "pull_strain_rate": lambda one: one.strain_rate,
+        "pull_waiting_time": lambda one: one.waiting_time,
+        "pull_residual": lambda one: one.residual_deviation,
+        "pull_reference_tension": lambda one: one.reference_tension,
+    }
+    for name, column in columns.items():
+        missing = np.full(np.shape(column(given[0])), np.nan)
+        values[name] = np.array([missing if one is None else column(one) for one in pulls])
+    values["pull_waiting"] = texts(["" if one is None else one.waiting for one in pulls])
+    strengths = [specimen.rated_break_strength for specimen in specimens]
+    if any(strengths):
+        shares = np.array(BREAK_SHARES)
+        at_share = [
+            (np.full(shares.size, np.nan),) * 2
+            if one is None or strength is None
+            else strain_at_break_share(one, shares, rated_break_strength=strength)
+            for one, strength in zip(pulls, strengths, strict=True)
+        ]
+        values |= _both("strain_at_break_share", at_share) | {"break_share": shares}
+    return values
+
+
+def _on_axis(
+    name: str,
+    pulls: tuple[SlowPull | None, ...],
+    function: Callable[[SlowPull, ArrayLike], tuple[Floats, Floats]],
+    axis: Floats,
+) -> Values:
+    missing = np.full(axis.size, np.nan)
+    return _both(
+        name, [(missing, missing) if one is None else function(one, axis) for one in pulls]
+    )
+
+
+def _both(name: str, pairs: Sequence[tuple[Floats, ...]]) -> Values:
+    return {
+        name: np.array([pair[0] for pair in pairs]),
+        f"{name}_standard_uncertainty": np.array([pair[1] for pair in pairs]),
+    }

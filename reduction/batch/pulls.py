@@ -1,0 +1,94 @@
+"""Slow pulls of a campaign: the quasi-static spring constant that each experiment names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from reduction.batch.survey import Survey, located_again
+from reduction.campaign.plan import Campaign
+from reduction.errors import ReductionError
+from reduction.line.product import SlowPull
+from reduction.pipeline.reduce import strain_of_record
+from reduction.pipeline.rope import PullConditions, pull_specimens
+from reduction.strain.model import StrainModel
+from reduction.units import parse_quantity
+
+__all__ = ["fit_pulls", "pull_conditions", "pulls_of"]
+
+Pulls = Mapping[tuple[str, str], SlowPull]
+
+
+def pull_conditions(campaign: Campaign, survey: Survey) -> PullConditions:
+    """What the campaign says about a slow pull.
+
+    A rest in words that is no time is kept as words alone.
+    """
+    waiting = survey.plan.attributes.get("rest", "")
+    try:
+        waiting_time = parse_quantity(waiting, "time") if waiting else None
+    except ReductionError:
+        waiting_time = None
+    channel = next(
+        (
+            campaign.layouts[layout].channels["crosshead_position"]
+            for _, layout in survey.plan.files
+            if "crosshead_position" in campaign.layouts[layout].channels
+        ),
+        None,
+    )
+    length = None if channel is None else channel.reference_length
+    tension = None if channel is None else channel.reference_tension
+    return PullConditions(
+        waiting=waiting,
+        waiting_time=waiting_time,
+        reference_length=None if length is None else parse_quantity(length, "length"),
+        reference_tension=None if tension is None else parse_quantity(tension, "force"),
+    )
+
+
+def fit_pulls(
+    campaign: Campaign,
+    surveys: Sequence[Survey],
+    models: Mapping[tuple[str, str], StrainModel],
+) -> dict[tuple[str, str], SlowPull]:
+    """Fit every slow pull that an experiment names.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        With its experiments.
+    surveys : sequence of Survey
+        All tests of the campaign.
+    models : mapping of (test, specimen) to StrainModel
+        How position becomes strain.
+
+    Returns
+    -------
+    pulls : dict of (test, specimen) to SlowPull
+        A pull that could not be read or fitted is left out; its own test says why.
+    """
+    named = {test for plan in campaign.experiments.values() for test in plan.quasi_static.values()}
+    pulls: dict[tuple[str, str], SlowPull] = {}
+    for survey in surveys:
+        test = survey.plan.id
+        of_test = [models.get((test, name)) for name in survey.plan.specimens]
+        known = [model for model in of_test if model is not None]
+        if test not in named or survey.error is not None or len(known) < len(of_test):
+            continue
+        located = located_again(campaign, survey)
+        position, tension = located.position, located.tension
+        strain = strain_of_record(located.record, position, tension, known)
+        found, _ = pull_specimens(located, strain, tension, pull_conditions(campaign, survey))
+        for name, pull in zip(survey.plan.specimens, found, strict=True):
+            if pull is not None:
+                pulls[test, name] = pull
+    return pulls
+
+
+def pulls_of(campaign: Campaign, survey: Survey, pulls: Pulls) -> list[SlowPull | None] | None:
+    """Slow pull of each specimen of a run; None where the test is a run of no experiment."""
+    plans = [plan for plan in campaign.experiments.values() if survey.plan.id in plan.runs]
+    if not plans:
+        return None
+    test_of = {name: test for plan in plans for name, test in plan.quasi_static.items()}
+    return [pulls.get((test_of.get(name, ""), name)) for name in survey.plan.specimens]

@@ -1,0 +1,82 @@
+"""What a slow pull gives, and what a line's loops give beside it, by field of `ReducedTest`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from reduction.cycles.product import Loops
+from reduction.errors import DataError, FitError
+from reduction.line.identify import reasons_in_words
+from reduction.line.loops import identify_cycles, identify_run
+from reduction.line.product import SlowPull
+from reduction.line.pull import fit_pull
+from reduction.line.quasistatic import quasi_static_of_run
+from reduction.pipeline.locate import Located
+from reduction.record import Floats
+from reduction.settings import CycleSettings
+
+__all__ = ["PullConditions", "parts_of_line", "pull_specimens"]
+
+
+@dataclass(frozen=True)
+class PullConditions:
+    """What a slow pull cannot tell of itself; None where not stated.
+
+    ``waiting_time`` [s] is that since the last dynamic test, ``waiting`` the laboratory's words
+    for it; ``reference_length`` [m] is the length at zero strain, ``reference_tension`` [N] the
+    tension at which it was read.
+    """
+
+    waiting: str = ""
+    waiting_time: float | None = None
+    reference_length: float | None = None
+    reference_tension: float | None = None
+
+
+def pull_specimens(
+    located: Located, strain: Floats, tension: Floats, conditions: PullConditions
+) -> tuple[tuple[SlowPull | None, ...], list[str]]:
+    """Load-strain cubic of each specimen of a slow pull; None and a note where it has none."""
+    pulls: list[SlowPull | None] = []
+    notes: list[str] = []
+    for index, name in enumerate(located.record.specimens):
+        try:
+            pull = fit_pull(
+                located.record.time, strain[index], tension[index], specimen=name,
+                reference_tension=conditions.reference_tension,
+                reference_length=conditions.reference_length,
+                waiting_time=conditions.waiting_time, waiting=conditions.waiting,
+            )  # fmt: skip
+        except (DataError, FitError) as error:
+            notes.append(f"{name}: refused: quasi-static spring constant: {error}")
+            pulls.append(None)
+        else:
+            notes += [f"{name}: {note}" for note in pull.notes]
+            pulls.append(pull)
+    return tuple(pulls), notes
+
+
+def parts_of_line(
+    loops: Loops, pulls: Sequence[SlowPull | None], settings: CycleSettings
+) -> dict[str, Any]:
+    """Parameters of the three-parameter line, of each cycle and of the test, and notes."""
+    constant, spread, notes = quasi_static_of_run(
+        loops, pulls, break_in_cycles=settings.break_in_cycles
+    )
+    # the amplitudes of a wave that is no sine are not those of its fundamental
+    reading = "amplitude" if settings.waveform == "sinusoidal" else "fundamental"
+    given: dict[str, Any] = {
+        "quasi_static_spring_constant": constant,
+        "quasi_static_standard_uncertainty": spread,
+        "reading": reading,
+    }
+    of_test = identify_run(loops, break_in_cycles=settings.break_in_cycles, **given)
+    of_cycles = identify_cycles(loops, **given)
+    return {
+        "line": of_cycles,
+        "line_of_test": of_test,
+        "quasi_static_standard_uncertainty": spread,
+        "line_notes": (*notes, *of_test.notes, *reasons_in_words(of_cycles.reason)),
+    }

@@ -1,0 +1,116 @@
+"""The synthetic nylon line, from its logs to the three-parameter line of each run."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reduction.archive.open import open_archive
+from reduction.batch.run import run_campaign
+from reduction.campaign.load import load_campaign
+
+COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
+RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
+LBF = 4.4482216152605
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("nylon")
+    return run_campaign(
+        load_campaign(RAW / "campaign.toml"), processed=folder / "p", reports=folder / "r",
+        clock=lambda: 0.0,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def truth():
+    table = pd.read_csv(RAW / "truth" / "runs.csv", comment="#").set_index("run")
+    return table.rename(columns=lambda name: name.removesuffix("_lbf").removesuffix("_s"))
+
+
+def of_test(run, name, quantity):
+    with open_archive(run.processed / f"{name}.nc") as archive:
+        return float(archive[f"test_{quantity}"].to_numpy()[0])
+
+
+def test_every_test_is_reduced(run):
+    assert run.exit_status == 0
+    assert len(run.tests) == 16
+    assert {test.status for test in run.tests} <= {"reduced", "reduced_with_notes"}
+    assert {test.n_cycles for test in run.tests} == {13, 0}
+
+
+@pytest.mark.parametrize(
+    ("quantity", "tolerance"),
+    [
+        ("mean_tension", 5e-4),
+        ("tension_amplitude", 2e-3),
+        ("apparent_spring_constant", 5e-3),
+        ("hysteresis_energy", 1e-2),
+        ("quasi_static_spring_constant", 1e-3),
+        ("dissipation_spring_constant", 2e-2),
+        ("relaxation_time", 3e-2),
+    ],
+)
+def test_runs_give_back_the_line_that_made_them(run, truth, quantity, tolerance):
+    unit = 1.0 if quantity == "relaxation_time" else LBF
+    for name, row in truth.iterrows():
+        assert of_test(run, name, quantity) == pytest.approx(row[quantity] * unit, rel=tolerance), (
+            name
+        )
+
+
+def test_stated_uncertainties_cover_the_errors(run, truth):
+    # 60 errors over their standard uncertainties: extremes of a noisy log read high, which
+    # is no scatter, so K_ap is left out
+    names = ("hysteresis_energy", "relaxation_time", "quasi_static_spring_constant")
+    units = (LBF, 1.0, LBF)
+    ratios = [
+        (of_test(run, name, quantity) / (row[quantity] * unit) - 1)
+        * of_test(run, name, quantity)
+        / of_test(run, name, f"{quantity}_standard_uncertainty")
+        for name, row in truth.iterrows()
+        for quantity, unit in zip(names, units, strict=True)
+    ]
+    assert 0.5 < np.sqrt(np.mean(np.square(ratios))) < 2.0
+
+
+def test_the_slow_pull_gives_the_cubic_of_the_report(run):
+    # CG-D-39-80 Table 8: strain = 1.389e-4 T - 3.906e-8 T^2 + 3.795e-12 T^3, T in lbf
+    with open_archive(run.processed / "Q01.nc") as archive:
+        found = archive["pull_strain_coefficient"].to_numpy()[0] * LBF ** np.arange(4)
+        spread = archive["pull_strain_coefficient_standard_uncertainty"].to_numpy()[0]
+        assert archive["pull_waiting_time"].to_numpy() == pytest.approx(86400.0)
+        # 10 inches a minute on 72 in, of which the gauge takes 0.92
+        assert archive["pull_strain_rate"].to_numpy() == pytest.approx(10 / 60 / 66.24, rel=0.01)
+        shares = archive["break_share"].to_numpy()
+        strain = archive["strain_at_break_share"].to_numpy()[0]
+    assert found[1:] == pytest.approx([1.389e-4, -3.906e-8, 3.795e-12], rel=0.01)
+    assert (spread > 0).all()
+    load = shares[shares <= 0.35] * 6400
+    expected = 1.389e-4 * load - 3.906e-8 * load**2 + 3.795e-12 * load**3
+    assert strain[: load.size] == pytest.approx(expected, abs=2e-5)
+    assert np.isnan(strain[shares > 0.36]).all()
+
+
+def test_tables_hold_the_line_and_the_pull(run):
+    tables = run.processed / "tables"
+    line = pd.read_csv(tables / "line.csv")
+    assert line["test_line_refusal"].tolist() == ["given"] * 15
+    cycles = pd.read_csv(tables / "cycles.csv")
+    assert cycles["dissipation_spring_constant [N]"].notna().all()
+    assert (line["synthetic"] == "yes").all()
+    assert pd.read_csv(tables / "slow_pull.csv")["tension_grid [N]"].is_monotonic_increasing
+
+
+def test_the_compliance_checker_finds_nothing(run):
+    products = [run.processed / "R01.nc", run.processed / "Q01.nc"]
+    done = subprocess.run(
+        [sys.executable, str(COMPLIANCE), *map(str, products)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout
