@@ -218,4 +218,4 @@ def share_lost_per_year(
     if lead <= 0:
         return share, float("nan"), float("nan")
     half = float(np.sqrt(middle**2 - lead * last))
-    return share, (middle - half) / lead, (middle + half) / lead
+    return share, float((middle - half) / lead), float((middle + half) / lead)
