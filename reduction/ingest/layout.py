@@ -61,6 +61,20 @@ class Channel(BaseModel):
     time_unit: str = "s"
 
 
+def _check_units(name: str, channel: Channel, dimension: Dimension) -> None:
+    """Refuse a unit that is not one of the channel's dimension."""
+    if channel.unit != CLOCK or name != "time":
+        scale_to_si(channel.unit, dimension)
+    scale_to_si(channel.time_unit, "time")
+    for text in (channel.zero, channel.standard_uncertainty, *(channel.verified_range or ())):
+        if text is not None:
+            parse_quantity(text, dimension)
+    if channel.reference_length is not None:
+        parse_quantity(channel.reference_length, "length")
+    if channel.reference_tension is not None:
+        parse_quantity(channel.reference_tension, "force")
+
+
 class Layout(BaseModel):
     """What a log file looks like.  Rows count from 1, as an editor counts them."""
 
@@ -121,20 +135,13 @@ class Layout(BaseModel):
     def _channels_make_sense(self) -> Layout:
         for name, channel in self.channels.items():
             dimension = self.dimension(name)
-            if channel.unit != CLOCK or name != "time":
-                scale_to_si(channel.unit, dimension)
-            scale_to_si(channel.time_unit, "time")
-            for text in (
-                channel.zero,
-                channel.standard_uncertainty,
-                *(channel.verified_range or ()),
-            ):
-                if text is not None:
-                    parse_quantity(text, dimension)
-            if channel.reference_length is not None:
-                parse_quantity(channel.reference_length, "length")
-            if channel.reference_tension is not None:
-                parse_quantity(channel.reference_tension, "force")
+            try:
+                _check_units(name, channel, dimension)
+            except SettingsError as error:
+                raise SettingsError(
+                    f"channel {name}: {error.problem}", found=error.found, needed=error.needed,
+                    hint=error.hint,
+                ) from error  # fmt: skip
         if self.sample_interval is not None:
             parse_quantity(self.sample_interval, "time")
             if "time" in self.channels:
