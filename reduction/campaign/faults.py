@@ -11,10 +11,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from reduction.errors import ReductionError
+from reduction.errors import ReductionError, SettingsError
 from reduction.ingest.sniff_channels import UNKNOWN
+from reduction.units import Dimension, parse_quantity
 
-__all__ = ["Fault", "faults_of", "listed", "open_questions"]
+__all__ = ["Fault", "faults_of", "in_toml", "listed", "open_questions", "quantity_of"]
 
 _SHOWN = 10
 _LONGEST_FOUND = 60
@@ -35,6 +36,22 @@ class Fault:
     def __str__(self) -> str:
         """``place: what is needed; found ...``."""
         return f"{self.place}: {self.needed}" + (f"; found {self.found}" if self.found else "")
+
+
+def in_toml(path: Path, problem: str, **kwargs: Any) -> SettingsError:
+    """An error of campaign.toml, with the file in front."""
+    return SettingsError(f"{path}: {problem}", **kwargs)
+
+
+def quantity_of(path: Path, place: str, text: str, dimension: Dimension) -> float:
+    """Value in SI of what stands at a place of campaign.toml; its error names file and place."""
+    try:
+        return parse_quantity(text, dimension)
+    except SettingsError as error:
+        raise in_toml(
+            path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        ) from error  # fmt: skip
 
 
 def listed(headline: str, entries: Sequence[object]) -> str:

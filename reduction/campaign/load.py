@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterable
 from dataclasses import replace
@@ -12,22 +13,21 @@ import numpy as np
 from pydantic import ValidationError
 
 from reduction.campaign.experiments import plan_experiment
-from reduction.campaign.faults import faults_of, listed, open_questions
+from reduction.campaign.faults import faults_of, in_toml, listed, open_questions, quantity_of
 from reduction.campaign.marks import read_marks
 from reduction.campaign.model import (
     CampaignFile,
     Defaults,
-    SpecimenSection,
     StepSection,
     TestSection,
 )
 from reduction.campaign.numbers import apply_numbers
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
-from reduction.campaign.testtable import read_test_table
+from reduction.campaign.specimens import specimen_of
+from reduction.campaign.testtable import merge_tests, read_test_table
 from reduction.errors import LogError, SettingsError
-from reduction.record import Specimen, SpliceMarks
+from reduction.record import SpliceMarks
 from reduction.settings import CycleSettings, ReductionSettings, StrainSettings
-from reduction.units import parse_quantity
 
 __all__ = ["load_campaign"]
 
@@ -37,8 +37,14 @@ _KEPT = (
 )  # fmt: skip
 
 
-def _in_toml(path: Path, problem: str, **kwargs: Any) -> SettingsError:
-    return SettingsError(f"{path}: {problem}", **kwargs)
+def _hint(path: Path) -> str | None:
+    """What to do about a name that TOML does not allow twice."""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    if re.search(r"^tests *=", text, re.MULTILINE) and re.search(
+        r"^\[+tests\.", text, re.MULTILINE
+    ):
+        return 'With [tests.ID] beside it, name the table of tests as tests = "..." in [campaign].'
+    return None
 
 
 def _parse(path: Path) -> CampaignFile:
@@ -46,16 +52,18 @@ def _parse(path: Path) -> CampaignFile:
         with path.open("rb") as lines:
             table = tomllib.load(lines)
     except OSError as error:
-        raise _in_toml(
+        raise in_toml(
             path, "the campaign cannot be read", found=error.strerror or str(error),
             needed="a campaign.toml; `reduction init FOLDER` writes a first one",
         ) from error  # fmt: skip
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise _in_toml(path, "the campaign is not TOML", found=str(error)) from error
+        raise in_toml(
+            path, "the campaign is not TOML", found=str(error), hint=_hint(path)
+        ) from error
     places = open_questions(path.parent, table)
     if places:
         count = f"{len(places)} values are" if len(places) > 1 else "1 value is"
-        raise _in_toml(path, listed(f"{count} still '?', first {places[0]}", places))
+        raise in_toml(path, listed(f"{count} still '?', first {places[0]}", places))
     try:
         return CampaignFile.model_validate(table)
     except ValidationError as error:
@@ -65,41 +73,7 @@ def _parse(path: Path) -> CampaignFile:
             f"{count} cannot be used, first '{faults[0].place}' "
             "(`reduction schema` prints every key that is known)"
         )
-        raise _in_toml(path, listed(headline, faults)) from error
-
-
-def _length(text: str, where: str, path: Path) -> float:
-    value = parse_quantity(text, "length")
-    if not value > 0:
-        raise _in_toml(path, f"{where} is not positive", found=text, needed="above zero")
-    return value
-
-
-def _specimen(path: Path, name: str, section: SpecimenSection) -> Specimen:
-    readings = (section.diameter,) if isinstance(section.diameter, str) else section.diameter
-    where = f"specimens.{name}.diameter"
-    stretched = tuple(
-        (parse_quantity(stretch, "strain"), _length(reading, where, path))
-        for stretch, at_stretch in section.stretched_diameter.items()
-        for reading in at_stretch
-    )
-    strength = section.rated_break_strength
-    gauge = section.gauge_length
-    return Specimen(
-        name=name,
-        kind=section.kind,
-        material=section.material,
-        construction=section.construction,
-        condition=section.condition,
-        diameter=tuple(_length(reading, where, path) for reading in readings),
-        stretched_diameters=stretched,
-        rated_break_strength=None if strength is None else parse_quantity(strength, "force"),
-        rated_break_strength_source=section.rated_break_strength_source,
-        gauge_length=None
-        if gauge is None
-        else _length(gauge, f"specimens.{name}.gauge_length", path),
-        notes=(section.note,) if section.note else (),
-    )
+        raise in_toml(path, listed(headline, faults)) from error
 
 
 def _inside(path: Path, name: str, *, is_needed: bool = True) -> str:
@@ -107,7 +81,7 @@ def _inside(path: Path, name: str, *, is_needed: bool = True) -> str:
     folder = path.parent.resolve()
     target = (folder / name).resolve()
     if not name or Path(name).is_absolute() or not target.is_relative_to(folder):
-        raise _in_toml(
+        raise in_toml(
             path, "a file lies outside the campaign folder", found=repr(name),
             needed="a path inside the folder of campaign.toml, links followed",
         )  # fmt: skip
@@ -120,10 +94,14 @@ def _range(path: Path, test: str, step: StepSection) -> dict[str, Any]:
     if isinstance(step.start, int) and isinstance(step.end, int):
         return {"time_range": None, "cycle_range": (step.start, step.end)}
     if isinstance(step.start, str) and isinstance(step.end, str):
-        times = (parse_quantity(step.start, "time"), parse_quantity(step.end, "time"))
+        place = f"tests.{test}.steps '{step.name}'"
+        times = (
+            quantity_of(path, f"{place}: from", step.start, "time"),
+            quantity_of(path, f"{place}: to", step.end, "time"),
+        )
         if times[0] < times[1]:
             return {"time_range": times, "cycle_range": None}
-    raise _in_toml(
+    raise in_toml(
         path, f"step '{step.name}' of test '{test}' has no range",
         found=f"from {step.start!r} to {step.end!r}",
         needed='two rising times with units ("1200 s") or two cycle numbers',
@@ -148,19 +126,19 @@ def _plan(
     )
     for _, piece_layout in pieces:
         if piece_layout not in file.layouts:
-            raise _in_toml(
+            raise in_toml(
                 path, f"test '{name}' has no layout", found=repr(piece_layout),
                 needed="one of [layouts]: " + (", ".join(file.layouts) or "there are none"),
             )  # fmt: skip
     specimens = given("specimens")
     unknown = [entry for entry in specimens if entry not in file.specimens]
     if unknown or not specimens:
-        raise _in_toml(
+        raise in_toml(
             path, f"test '{name}' names no known specimen", found=", ".join(unknown) or "none",
             needed="one of [specimens]: " + ", ".join(file.specimens),
         )  # fmt: skip
     if len(set(specimens)) < len(specimens):
-        raise _in_toml(
+        raise in_toml(
             path, f"test '{name}' names a specimen twice", found=", ".join(specimens),
             needed="each specimen once, in the order of the tension channels",
         )  # fmt: skip
@@ -175,10 +153,10 @@ def _plan(
         try:
             settings = apply_numbers(settings, table, control=given("control"))
         except SettingsError as error:
-            raise _in_toml(path, f"test '{name}': {error}") from error
+            raise in_toml(path, f"test '{name}': {error}") from error
     kind = test.kind or defaults.kind
     if len({step.name.replace(" ", "-") for step in test.steps}) < len(test.steps):
-        raise _in_toml(path, f"two steps of test '{name}' have one name")
+        raise in_toml(path, f"two steps of test '{name}' have one name")
     attributes = {key: given(key) for key in _KEPT if given(key)}
     attributes |= {key: getattr(test, key) for key in ("date", "rest") if getattr(test, key)}
     return TestPlan(
@@ -262,18 +240,13 @@ def load_campaign(path: Path) -> Campaign:
     if table:
         tests |= read_test_table(path.parent / _inside(path, table))
     if not isinstance(file.tests, str):
-        twice = sorted(set(tests) & set(file.tests))
-        if twice:
-            raise _in_toml(
-                path, f"{len(twice)} test(s) stand both in {table} and in [tests], first {twice[0]}"
-            )
-        tests |= file.tests
+        tests = merge_tests(path, table, tests, file.tests)
     if not tests:
-        raise _in_toml(path, "the campaign has no tests", needed="at least one [tests.NAME]")
+        raise in_toml(path, "the campaign has no tests", needed="at least one [tests.NAME]")
     plans = {name: _plan(path, name, test, file.defaults, file) for name, test in tests.items()}
     for name, plan in plans.items():
         if plan.part_of is not None and plan.part_of not in plans:
-            raise _in_toml(
+            raise in_toml(
                 path, f"test '{name}' is part of a test that the campaign lacks",
                 found=repr(plan.part_of), needed="one of " + ", ".join(plans),
             )  # fmt: skip
@@ -284,7 +257,7 @@ def load_campaign(path: Path) -> Campaign:
     for specimen, rows in marks.items():
         unknown = sorted(set(rows.test) - set(plans))
         if unknown:
-            raise _in_toml(
+            raise in_toml(
                 path, f"the marks of '{specimen}' name a test that the campaign lacks",
                 found=", ".join(unknown), needed="one of " + ", ".join(plans),
             )  # fmt: skip
@@ -295,7 +268,7 @@ def load_campaign(path: Path) -> Campaign:
     }
     if file.campaign.synthetic or "synthetic" in file.campaign.source.lower():
         attributes["synthetic"] = "yes"
-    specimens = {name: _specimen(path, name, section) for name, section in file.specimens.items()}
+    specimens = {name: specimen_of(path, name, section) for name, section in file.specimens.items()}
     return Campaign(
         path=path,
         id=file.campaign.id,

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, field_validator
 
+from reduction.errors import SettingsError
 from reduction.ingest.layout import Layout
 from reduction.settings import StrainMethod
 
@@ -155,7 +156,8 @@ class TestSection(_Kept):
     __test__ = False  # a test of a tether, not of this software
 
     kind: TestKind | None = None
-    file: Text | tuple[FilePiece, ...]
+    file: Text | tuple[FilePiece, ...] = ""
+    """Required, here or in the table of tests."""
     order: int | None = None
     """Place in the specimens' history."""
     part_of: Identifier | None = None
@@ -166,6 +168,18 @@ class TestSection(_Kept):
     target_strain: tuple[float, ...] = ()
     n_cycles: int | None = Field(default=None, ge=1)
     steps: tuple[StepSection, ...] = ()
+
+    @field_validator("file", mode="before")
+    @classmethod
+    def _pieces_are_tables(cls, value: object) -> object:
+        """A list of file names has no room for the layout of each piece."""
+        if isinstance(value, list | tuple) and any(isinstance(entry, str) for entry in value):
+            raise SettingsError(
+                "the pieces of a record are not tables",
+                found=repr(value),
+                needed='a file name, or a list such as [{ file = "a.csv" }, { file = "b.csv" }]',
+            )
+        return value
 
 
 class ExperimentSection(_Section):

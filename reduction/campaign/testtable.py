@@ -8,14 +8,26 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from reduction.campaign.faults import faults_of
+from reduction.campaign.faults import faults_of, in_toml, listed
 from reduction.campaign.model import Identifier, TestSection
-from reduction.errors import LogError
+from reduction.errors import SettingsError
 
-__all__ = ["read_test_table"]
+__all__ = ["merge_tests", "read_test_table"]
 
 _LISTS = ("specimens", "target_strain")
 _WHOLE = ("order", "n_cycles")
+_STRAIN = ("method", "marks")
+# tables of campaign.toml, which no cell can hold
+_TABLES = ("strain", "reduction", "steps")
+_COLUMNS = ("id", *(name for name in TestSection.model_fields if name not in _TABLES), *_STRAIN)
+
+
+def _in_table(
+    path: Path, problem: str, *, row: int | None = None, channel: str = "", **kwargs: Any
+) -> SettingsError:
+    """An error of the table of tests, ``FILE:ROW [COLUMN]``."""
+    place = ("" if row is None else f":{row}") + (f" [{channel}]" if channel else "")
+    return SettingsError(f"{path}{place}: {problem}", **kwargs)
 
 
 def _cells(path: Path, row: int, cells: dict[str, str]) -> dict[str, Any]:
@@ -27,11 +39,11 @@ def _cells(path: Path, row: int, cells: dict[str, str]) -> dict[str, Any]:
             continue
         if name in _LISTS:
             table[name] = [entry.strip() for entry in text.split(";")]
-        elif name in ("method", "marks"):
+        elif name in _STRAIN:
             table.setdefault("strain", {})[name] = text
         elif name in _WHOLE:
             if not text.lstrip("-").isdigit():
-                raise LogError(
+                raise _in_table(
                     path, f"{name} is not a whole number", row=row, channel=name,
                     found=repr(text), needed="a whole number",
                 )  # fmt: skip
@@ -57,43 +69,100 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
 
     Raises
     ------
-    LogError
-        With the row, if a row cannot be used.
+    SettingsError
+        With row and column, if the table or a row cannot be used.
     """
     try:
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise LogError(path, "the table of tests is not UTF-8 text", found=str(error)) from error
+        raise _in_table(path, "the table of tests is not UTF-8 text", found=str(error)) from error
     rows = csv.reader(text.splitlines())
     header = [name.strip() for name in next(rows, [])]
     if "id" not in header or "file" not in header or len(set(header)) != len(header):
-        raise LogError(
+        raise _in_table(
             path, "the table of tests has no usable header", row=1, found=", ".join(header),
             needed="id, file and keys of [tests.ID], each once",
         )  # fmt: skip
+    for name in header:
+        if name not in _COLUMNS:
+            raise _in_table(
+                path, "a column is no key of a test", row=1, channel=name,
+                needed="one of " + ", ".join(_COLUMNS),
+                hint=f"{' and '.join(_TABLES[1:])} stand in campaign.toml, as [tests.ID]."
+                if name in _TABLES else None,
+            )  # fmt: skip
     tests: dict[str, TestSection] = {}
     identifier = TypeAdapter(Identifier)
     for number, line in enumerate(rows, start=2):
         if not any(cell.strip() for cell in line):
             continue
         if len(line) != len(header):
-            raise LogError(
+            raise _in_table(
                 path, "a row has another number of cells than the header", row=number,
                 found=str(len(line)), needed=str(len(header)),
             )  # fmt: skip
         cells = dict(zip(header, line, strict=True))
         name = cells["id"].strip()
         if name in tests:
-            raise LogError(path, "a test stands twice", row=number, channel="id", found=repr(name))
+            raise _in_table(path, "a test stands twice", row=number, channel="id", found=repr(name))
         filled = _cells(path, number, cells)
+        if "file" not in filled:
+            raise _in_table(path, "a test has no file", row=number, channel="file")
         try:
             identifier.validate_python(name)
             tests[name] = TestSection.model_validate(filled)
         except ValidationError as error:
             first, *others = faults_of(error, filled)
-            raise LogError(
+            raise _in_table(
                 path, "a row of tests cannot be used", row=number, channel=first.place or "id",
                 found=first.found or None, needed=first.needed.removeprefix("Input should be "),
                 hint=f"Also {', '.join(map(str, others))}." if others else None,
             ) from error  # fmt: skip
+    return tests
+
+
+def merge_tests(
+    path: Path, table: str, rows: dict[str, TestSection], sections: dict[str, TestSection]
+) -> dict[str, TestSection]:
+    """Tests of the table and of campaign.toml; a test may stand in both, a key of it in one.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The campaign.toml.
+    table : str
+        Name of the table of tests; empty where there is none.
+    rows, sections : dict of str to TestSection
+        Of the table, and of ``[tests.ID]``: there stands what no cell can hold, the steps
+        of a log and numbers of the reduction.
+
+    Returns
+    -------
+    tests : dict of str to TestSection
+        Those of the table first, in its order.
+
+    Raises
+    ------
+    SettingsError
+        If a key of a test stands in both, or a test has no file.
+    """
+    twice = [
+        f"tests.{name}.{key}"
+        for name in rows.keys() & sections.keys()
+        for key in sorted(rows[name].model_fields_set & sections[name].model_fields_set)
+    ]
+    if twice:
+        count = f"{len(twice)} settings stand" if len(twice) > 1 else "1 setting stands"
+        headline = f"{count} both in {table} and in [tests], first {min(twice)}"
+        raise in_toml(path, listed(headline, sorted(twice)))
+    tests = rows | sections
+    for name in rows.keys() & sections.keys():
+        section = sections[name]
+        own = {key: getattr(section, key) for key in section.model_fields_set}
+        tests[name] = rows[name].model_copy(update=own)
+    missing = [f"tests.{name}.file: is required" for name, test in tests.items() if not test.file]
+    if missing:
+        count = f"{len(missing)} tests have" if len(missing) > 1 else "1 test has"
+        where = f", here or as a row of {table}" if table else ""
+        raise in_toml(path, listed(f"{count} no file{where}", missing))
     return tests

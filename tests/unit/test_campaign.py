@@ -90,21 +90,91 @@ def test_the_table_may_stand_in_place_of_the_sections(folder):
         ("id,file\nT,T.csv\nT,T.csv\n", r"tests.csv:3 \[id\]: a test stands twice; found 'T'"),
         ("id,file,order\nT,T.csv,first\n", r"tests.csv:2 \[order\]: .*found 'first'"),
         ("id,file\nT\n", r"tests.csv:2: .*another number of cells.*found 1; needed 2"),
-        ("id,file,colour\nT,T.csv,red\n", r"tests.csv:2 \[colour\]"),
+        (
+            "id,file,colour\nT,T.csv,red\n",
+            r"tests.csv:1 \[colour\]: a column is no key of a test; needed one of id, .*, method, "
+            r"marks$",
+        ),
+        (
+            "id,file,steps\nT,T.csv,red\n",
+            r"tests.csv:1 \[steps\]: .*reduction and steps stand in campaign.toml, as \[tests.ID\]",
+        ),
+        ("id,file\nT,\n", r"tests.csv:2 \[file\]: a test has no file"),
         ("id,file\n../T,T.csv\n", r"tests.csv:2 \[id\]"),
     ],
 )
 def test_a_row_of_tests_that_cannot_be_used_is_named(folder, rows, message):
     (folder / "tests.csv").write_text(rows)
-    with pytest.raises(LogError, match=message):
+    with pytest.raises(SettingsError, match=message):
         load(folder, 'tests = "tests.csv"\n' + BASE)
 
 
-def test_a_test_in_both_places_is_refused(folder):
-    (folder / "tests.csv").write_text("id,file\nT,T.csv\n")
-    text = BASE.replace('title = "t"', 'title = "t"\ntests = "tests.csv"') + TEST
-    with pytest.raises(SettingsError, match="stand both in tests.csv and in"):
-        load(folder, text)
+BESIDE = BASE.replace('title = "t"', 'title = "t"\ntests = "tests.csv"')
+STEP = '[[tests.T.steps]]\nname = "pull"\nfrom = "2 s"\nto = "9 s"\n'
+
+
+def test_steps_and_numbers_of_a_test_in_the_table_stand_in_campaign_toml(folder):
+    (folder / "tests.csv").write_text("id,file,order\nT,T.csv,2\nU,T.csv,3\n")
+    numbers = '[tests.T.reduction.modulus]\nwindow = "12 %"\n'
+    tests = load(folder, BESIDE + numbers + STEP).tests
+    assert list(tests) == ["T", "U"]
+    assert tests["T"].order == 2 and tests["T"].files == (("T.csv", "l"),)
+    assert tests["T"].steps[0].time_range == (2.0, 9.0)
+    assert tests["T"].settings.modulus.window == pytest.approx(0.12)
+    assert not tests["U"].steps
+
+
+def test_a_setting_in_both_places_is_refused(folder):
+    (folder / "tests.csv").write_text("id,file,order\nT,T.csv,1\n")
+    message = r"2 settings stand both in tests.csv and in \[tests\], first tests.T.file\n"
+    with pytest.raises(SettingsError, match=message):
+        load(folder, BESIDE + TEST + "order = 1\n")
+
+
+def test_a_test_without_a_file_is_refused(folder):
+    with pytest.raises(SettingsError, match=r"1 test has no file\n  tests.T.file: is required$"):
+        load(folder, BASE + STEP)
+    (folder / "tests.csv").write_text("id,file\nU,T.csv\n")
+    with pytest.raises(SettingsError, match="1 test has no file, here or as a row of tests.csv"):
+        load(folder, BESIDE + STEP)
+
+
+def test_two_kinds_of_tests_at_one_place_are_told_where_the_table_goes(folder):
+    with pytest.raises(SettingsError, match=r"not TOML; .*tests = \"...\" in \[campaign\]\.$"):
+        load(folder, 'tests = "tests.csv"\n' + BASE + TEST)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            'diameter = ["1 inch", "1.2 inch"]', 'diameter = ["1 inch", "20 N"]',
+            r"campaign.toml: specimens.a.diameter: unit 'N' is not a unit of length; found 'N'",
+        ),
+        (
+            'diameter = ["1 inch", "1.2 inch"]', 'rated_break_strength = "3 m"',
+            "campaign.toml: specimens.a.rated_break_strength: unit 'm' is not a unit of force",
+        ),
+        (
+            'from = "2 s"', 'from = "2"',
+            r"campaign.toml: tests.T.steps 'pull': from: a value has no unit; found '2'; needed",
+        ),
+        (
+            'unit = "lbf"', 'unit = "ft"',
+            r"\n  layouts.l: channel tension.1: unit 'ft' is not a unit of force; found 'ft'",
+        ),
+        (
+            'file = "T.csv"', 'file = ["T.csv", "U.csv"]',
+            r"\n  tests.T.file: the pieces of a record are not tables; found \['T.csv', 'U.csv'\]; "
+            r"needed a file name, or a list such as \[\{ file = \"a.csv\" \}",
+        ),
+    ],
+)  # fmt: skip
+def test_a_value_that_cannot_be_used_is_told_with_file_and_key(folder, old, new, message):
+    text = BASE + TEST + STEP
+    assert old in text
+    with pytest.raises(SettingsError, match=message):
+        load(folder, text.replace(old, new))
 
 
 @pytest.mark.parametrize(
@@ -209,7 +279,7 @@ def test_all_faults_of_a_row_of_tests_are_told(folder):
         r"tests.csv:2 \[n_cycles\]: a row .* needed greater than or equal to 1. "
         "Also colour: is not a known key; found 'red'.$"
     )
-    with pytest.raises(LogError, match=words):
+    with pytest.raises(SettingsError, match=words):
         load(folder, 'tests = "tests.csv"\n' + BASE)
 
 
@@ -251,7 +321,7 @@ def test_more_than_ten_open_questions_are_counted(folder):
 
 def test_tables_that_cannot_be_read_are_left_to_their_readers(folder):
     (folder / "tests.csv").write_bytes(b"id,file\n\xff,?\n")
-    with pytest.raises(LogError, match="the table of tests is not UTF-8 text"):
+    with pytest.raises(SettingsError, match="the table of tests is not UTF-8 text"):
         load(folder, 'tests = "tests.csv"\n' + BASE)
     with pytest.raises(SettingsError, match="lies outside the campaign folder"):
         load(folder, 'tests = "../tests.csv"\n' + BASE)

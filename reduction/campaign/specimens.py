@@ -1,0 +1,51 @@
+"""``[specimens.NAME]`` to `Specimen`, in SI."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from reduction.campaign.faults import in_toml, quantity_of
+from reduction.campaign.model import SpecimenSection
+from reduction.record import Specimen
+
+__all__ = ["specimen_of"]
+
+
+def _length(text: str, where: str, path: Path) -> float:
+    value = quantity_of(path, where, text, "length")
+    if not value > 0:
+        raise in_toml(path, f"{where} is not positive", found=text, needed="above zero")
+    return value
+
+
+def specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
+    """The specimen before its first test; an error names campaign.toml and the key."""
+    readings = (section.diameter,) if isinstance(section.diameter, str) else section.diameter
+    where = f"specimens.{name}.diameter"
+    stretched = tuple(
+        (
+            quantity_of(path, f"specimens.{name}.stretched_diameter", stretch, "strain"),
+            _length(reading, f"specimens.{name}.stretched_diameter", path),
+        )
+        for stretch, at_stretch in section.stretched_diameter.items()
+        for reading in at_stretch
+    )
+    strength = section.rated_break_strength
+    gauge = section.gauge_length
+    return Specimen(
+        name=name,
+        kind=section.kind,
+        material=section.material,
+        construction=section.construction,
+        condition=section.condition,
+        diameter=tuple(_length(reading, where, path) for reading in readings),
+        stretched_diameters=stretched,
+        rated_break_strength=None
+        if strength is None
+        else quantity_of(path, f"specimens.{name}.rated_break_strength", strength, "force"),
+        rated_break_strength_source=section.rated_break_strength_source,
+        gauge_length=None
+        if gauge is None
+        else _length(gauge, f"specimens.{name}.gauge_length", path),
+        notes=(section.note,) if section.note else (),
+    )
