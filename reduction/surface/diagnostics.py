@@ -88,8 +88,9 @@ def _straightness(studentized: Floats, used: Bools) -> Floats:
     place = np.arange(1, used.shape[1] + 1)
     inside = place <= count
     score = np.where(inside, ndtri(np.where(inside, (place - 0.375) / (count + 0.25), 0.5)), 0.0)
-    centred = ordered - np.mean(ordered, axis=1, keepdims=True, where=inside & (count > 2))
-    centred = np.where(inside, centred, 0.0)
+    inside &= count > 2
+    middle = np.sum(np.where(inside, ordered, 0.0), axis=1, keepdims=True) / np.maximum(count, 1)
+    centred = np.where(inside, ordered - middle, 0.0)
     product = np.sum(centred * score, axis=1) ** 2
     size = np.sum(centred**2, axis=1) * np.sum(score**2, axis=1)
     return np.asarray(np.divide(product, size, where=size > 0, out=np.full(size.shape, np.nan)))

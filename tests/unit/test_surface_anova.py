@@ -1,0 +1,172 @@
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import stats
+from statsmodels.formula.api import ols
+from statsmodels.stats.anova import anova_lm
+
+from reduction.errors import DataError, SettingsError
+from reduction.surface.anova import (
+    anova_table,
+    lack_of_fit,
+    replicate_cells,
+    statistics_from_r2,
+)
+from reduction.surface.designs import box_behnken
+from reduction.surface.fit import fit_least_squares
+from reduction.surface.product import LACK_OF_FIT_REASONS
+from reduction.surface.terms import model_matrix, quadratic_exponents
+
+EXPONENTS = quadratic_exponents(3)
+RUNS = box_behnken(3).coded
+MATRIX = model_matrix(RUNS, EXPONENTS)
+MEAN = np.ones((15, 1))
+
+
+def fitted(responses, runs=RUNS):
+    return fit_least_squares(model_matrix(runs, EXPONENTS), np.atleast_2d(responses))
+
+
+def test_statistics_are_those_of_f():
+    found = statistics_from_r2(0.95, n_runs=15, n_terms=10)
+    assert found.f == pytest.approx((0.95 / 9) / (0.05 / 5), rel=1e-12)
+    assert found.p_value == pytest.approx(stats.f.sf(found.f, 9, 5), rel=1e-10)
+    assert found.critical == pytest.approx(4.772, abs=5e-4)
+    assert found.printed_f / found.f == pytest.approx(18 / 25, rel=1e-12)
+    assert found.printed_critical == pytest.approx(stats.f.isf(0.05, 4, 10), rel=1e-10)
+
+
+def test_fourteen_runs_have_nine_and_four_degrees_of_freedom():
+    found = statistics_from_r2([0.95, 0.95, 0.95], n_runs=[14, 11, 10], n_terms=10)
+    np.testing.assert_allclose(found.critical[:2], stats.f.isf(0.05, 9, [4, 1]), rtol=1e-10)
+    assert np.isfinite(found.printed_f).tolist() == [True, False, False]
+    assert np.isfinite(found.f).tolist() == [True, True, False]
+
+
+def test_noise_alone_has_the_r2_of_its_degrees_of_freedom():
+    """Nine terms of fourteen degrees of freedom: mean r2 is 9/14, .643."""
+    responses = np.random.default_rng(3).normal(size=(20_000, 15))
+    fit = fitted(responses)
+    r2 = 1 - fit.residual_sum_of_squares / fit.total_sum_of_squares
+    assert r2.mean() == pytest.approx(9 / 14, abs=0.003)
+    rejected = statistics_from_r2(r2, n_runs=15, n_terms=10).p_value < 0.05
+    assert rejected.mean() == pytest.approx(0.05, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [({"n_terms": 1}, "the mean alone has no F"), ({"level": 1.0}, "level of a test")],
+)
+def test_statistics_that_cannot_be_are_refused(change, message):
+    with pytest.raises(SettingsError, match=message):
+        statistics_from_r2(0.9, **{"n_runs": 15, "n_terms": 10, **change})
+
+
+def test_sequential_sums_are_those_of_statsmodels_for_levels_as_met():
+    rng = np.random.default_rng(6)
+    runs = RUNS + rng.normal(0, 0.05, RUNS.shape)
+    response = rng.normal(size=15) + runs[:, 0]
+    order = [0, 4, 5, 6, 7, 8, 9, 1, 2, 3]
+    fit = fit_least_squares(model_matrix(runs, EXPONENTS)[:, order], [response])
+    data = pd.DataFrame({"y": response, "a": runs[:, 0], "b": runs[:, 1], "c": runs[:, 2]})
+    other = anova_lm(
+        ols("y ~ a + b + c + a:b + a:c + b:c + I(a**2) + I(b**2) + I(c**2)", data).fit(), typ=1
+    )
+    np.testing.assert_allclose(
+        fit.sequential_sum_of_squares[0, 1:], other["sum_sq"].to_numpy()[:-1], rtol=1e-9
+    )
+    groups = {"first order": slice(1, 4), "interactions": slice(4, 7), "squares": slice(7, 10)}
+    lack = lack_of_fit(fit, replicate_cells(runs, tolerance=0.3), baseline=MEAN)
+    table = anova_table(fit, groups, lack)
+    assert table.source[-1] == "total"
+    assert table.sum_of_squares[0, -1] == pytest.approx(np.sum((response - response.mean()) ** 2))
+    assert table.degrees_of_freedom[0].tolist() == [3, 3, 3, 5, 3, 2, 14]
+    assert table.sum_of_squares[0, 4] + table.sum_of_squares[0, 5] == pytest.approx(
+        table.sum_of_squares[0, 3]
+    )
+
+
+def test_near_repeats_are_one_cell_and_chains_of_them_are_not():
+    chain = np.stack([np.arange(5) * 0.08, np.zeros(5)], axis=1)
+    cell = replicate_cells(chain, tolerance=0.1)
+    for number in np.unique(cell):
+        assert np.ptp(chain[cell == number, 0]) <= 0.1 + 1e-9
+    assert len(np.unique(cell)) >= 3
+
+
+def test_exact_repeats_are_found_without_tolerance_after_a_change_of_units():
+    levels = 0.1 + 0.2 * (RUNS + 1)
+    coded = (levels - 0.3) / 0.2
+    assert len(np.unique(replicate_cells(coded, tolerance=0.0))) == 13
+
+
+def test_a_single_run_is_its_own_cell():
+    assert replicate_cells([[np.nan], [1.0]]).tolist() == [-1, 0]
+
+
+@pytest.mark.parametrize("tolerance", [-0.1, 0.5])
+def test_a_tolerance_out_of_range_is_refused(tolerance):
+    with pytest.raises(SettingsError, match="tolerance of repeated runs is out of range"):
+        replicate_cells(RUNS, tolerance=tolerance)
+
+
+def test_near_repeats_reject_as_often_as_the_level_says():
+    """A true quadratic, levels met within 0.03 and scatter alone: 5 % false alarms."""
+    rng = np.random.default_rng(11)
+    runs = RUNS + rng.uniform(-0.03, 0.03, RUNS.shape)
+    truth = model_matrix(runs, EXPONENTS) @ np.array([9, 1, -2, 1, 2, 4, 1, 1, 0, 1.0])
+    fit = fitted(truth + rng.normal(0, 0.3, (20_000, 15)), runs)
+    lack = lack_of_fit(fit, replicate_cells(runs), baseline=MEAN)
+    assert not lack.reason.any()
+    assert np.mean(lack.p_value < 0.05) == pytest.approx(0.05, abs=0.006)
+
+
+def test_steep_surfaces_over_near_repeats_do_not_pass_for_pure_error():
+    """The slope makes the raw repeats differ 30 times more than the scatter does."""
+    rng = np.random.default_rng(12)
+    runs = RUNS.copy()
+    runs[12:, 0] = [-0.05, 0.0, 0.05]
+    noise = rng.normal(0, 0.05, (4000, 15))
+    fit = fitted(30 * runs[:, 0] + noise, runs)
+    lack = lack_of_fit(fit, replicate_cells(runs), baseline=MEAN)
+    mean_square = np.mean(lack.pure_error_sum_of_squares / lack.pure_error_degrees_of_freedom)
+    assert mean_square == pytest.approx(0.05**2, rel=0.05)
+
+
+def test_each_lack_of_fit_that_cannot_be_tested_says_why():
+    rng = np.random.default_rng(1)
+    responses = rng.normal(size=(5, 15))
+    responses[0, 13:] = np.nan  # one centre run left
+    responses[1, 12:] = 2.0  # centres agree
+    responses[2] = MATRIX @ np.ones(10)
+    responses[3, :6] = np.nan
+    fit = fitted(responses)
+    lack = lack_of_fit(fit, replicate_cells(RUNS), baseline=MEAN)
+    texts = [LACK_OF_FIT_REASONS[code] for code in lack.reason]
+    assert texts == [
+        "no run is repeated",
+        "the repeated runs agree to the last digit",
+        "there is no surface, or its residuals are rounding",
+        "there is no surface, or its residuals are rounding",
+        "",
+    ]
+    assert np.isfinite(lack.f).tolist() == [False] * 4 + [True]
+
+
+def test_runs_no_more_different_than_terms_cannot_lack_fit():
+    matrix = model_matrix([[-1.0], [0.0], [0.0], [1.0]], quadratic_exponents(1))
+    fit = fit_least_squares(matrix, [[1.0, 2.0, 2.5, 4.0]])
+    lack = lack_of_fit(fit, np.array([0, 1, 1, 2]), baseline=np.ones((4, 1)))
+    assert LACK_OF_FIT_REASONS[lack.reason[0]] == "no more different runs than terms"
+
+
+def test_cells_that_do_not_pair_up_are_refused():
+    with pytest.raises(DataError, match="cells do not pair up with the runs; found 14 cells"):
+        lack_of_fit(fitted(np.arange(15.0)), np.zeros(14, dtype=int), baseline=MEAN)
+
+
+def test_sources_with_a_gap_are_refused():
+    fit = fitted(np.arange(15.0) ** 2)
+    lack = lack_of_fit(fit, replicate_cells(RUNS), baseline=MEAN)
+    with pytest.raises(SettingsError, match="sources do not cover the columns in order"):
+        anova_table(fit, {"first order": slice(1, 4), "squares": slice(5, 10)}, lack)

@@ -1,0 +1,113 @@
+import warnings
+
+import numpy as np
+import pytest
+from statsmodels.regression.linear_model import GLS
+from statsmodels.regression.mixed_linear_model import MixedLM
+
+from reduction.errors import DataError
+from reduction.surface.blocks import block_columns, fit_random_intercept
+from reduction.surface.designs import box_behnken
+from reduction.surface.terms import model_matrix, quadratic_exponents
+
+RUNS = np.tile(box_behnken(3).coded, (4, 1))
+MATRIX = model_matrix(RUNS, quadratic_exponents(3))
+BLOCK = np.repeat(np.arange(4), 15)
+
+
+@pytest.fixture
+def responses():
+    rng = np.random.default_rng(31)
+    level = rng.normal(0, 0.6, (4, 4))[:, BLOCK]
+    values = MATRIX @ np.linspace(3, 1, 10) + level + rng.normal(0, 0.3, (4, 60))
+    values[1, [3, 17, 18, 40]] = np.nan  # unbalanced
+    values[2, 45:] = np.nan  # one specimen not tested
+    return values
+
+
+def test_random_blocks_are_those_of_statsmodels(responses):
+    found = fit_random_intercept(MATRIX, responses, block=BLOCK)
+    for row, response in enumerate(responses):
+        has = np.isfinite(response)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            other = MixedLM(response[has], MATRIX[has], groups=BLOCK[has]).fit(
+                reml=True, method="bfgs", gtol=1e-10
+            )
+        np.testing.assert_allclose(found.coefficient[row], other.fe_params, rtol=1e-6)
+        assert found.sigma[row] ** 2 == pytest.approx(other.scale, rel=1e-5)
+        assert found.standard_deviation[row] ** 2 == pytest.approx(other.cov_re[0, 0], rel=1e-4)
+        # bse_fe is of the observed Hessian; the covariance of generalized least squares is not
+        of_block = (BLOCK[has][:, None] == np.arange(4)).astype(float)
+        ratio = other.cov_re[0, 0] / other.scale
+        general = GLS(
+            response[has], MATRIX[has], sigma=np.eye(has.sum()) + ratio * of_block @ of_block.T
+        )
+        np.testing.assert_allclose(
+            found.covariance_factor[row], general.fit().normalized_cov_params, rtol=1e-4, atol=1e-9
+        )
+        for group, effect in other.random_effects.items():
+            assert found.effect[row, group] == pytest.approx(np.asarray(effect)[0], rel=1e-4)
+
+
+def test_balanced_blocks_have_the_variance_of_the_analysis_of_variance():
+    """Equal designs in every block: REML is (MS_blocks - MS_residual) / n."""
+    rng = np.random.default_rng(1)
+    values = (
+        MATRIX @ np.ones(10) + rng.normal(0, 1.0, (1, 4))[:, BLOCK] + rng.normal(0, 0.2, (1, 60))
+    )
+    found = fit_random_intercept(MATRIX, values, block=BLOCK)
+    means = values.reshape(4, 15).mean(axis=1)
+    between = 15 * np.var(means, ddof=1)
+    free = values[0] - means[BLOCK]
+    left = free - MATRIX @ np.linalg.lstsq(MATRIX, free, rcond=None)[0]
+    within = np.sum(left**2) / (60 - 10 - 3)
+    assert found.sigma[0] ** 2 == pytest.approx(within, rel=1e-6)
+    assert found.standard_deviation[0] ** 2 == pytest.approx((between - within) / 15, rel=1e-5)
+    assert found.degrees_of_freedom[0].tolist() == [3.0] + [47.0] * 9
+
+
+def test_blocks_closer_together_than_the_scatter_have_no_variance():
+    rng = np.random.default_rng(2)
+    values = rng.normal(size=(1, 15))[:, np.arange(60) % 15] + 0.01 * rng.normal(size=(1, 60))
+    values += np.tile([0.5, -0.5], 30)  # scatter within, the same in each block
+    found = fit_random_intercept(np.ones((60, 1)), values, block=BLOCK)
+    assert found.at_boundary.tolist() == [True]
+    assert found.standard_deviation[0] == 0.0
+    np.testing.assert_allclose(found.effect, 0.0)
+
+
+def test_a_factor_that_moves_between_blocks_alone_is_judged_between_them():
+    diameter = np.array([-1.0, -1.0, 1.0, 1.0])[BLOCK]
+    values = np.random.default_rng(3).normal(size=(1, 60))
+    found = fit_random_intercept(
+        np.column_stack([np.ones(60), diameter, RUNS[:, 0]]), values, block=BLOCK
+    )
+    assert found.is_between.tolist() == [True, True, False]
+    assert found.degrees_of_freedom[0].tolist() == [2.0, 2.0, 55.0]
+
+
+def test_too_few_runs_give_nothing():
+    values = np.full((1, 60), np.nan)
+    values[0, :10] = 1.0
+    found = fit_random_intercept(MATRIX, values, block=BLOCK)
+    assert np.isnan(found.coefficient).all() and np.isnan(found.sigma).all()
+
+
+def test_columns_of_blocks_leave_the_mean_the_mean_over_blocks():
+    names, index, columns = block_columns(["x", "y", "y", "z"])
+    assert names == ("x", "y", "z") and index.tolist() == [0, 1, 1, 2]
+    means = np.array([1.0, 5.0, 9.0])
+    full = np.column_stack([np.ones(4), columns])
+    found = np.linalg.lstsq(full, means[index], rcond=None)[0]
+    np.testing.assert_allclose(found, [5.0, -4.0, 0.0], atol=1e-12)
+
+
+def test_one_block_is_refused():
+    with pytest.raises(DataError, match="one block and nothing to compare it with; found A"):
+        block_columns(["A", "A"])
+
+
+def test_blocks_that_do_not_pair_up_are_refused(responses):
+    with pytest.raises(DataError, match="the blocks do not pair up with the runs; found 3 blocks"):
+        fit_random_intercept(MATRIX, responses, block=BLOCK[:3])

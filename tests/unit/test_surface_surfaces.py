@@ -1,0 +1,297 @@
+import dataclasses
+
+import numpy as np
+import pandas as pd
+import pytest
+import statsmodels.api as sm
+from statsmodels.formula.api import ols
+from statsmodels.stats.anova import anova_lm
+
+from reduction.errors import DataError, FitError, SettingsError
+from reduction.surface.designs import box_behnken
+from reduction.surface.product import FIT_REASONS
+from reduction.surface.surfaces import fit_surfaces
+from reduction.surface.terms import model_matrix, quadratic_exponents
+
+RUNS = box_behnken(3).coded
+EXPONENTS = quadratic_exponents(3)
+MATRIX = model_matrix(RUNS, EXPONENTS)
+LOW, HIGH = np.array([0.1, 768.0, 320.0]), np.array([0.5, 1920.0, 768.0])
+FACTORS = ["frequency", "mean_tension", "tension_amplitude"]
+
+
+def surfaces(responses, runs=RUNS, **change):
+    values = np.atleast_2d(np.asarray(responses, dtype=float))
+    settings = {
+        "factor_names": FACTORS,
+        "response_names": [f"y{number}" for number in range(len(values))],
+        "low": LOW,
+        "high": HIGH,
+        "units": "coded",
+    }
+    return fit_surfaces(runs, values, **{**settings, **change})
+
+
+@pytest.fixture
+def noise():
+    return np.random.default_rng(21).normal(10.0, 1.0, (4, 15))
+
+
+def test_coded_levels_and_levels_in_units_give_one_surface(noise):
+    coded = surfaces(noise)
+    levels = (LOW + HIGH) / 2 + RUNS * (HIGH - LOW) / 2
+    in_units = surfaces(noise, runs=levels, units="engineering")
+    np.testing.assert_allclose(in_units.coefficient, coded.coefficient, rtol=1e-9, atol=1e-12)
+
+
+def test_the_equation_in_units_is_the_fit_in_units(noise):
+    """Coefficients and uncertainties carried over against a fit to the levels themselves."""
+    found = surfaces(noise)
+    levels = (LOW + HIGH) / 2 + RUNS * (HIGH - LOW) / 2
+    for row, response in enumerate(noise):
+        other = sm.OLS(response, model_matrix(levels, EXPONENTS)).fit()
+        np.testing.assert_allclose(found.coefficient_engineering[row], other.params, rtol=1e-6)
+        np.testing.assert_allclose(
+            found.coefficient_engineering_standard_uncertainty[row], other.bse, rtol=1e-6
+        )
+
+
+def test_overall_f_and_adjusted_r2_are_those_of_statsmodels(noise):
+    noise[2, 14] = np.nan
+    found = surfaces(noise)
+    for row, response in enumerate(noise):
+        has = np.isfinite(response)
+        other = sm.OLS(response[has], MATRIX[has]).fit()
+        assert found.overall_f[row] == pytest.approx(other.fvalue, rel=1e-9)
+        assert found.overall_p_value[row] == pytest.approx(other.f_pvalue, rel=1e-9)
+        assert found.adjusted_r2[row] == pytest.approx(other.rsquared_adj, rel=1e-9)
+        press = np.sum(other.get_influence().resid_press ** 2)
+        assert found.predicted_r2[row] == pytest.approx(1 - press / other.centered_tss, rel=1e-9)
+        np.testing.assert_allclose(found.p_value[row], other.pvalues, rtol=1e-8)
+
+
+def test_a_batch_is_each_response_alone(noise):
+    together = surfaces(noise)
+    for row, response in enumerate(noise):
+        alone = surfaces(response)
+        for name in ("coefficient", "t", "p_value", "r2", "predicted_r2", "printed_f", "fitted"):
+            np.testing.assert_allclose(
+                getattr(together, name)[row], getattr(alone, name)[0], rtol=1e-9
+            )
+
+
+def test_true_coefficients_come_back_from_levels_as_met():
+    rng = np.random.default_rng(3)
+    runs = RUNS + rng.uniform(-0.08, 0.08, RUNS.shape)
+    truth = np.array([9.457, 0.1, -0.2, 0.05, 0.4, 2.6, -0.3, 0.1, 0.0, 0.2])
+    found = surfaces(model_matrix(runs, EXPONENTS) @ truth + rng.normal(0, 0.02, (5000, 15)), runs)
+    np.testing.assert_allclose(found.coefficient.mean(axis=0), truth, atol=0.002)
+    np.testing.assert_allclose(
+        found.coefficient.std(axis=0),
+        np.sqrt(np.mean(found.coefficient_standard_uncertainty**2, axis=0)),
+        rtol=0.05,
+    )
+    covered = np.abs(found.coefficient - truth) < 2.5706 * found.coefficient_standard_uncertainty
+    assert covered.mean() == pytest.approx(0.95, abs=0.01)
+    assert any("repeated runs differ by up to" in note for note in found.notes)
+
+
+def test_reasons_stand_in_the_notes_and_nothing_is_tested_there(noise):
+    noise[0] = 3.0
+    noise[1] = MATRIX @ np.arange(1.0, 11.0)
+    noise[2, :7] = np.nan
+    found = surfaces(noise)
+    assert [FIT_REASONS[code] for code in found.reason[3:]] == [""]
+    for row, text in ((0, "does not vary"), (1, "are rounding"), (2, "fewer runs")):
+        assert text in FIT_REASONS[found.reason[row]]
+        assert any(note.startswith(f"y{row}:") and text in note for note in found.notes)
+        for name in ("t", "p_value", "overall_f", "printed_f"):
+            assert np.isnan(getattr(found, name)[row]).all()
+    assert np.isnan(found.r2[0]) and found.r2[1] == pytest.approx(1.0)
+
+
+def test_a_run_not_done_is_named(noise):
+    noise[:, 7] = np.nan
+    runs = RUNS.copy()
+    runs[7] = np.nan
+    found = surfaces(noise, runs)
+    assert "runs without any value: 8" in found.notes
+    assert "runs that fix a term alone and have no residual to check: 5" in found.notes
+    assert found.degrees_of_freedom.tolist() == [4] * 4
+    assert np.isnan(found.predicted_r2).all() and np.isfinite(found.overall_p_value).all()
+
+
+def test_a_response_that_misses_a_run_is_named(noise):
+    noise[1, 13] = np.nan
+    assert "responses that miss further runs: y1" in surfaces(noise).notes
+
+
+def test_a_run_that_may_have_been_entered_twice_is_named(noise):
+    runs = np.vstack([RUNS, RUNS[3]])
+    doubled = np.hstack([noise, noise[:, 3:4]])
+    (note,) = [note for note in surfaces(doubled, runs).notes if "one run twice" in note]
+    assert note.startswith("runs 4 and 16 agree in every level and response")
+
+
+@pytest.mark.parametrize(
+    ("scale", "text"), [(1.3, "go beyond the plan"), (0.7, "fall short of the plan")]
+)
+def test_levels_far_from_the_plan_are_named(noise, scale, text):
+    found = surfaces(noise, RUNS * [scale, 1, 1])
+    (note,) = [note for note in found.notes if text in note]
+    assert note.startswith("levels of frequency")
+
+
+def test_terms_that_lean_on_each_other_are_named(noise):
+    runs = RUNS.copy()
+    runs[:, 1] = 0.95 * runs[:, 0] + 0.05 * runs[:, 1]
+    assert any("terms lean on each other" in note for note in surfaces(noise, runs).notes)
+
+
+def test_the_product_cannot_be_changed(noise):
+    found = surfaces(noise)
+    with pytest.raises(ValueError, match="read-only"):
+        found.coefficient[0, 0] = 1.0
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        found.sigma = 1.0
+    assert found.labels[0] == "B1" and found.labels[-1] == "B10"
+
+
+# blocks ---------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def lines():
+    """Four lines through the same fifteen runs, one of them without two of its runs."""
+    rng = np.random.default_rng(17)
+    runs, names = np.tile(RUNS, (4, 1)), np.repeat(["A", "B", "C", "D"], 15)
+    truth = np.array([9, 0.3, -0.2, 0.1, 0.5, 3, -0.4, 0.1, 0.2, 0.3])
+    level = rng.normal(0, 0.8, (3, 4))[:, np.repeat(np.arange(4), 15)]
+    values = model_matrix(runs, EXPONENTS) @ truth + level + rng.normal(0, 0.2, (3, 60))
+    values[:, [48, 57]] = np.nan
+    return runs, names, values
+
+
+def test_fixed_blocks_are_those_of_statsmodels(lines):
+    runs, names, values = lines
+    found = surfaces(values, runs, blocks=names)
+    data = pd.DataFrame(runs, columns=list("abc")).assign(line=names, y=values[0]).dropna()
+    other = ols(
+        "y ~ C(line, Sum) + a + b + c + a:b + a:c + b:c + I(a**2) + I(b**2) + I(c**2)", data
+    ).fit()
+    pairs = dict(zip(
+        ["Intercept", "I(a ** 2)", "I(b ** 2)", "I(c ** 2)", "a", "b", "c", "a:b", "a:c", "b:c"],
+        range(10), strict=True,
+    ))  # fmt: skip
+    for name, place in pairs.items():
+        assert found.coefficient[0, place] == pytest.approx(other.params[name], rel=1e-9)
+        assert found.coefficient_standard_uncertainty[0, place] == pytest.approx(
+            other.bse[name], rel=1e-9
+        )
+        assert found.p_value[0, place] == pytest.approx(other.pvalues[name], rel=1e-7)
+    table = anova_lm(other, typ=1)
+    assert found.anova.source[0] == "blocks"
+    for source, rows in (("blocks", [0]), ("first order", [1, 2, 3]), ("interactions", [4, 5, 6]),
+                         ("squares", [7, 8, 9])):  # fmt: skip
+        at = found.anova.source.index(source)
+        assert found.anova.sum_of_squares[0, at] == pytest.approx(
+            table["sum_sq"].to_numpy()[rows].sum(), rel=1e-9
+        )
+    assert found.blocks.effect.sum(axis=1) == pytest.approx(0, abs=1e-12)
+    effects = [other.params[f"C(line, Sum)[S.{name}]"] for name in "ABC"]
+    np.testing.assert_allclose(found.blocks.effect[0, :3], effects, rtol=1e-8)
+    assert np.isnan(found.printed_f).all()
+
+
+def test_r2_with_blocks_leaves_the_level_of_the_lines_out(lines):
+    runs, names, values = lines
+    shifted = values + 100 * np.repeat([0, 1, 2, 3], 15)
+    found = surfaces([values[0], shifted[0]], runs, blocks=names)
+    assert found.r2[0] == pytest.approx(found.r2[1], rel=1e-9)
+
+
+def test_pure_error_with_blocks_is_that_of_blocks_and_cells(lines):
+    runs, names, values = lines
+    lack = surfaces(values, runs, blocks=names).lack_of_fit
+    data = pd.DataFrame({"y": values[0], "cell": lack.cell, "line": names}).dropna()
+    other = ols("y ~ C(cell) + C(line)", data).fit()
+    assert lack.pure_error_sum_of_squares[0] == pytest.approx(other.ssr, rel=1e-9)
+    assert lack.pure_error_degrees_of_freedom[0] == other.df_resid
+
+
+def test_random_blocks_widen_the_mean_alone(lines):
+    runs, names, values = lines
+    fixed = surfaces(values, runs, blocks=names)
+    random = surfaces(values, runs, blocks=names, block_treatment="random")
+    assert random.error_term[0] == "blocks" and set(random.error_term[1:]) == {"residuals"}
+    assert (random.term_degrees_of_freedom[:, 0] == 3).all()
+    ratio = random.coefficient_standard_uncertainty / fixed.coefficient_standard_uncertainty
+    assert (ratio[:, 0] > 3).all()
+    np.testing.assert_allclose(ratio[:, 1:], 1, rtol=0.05)
+    assert (random.blocks.standard_deviation > 0.2).all()
+    assert any("4 specimens as random draws (REML)" in note for note in random.notes)
+    assert any("4 specimens as fixed blocks" in note for note in fixed.notes)
+
+
+# refusals -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "message"),
+    [
+        ({"run_names": ["R1"] * 15}, SettingsError, "a run is named twice; found R1"),
+        ({"run_names": ["R1"]}, SettingsError, "names of the runs do not pair up"),
+        ({"response_names": ["a"]}, SettingsError, "names of the responses do not pair up"),
+        ({"factor_names": ["f"]}, SettingsError, "the levels do not pair up with the factors"),
+        ({"low": HIGH, "high": LOW}, SettingsError, "high level of factor 1 does not lie above"),
+        ({"transforms": ["log"]}, SettingsError, "the transforms do not pair up"),
+        ({"transforms": "square"}, SettingsError, "found square; needed none, log or box-cox"),
+        ({"blocks": ["A"] * 15}, DataError, "there is one block"),
+        ({"blocks": ["A", "B"]}, SettingsError, "names of the blocks do not pair up"),
+    ],
+)
+def test_settings_that_do_not_fit_are_refused(noise, change, error, message):
+    with pytest.raises(error, match=message):
+        surfaces(noise, **change)
+
+
+def test_a_factor_that_never_moves_is_refused(noise):
+    with pytest.raises(DataError, match="mean_tension never moves"):
+        surfaces(noise, RUNS * [1, 0, 1])
+
+
+def test_an_infinite_level_is_refused(noise):
+    runs = RUNS.copy()
+    runs[4, 1] = np.inf
+    with pytest.raises(DataError, match="a level is infinite; found run 5"):
+        surfaces(noise, runs)
+
+
+def test_a_value_without_levels_is_refused(noise):
+    runs = RUNS.copy()
+    runs[4, 1] = np.nan
+    with pytest.raises(DataError, match="a run has a response and no levels; found run 5"):
+        surfaces(noise, runs)
+
+
+def test_no_value_at_all_is_refused():
+    with pytest.raises(DataError, match="no run has a value"):
+        surfaces(np.full((1, 15), np.nan))
+
+
+def test_fewer_runs_than_terms_are_refused(noise):
+    with pytest.raises(FitError, match="fewer runs than terms; found 9 runs"):
+        surfaces(noise[:, :9], RUNS[:9])
+
+
+def test_two_levels_of_a_factor_are_refused_by_name(noise):
+    runs = RUNS.copy()
+    runs[:, 0] = np.where(runs[:, 0] > 0, 1, -1)
+    with pytest.raises(FitError, match=r"frequency\^2 with mean"):
+        surfaces(noise, runs)
+
+
+def test_a_value_at_or_below_nought_has_no_logarithm(noise):
+    noise[0, 2] = -1.0
+    with pytest.raises(DataError, match="1 of 60 values are not above zero"):
+        surfaces(noise, transforms="log")
