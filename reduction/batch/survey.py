@@ -13,6 +13,7 @@ import numpy as np
 
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
 from reduction.errors import DataError, LogError, ReductionError
+from reduction.ingest.datum import length_at_slack
 from reduction.ingest.record_of_test import read_record
 from reduction.ingest.steps import read_step_readings
 from reduction.pipeline.locate import Located, locate
@@ -143,6 +144,8 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
     )
     if not plan.steps:
         survey = _located(plan, record, sources)
+        if survey.located is not None:
+            survey.zero_strain_position = _zero_strain_position(survey.located, campaign, plan)
         _measure_marks(survey, survey.located, campaign.marks)
         return [survey]
     # a mark, and the position of zero strain, belong to the whole log and not to a step of it
@@ -155,15 +158,17 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
             survey = _located(part, record_of_step, sources)
         except ReductionError as error:
             survey = Survey(part, sources, n_rows=record.n_samples, error=error)
-        survey.zero_strain_position = _zero_strain_position(whole)
+        survey.zero_strain_position = _zero_strain_position(whole, campaign, plan)
         surveys.append(survey)
     _measure_marks(surveys[0], whole, campaign.marks)
     return surveys
 
 
-def _zero_strain_position(located: Located) -> float | None:
+def _zero_strain_position(located: Located, campaign: Campaign, plan: TestPlan) -> float | None:
     return zero_strain_position(
-        located.standstills, position_is_length=located.record.position_is_length
+        located.standstills,
+        position_is_length=located.record.position_is_length,
+        length_at_slack=length_at_slack([campaign.layouts[layout] for _, layout in plan.files]),
     )
 
 
@@ -178,7 +183,6 @@ def _needs_length(campaign: Campaign, plan: TestPlan) -> bool:
 def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Survey:
     located = locate(record, kind=plan.kind, settings=plan.settings)
     survey = Survey(plan, sources, located, n_rows=record.n_samples)
-    survey.zero_strain_position = _zero_strain_position(located)
     survey.has_extensometer = record.measured_strain is not None
     survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
     survey.greatest = _greatest(located)

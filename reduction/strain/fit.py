@@ -34,7 +34,9 @@ __all__ = [
 ]
 
 
-def zero_strain_position(standstills: Standstills, *, position_is_length: bool) -> float | None:
+def zero_strain_position(
+    standstills: Standstills, *, position_is_length: bool, length_at_slack: float | None = None
+) -> float | None:
     """Crosshead position at which a specimen without splices has no strain.
 
     Parameters
@@ -42,13 +44,15 @@ def zero_strain_position(standstills: Standstills, *, position_is_length: bool) 
     standstills : Standstills
         Of the log.
     position_is_length : bool
-        False where the channel is a displacement.
+        False where the channel is a displacement of which no length is stated.
+    length_at_slack : float, optional
+        Length at displacement zero, where it was stated at slack. [m]
 
     Returns
     -------
     position : float or None
-        Mean position of the first rest at slack; without one, zero for a
-        displacement (its reference length) and None for a length. [m]
+        Mean position of the first rest at slack; without one, where a displacement is zero,
+        and None for a length of which nothing says where it is slack. [m]
 
     Raises
     ------
@@ -65,7 +69,7 @@ def zero_strain_position(standstills: Standstills, *, position_is_length: bool) 
     rests = standstills.mean_position[standstills.is_rest]
     if rests.size:
         return float(rests[0])
-    return None if position_is_length else 0.0
+    return length_at_slack if position_is_length else 0.0
 
 
 def _without_marks(
@@ -77,7 +81,8 @@ def _without_marks(
         raise DataError(
             f"strain of '{specimen.name}' by gauge-length lacks "
             + ("a gauge length" if specimen.gauge_length is None else "a position of zero strain"),
-            needed="specimens.NAME.gauge_length, and a rest at slack or a displacement from slack",
+            needed="specimens.NAME.gauge_length, and a rest at slack or a displacement from slack "
+            "(its reference_length read without tension)",
         )
     coefficients = {
         "reference_position": reference_position,

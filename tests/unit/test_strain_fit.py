@@ -260,6 +260,9 @@ def test_without_a_rest_only_a_displacement_has_a_zero():
     stands = rests([0.5], [False])
     assert zero_strain_position(stands, position_is_length=False) == 0.0
     assert zero_strain_position(stands, position_is_length=True) is None
+    # the length at displacement zero, read at slack, is that of zero strain
+    stated = zero_strain_position(stands, position_is_length=True, length_at_slack=1.5)
+    assert stated == 1.5
 
 
 def test_fit_to_marks_is_the_same_model_without_remarks():
