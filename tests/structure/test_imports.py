@@ -27,6 +27,7 @@ LAYER = {
     "surface": 2,
     "outcomes": 2,
     "product": 3,
+    "experiment": 3,
     "pipeline": 4,
     "ingest": 4,
     "archive": 4,
