@@ -123,7 +123,7 @@ def statistics_from_r2(
     f = odds * below / above
     return OverallF(
         f,
-        fdtrc(above, below, f),
+        np.asarray(fdtrc(above, below, f), dtype=np.float64),
         np.asarray(right[which.reshape(runs.shape)]),
         odds * printed_below / n_terms,
         np.asarray(transposed[which.reshape(runs.shape)]),
@@ -312,7 +312,7 @@ def anova_table(
             found=str(edges),
             needed=f"from {n_baseline} to {fit.coefficient.shape[1]} without a gap",
         )
-    none = np.where(np.isin(fit.reason, (1, 2)), np.nan, 1.0)
+    none = np.where(np.isin(fit.reason, (1, 2, 6)), np.nan, 1.0)
     squares = [fit.sequential_sum_of_squares[:, part].sum(axis=1) for part in groups.values()]
     degrees = [none * (stop - start) for start, stop in edges]
     residual_df = none * fit.degrees_of_freedom

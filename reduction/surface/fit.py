@@ -39,6 +39,8 @@ _SINGULAR = 1e-9
 """Smallest over largest singular value, columns of equal length, below which terms are one."""
 _ROUNDING = 1e-12
 """Residuals smaller than this share of the response are rounding of the arithmetic."""
+_HUGE = 1e150
+"""Numbers beyond it cannot be squared."""
 _FIXES_A_TERM = 1 - 1e-9
 """Leverage from which a run is fitted by itself alone."""
 _PIECE = 200_000
@@ -384,10 +386,11 @@ def _checked(matrix: ArrayLike, responses: ArrayLike) -> tuple[Floats, Floats]:
         )
     if values.shape[0] == 0:
         raise DataError("there is no response to fit", needed="at least one")
-    if np.isinf(values).any():
+    huge = np.abs(values) > _HUGE
+    if huge.any():
         raise DataError(
-            "a response is infinite",
-            found=f"{int(np.isinf(values).sum())} values",
+            "a response is infinite, or its square is",
+            found=f"{int(huge.sum())} values, first {values[huge][0]:g}",
             needed="numbers, or NaN where a run is missing",
         )
     without = ~np.isfinite(columns).all(axis=1)

@@ -37,8 +37,9 @@ FIT_REASONS: dict[int, str] = {
     3: "as many runs as terms: nothing is left to judge the scatter by",
     4: "the response does not vary",
     5: "the residuals are rounding: the surface passes through every run",
+    6: "the runs with a value do not outnumber the terms: no exponent can be found",
 }
-"""1 and 2: no surface.  3: a surface without uncertainty.  4 and 5: without tests of it."""
+"""1, 2 and 6: no surface.  3: a surface without uncertainty.  4 and 5: without tests of it."""
 
 LACK_OF_FIT_REASONS: dict[int, str] = {
     0: "",

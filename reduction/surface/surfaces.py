@@ -13,7 +13,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -170,11 +170,12 @@ def fit_surfaces(
     condition = float(np.linalg.cond(matrix[used]))
 
     scale, power, interval = _scales(transforms, matrix, measured)
-    values = measured
+    values = measured.copy()
     if set(scale) != {"none"}:
         bent = np.array([kind != "none" for kind in scale])
         values[bent] = transform(measured[bent], power[bent, None])
     fit = fit_least_squares(matrix, values, n_baseline=baseline.shape[1])
+    fit = replace(fit, reason=np.where(np.isnan(power), np.int8(6), fit.reason))
     found = _fixed(fit, column)
     effects = None
     if grouping is not None:
@@ -245,7 +246,7 @@ def fit_surfaces(
         reason=fit.reason,
         notes=remarks(
             coded=coded,
-            responses=values,
+            responses=measured,
             fit=fit,
             lack=lack,
             blocks=effects,

@@ -130,12 +130,16 @@ def back_transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
     )
     base = np.maximum(1 + power * scaled, 0.0)
     log = power == 0
-    result = np.exp(np.where(log, scaled, 0.0))
+    # an end of an interval may lie beyond every number, and is then infinite
+    with np.errstate(over="ignore"):
+        result = np.exp(np.where(log, scaled, 0.0))
     inverse = np.divide(1.0, power, out=np.ones(power.shape), where=~log)
     ended = (base == 0) & (inverse < 0)
     # 1 where the power does not count
     safe = np.where(log | ended, 1.0, base)
-    return np.asarray(np.where(log, result, np.where(ended, np.inf, safe**inverse)))
+    with np.errstate(over="ignore"):
+        root = safe**inverse
+    return np.asarray(np.where(log, result, np.where(ended, np.inf, root)))
 
 
 def retransformed_mean(values: ArrayLike, exponent: ArrayLike, *, sigma: ArrayLike) -> Floats:
@@ -182,7 +186,9 @@ def retransformed_mean(values: ArrayLike, exponent: ArrayLike, *, sigma: ArrayLi
     second = 1 + np.divide(
         share, base**2, out=np.full(np.shape(base * share), np.nan), where=base > 0
     )
-    return np.asarray(middle * np.where(power == 0, np.exp(scatter**2 / 2), second))
+    return np.asarray(
+        middle * np.where(power == 0, np.exp(np.where(power == 0, scatter**2, 0.0) / 2), second)
+    )
 
 
 def box_cox_exponent(

@@ -159,7 +159,7 @@ def test_names_that_do_not_pair_up_are_refused():
     [
         (np.zeros((2, 14)), "the responses do not pair up with the runs"),
         (np.zeros((0, 15)), "there is no response to fit"),
-        (np.full((1, 15), np.inf), "a response is infinite; found 15 values"),
+        (np.full((1, 15), np.inf), "a response is infinite, or its square is; found 15 values"),
     ],
 )
 def test_responses_that_cannot_be_used_are_refused(responses, message):

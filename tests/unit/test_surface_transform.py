@@ -4,6 +4,7 @@ from scipy import stats
 
 from reduction.errors import DataError, SettingsError
 from reduction.surface.designs import box_behnken
+from reduction.surface.product import FIT_REASONS
 from reduction.surface.surfaces import fit_surfaces
 from reduction.surface.terms import model_matrix, quadratic_exponents
 from reduction.surface.transform import (
@@ -106,6 +107,23 @@ def test_the_exponent_found_is_the_one_that_was_used():
     np.testing.assert_allclose(
         found.fitted + found.residual, transform(values, power[:, None]), rtol=1e-10
     )
+
+
+def test_a_response_without_an_exponent_has_no_surface_and_says_why():
+    values = np.random.default_rng(8).gamma(5.0, size=(2, 15))
+    values[0, [0, 1, 5, 13, 14]] = np.nan  # as many runs as terms
+    found = fit_surfaces(
+        RUNS, values, factor_names=["f", "T", "a"], response_names=["a", "b"],
+        low=[-1] * 3, high=[1] * 3, transforms="box-cox",
+    )  # fmt: skip
+    assert FIT_REASONS[found.reason[0]].endswith("no exponent can be found")
+    assert np.isnan(found.coefficient[0]).all() and np.isfinite(found.coefficient[1]).all()
+    assert np.isnan(found.anova.degrees_of_freedom[0]).all()
+
+
+def test_the_end_of_an_interval_may_lie_beyond_every_number():
+    assert back_transform(1e4, 0.0) == np.inf
+    assert back_transform(1e300, 0.01) == np.inf
 
 
 def test_values_not_above_nought_are_refused():
