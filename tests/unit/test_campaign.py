@@ -274,10 +274,10 @@ def test_a_long_value_is_cut_and_a_rule_speaks_for_itself(folder):
 
 
 def test_all_faults_of_a_row_of_tests_are_told(folder):
-    (folder / "tests.csv").write_text("id,file,colour,n_cycles\nT,T.csv,red,0\n")
+    (folder / "tests.csv").write_text("id,file,control,n_cycles\nT,T.csv,red,0\n")
     words = (
-        r"tests.csv:2 \[n_cycles\]: a row .* needed greater than or equal to 1. "
-        "Also colour: is not a known key; found 'red'.$"
+        r"tests.csv:2 \[control\]: a row .* found 'red'; needed 'position' or 'load'. "
+        "Also n_cycles: Input should be greater than or equal to 1; found 0.$"
     )
     with pytest.raises(SettingsError, match=words):
         load(folder, 'tests = "tests.csv"\n' + BASE)
