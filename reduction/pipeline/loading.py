@@ -26,6 +26,14 @@ def _elastomers(
 ) -> tuple[tuple[ElastomerFit, ...], str]:
     """Hyperelastic laws of one first loading, or the reason why there are none."""
     known = np.isfinite(stress)
+    if not (strain[known] > 0).any():
+        reached = "no stress is known on it"
+        if known.any():
+            reached = f"strain reaches {100 * strain[known].max():.3g} % on it"
+        return (), (
+            f"{name}: no hyperelastic law: the first rise of the record is no pull from slack "
+            f"({reached}); is the kind of the test right, and where strain is zero?"
+        )
     try:
         fits = fit_elastomers(strain[known], stress[known], specimen=name)
     except (DataError, FitError) as error:

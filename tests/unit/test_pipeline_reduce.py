@@ -12,10 +12,9 @@ from reduction.strain.model import StrainModel
 
 DIAMETER = 0.025
 SPIKE = 700
-MODEL = StrainModel("cord", "gauge-length", {"gauge_length": 1.0, "reference_position": 1.0})
 
 
-def reduced(specimen, load_cell=2.0):
+def reduced(specimen, load_cell=2.0, zero=1.0):
     """A slow pull of a linear cord, slack at first, with one spike of 5 kN in its tension."""
     time = np.arange(0, 120, 0.1)
     position = 1 + np.interp(time, [0, 20, 120], [0, 0, 0.5])
@@ -39,7 +38,9 @@ def reduced(specimen, load_cell=2.0):
         locate(record, kind="quasi-static", settings=settings),
         description=TestDescription("c", "Q-1", "quasi-static", "position", "triangular", 1, {}),
         specimens=(specimen,),
-        models=(MODEL,),
+        models=(
+            StrainModel("cord", "gauge-length", {"gauge_length": 1.0, "reference_position": zero}),
+        ),
         history=None,
         sources=(),
         settings=settings,
@@ -70,3 +71,12 @@ def test_a_rope_without_a_diameter_has_no_stress():
     found = reduced(Specimen("cord", kind="rope"))
     assert found.nominal_stress is None
     assert found.nominal_stress_standard_uncertainty is None
+
+
+def test_a_first_rise_that_stretches_nothing_gives_no_law_and_says_why():
+    cord = Specimen("cord", kind="elastomer", diameter=(DIAMETER,))
+    found = reduced(cord, zero=1.6)
+    assert found.elastomers == ()
+    (note,) = [text for text in found.notes if "hyperelastic" in text]
+    assert note.startswith("cord: no hyperelastic law: the first rise of the record is no pull")
+    assert "(strain reaches -1" in note and "where strain is zero?" in note
