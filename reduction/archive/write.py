@@ -75,7 +75,7 @@ def _refuse_faults(part: Path, name: str) -> None:
 def _not_written(path: Path, error: Exception) -> ArchiveError:
     # the netCDF library reports a full disk as RuntimeError, without the name of the file
     return ArchiveError(
-        f"{path.name} cannot be written",
+        f"{path} cannot be written",
         found=getattr(error, "strerror", None) or str(error),
         hint="What was there before is kept. Check the folder and the space on the disk.",
     )

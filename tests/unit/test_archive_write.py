@@ -91,5 +91,5 @@ def test_a_text_is_written_as_it_is(tmp_path):
 
 def test_a_text_that_cannot_be_written_is_an_archive_error(tmp_path):
     (tmp_path / "file").write_text("not a folder")
-    with pytest.raises(ArchiveError, match=r"a.csv cannot be written"):
+    with pytest.raises(ArchiveError, match=r"file.a.csv cannot be written; found File exists"):
         write_whole(tmp_path / "file" / "a.csv", "1")
