@@ -165,7 +165,17 @@ def _no_length(position: Floats, flags: _Flags) -> Bools:
 
 
 def _check_usable(record: Record) -> None:
-    """Refuse a tension that says nothing, whose flags would leave no sample."""
+    """Refuse a channel that says nothing, whose flags would leave no sample."""
+    position = record.crosshead_position
+    if np.all(record.crosshead_position_quality_flag & _NO_READING):
+        known = position[np.isfinite(position)]
+        stuck = f" or stuck at {known.mean():.4g} m while tension changes" if known.size else ""
+        raise DataError(
+            "the crosshead position has no sample that can be used",
+            found=f"{position.size} samples missing{stuck}",
+            needed="a position that follows the crosshead",
+            hint="Is it the right column, and was the transducer connected?",
+        )
     for name, load, flags in zip(
         record.specimens, record.tension, record.quality_flag, strict=True
     ):

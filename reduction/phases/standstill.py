@@ -217,11 +217,17 @@ def find_standstills(
     """
     tension = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
-    if time.size < FEWEST_SAMPLES or not np.isfinite(position).any():
+    if time.size < FEWEST_SAMPLES:
         raise DataError(
             "the record is too short to stand still",
-            found=f"{int(np.isfinite(position).sum())} positions in {time.size} rows",
+            found=f"{time.size} rows",
             needed=f"{FEWEST_SAMPLES} rows or more",
+        )
+    if not np.isfinite(position).any():
+        raise DataError(
+            "no position of the record may be used: each is missing, stuck or a spike",
+            found=f"0 positions in {time.size} rows",
+            needed="a position channel that follows the crosshead",
         )
     tolerance = settings.position_tolerance
     if tolerance is None:

@@ -126,6 +126,15 @@ def test_a_length_of_zero_is_flagged_where_it_is_rare_and_refused_where_it_is_no
     assert not where(flagged(shifted).crosshead_position_quality_flag, ~np.uint16(0))
 
 
+def test_a_position_that_is_constant_under_cycles_of_load_is_refused():
+    words = (
+        r"the crosshead position has no sample that can be used; found 2000 samples missing or "
+        r"stuck at 3.7 m while tension changes; needed .* follows the crosshead. Is it the right"
+    )
+    with pytest.raises(DataError, match=words):
+        flagged(record(position=np.full(TIME.size, 3.7)))
+
+
 def test_a_load_cell_that_says_nothing_is_refused():
     with pytest.raises(DataError, match="tension of 'new' is zero throughout; found 2000 samples"):
         flagged(record(load=np.zeros(TIME.size)))
