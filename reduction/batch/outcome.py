@@ -29,6 +29,9 @@ def _error_message(campaign: Campaign, survey: Survey, error: ReductionError) ->
     """``FILE:ROW [CHANNEL]: problem``; an error of the data is given its test's file."""
     if isinstance(error, (LogError, SettingsError)):
         return str(error)
+    if error.where():  # its file, as the campaign names it, and row and channel
+        name = str(error.facts["file"])
+        return f"{campaign.file(name)}{str(error).removeprefix(name)}"
     return f"{campaign.file(survey.plan.files[0][0])}: {error}"
 
 

@@ -53,12 +53,18 @@ class Piece:
         """Declaration of a channel; ``tension`` alone is ``tension.1``."""
         return self.layout.channels[_declared(self.layout, key)]
 
-    def row_of(self, sample: int) -> str:
-        """Where a sample stands in its file, for messages."""
+    def place_of(self, sample: int, channel: str) -> dict[str, str | int]:
+        """File, row and channel of a sample, as the facts of an error; none without rows."""
         if self.log.first_row == 0 or self.resampled:
-            return f"sample {sample + 1} of {self.log.source.name}"
+            return {}
         row = self.log.first_row + sample if self.log.row is None else int(self.log.row[sample])
-        return f"row {row} of {self.log.source.name}"
+        return {"file": self.log.source.name, "row": row, "channel": channel}
+
+    def row_of(self, sample: int) -> str:
+        """Where a sample stands in its file, in words."""
+        place = self.place_of(sample, "")
+        what = f"row {place['row']}" if place else f"sample {sample + 1}"
+        return f"{what} of {self.log.source.name}"
 
 
 def to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> Piece:
@@ -150,9 +156,12 @@ def _check_restart(piece: Piece) -> None:
         after = time[last + 1 : last + 2 + _RESTART_SAMPLES]
         falls = top - after[0] > (top - first) / 2 and after.size > _RESTART_SAMPLES
         if falls and after[-1] < top and np.all(np.diff(after) > 0):
+            place = piece.place_of(int(last) + 1, "time")
             raise DataError(
                 "the log has two time bases: time starts again",
-                found=f"{after[0]:g} s after {time[last]:g} s at {piece.row_of(int(last) + 1)}",
+                found=f"{after[0]:g} s after {time[last]:g} s"
+                + ("" if place else f" at {piece.row_of(int(last) + 1)}"),
                 needed="one time that goes on",
                 hint="Split the log, and give each part a test of its own.",
+                **place,
             )

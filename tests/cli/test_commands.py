@@ -309,3 +309,24 @@ def test_a_failure_is_one_object_too(tmp_path, command):
     answer = json.loads(done.stdout)
     assert answer["tests"] == [] and "cannot be read" in answer["error"]
     assert json.loads(command("schema", "--json").stdout)["title"] == "CampaignFile"
+
+
+def test_a_fault_of_one_row_is_told_with_file_row_and_channel(small, command):
+    log = small / "raw" / "B.csv"
+    lines = log.read_text().splitlines()
+    first = next(place for place, line in enumerate(lines) if line[:1].isdigit())
+    again = lines[first : first + 200]
+    log.write_text("\n".join(lines + again) + "\n")
+    done = command("check", small / "raw" / "campaign.toml", "--test", "B", cwd=small)
+    assert done.returncode == 4
+    place = f"{log}:{len(lines) + 1} [time]: the log has two time bases"
+    assert place in done.stderr.replace("\n", " ")
+
+
+def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
+    (small / "a.csv").write_text("no folder")
+    done = command(
+        "run", small / "raw" / "campaign.toml", "--test", "A", "--processed", "a.csv", cwd=small
+    )
+    assert done.returncode == 6
+    assert "a.csv/small/status.csv cannot be written; found Not a directory" in done.stderr
