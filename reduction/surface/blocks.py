@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
 from reduction.record import Bools, Floats, Integers, freeze_arrays
-from reduction.surface.fit import patterns_of
+from reduction.surface.rows import patterns_of
 
 __all__ = ["RandomIntercept", "block_columns", "fit_random_intercept"]
 

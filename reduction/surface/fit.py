@@ -21,11 +21,12 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import betainc
 
 from reduction.errors import DataError, FitError
 from reduction.record import Bools, Floats, Integers
 from reduction.surface.product import LeastSquares
+from reduction.surface.rows import patterns_of, times
+from reduction.surface.student import student_p
 
 __all__ = [
     "covariance_factor",
@@ -43,12 +44,6 @@ _HUGE = 1e150
 """Numbers beyond it cannot be squared."""
 _FIXES_A_TERM = 1 - 1e-9
 """Leverage from which a run is fitted by itself alone."""
-_PIECE = 200_000
-"""Multiplications in one call of the linear algebra library: below it stays in one thread."""
-_CLOSED = 60
-"""Degrees of freedom up to which the closed form of p is the quicker one."""
-_KEEPS_DIGITS = 1e-2
-"""A p above this is 1 less a sum without loss of digits that count."""
 
 
 def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
@@ -89,10 +84,10 @@ def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
         np.asarray(t, dtype=np.float64), np.asarray(degrees_of_freedom, dtype=np.float64)
     )
     if nu.size and (nu == nu.flat[0]).all() and nu.flat[0] > 0:
-        return _two_sided(statistic.ravel(), float(nu.flat[0])).reshape(statistic.shape)
+        return student_p(statistic.ravel(), float(nu.flat[0])).reshape(statistic.shape)
     p_value = np.full(statistic.shape, np.nan)
     for value in np.unique(nu[nu > 0]):
-        p_value[nu == value] = _two_sided(statistic[nu == value], float(value))
+        p_value[nu == value] = student_p(statistic[nu == value], float(value))
     return p_value
 
 
@@ -340,41 +335,6 @@ def fit_least_squares(
     )
 
 
-def times(left: Floats, right: Floats) -> Floats:
-    """Matrix product of many rows with a small matrix, in pieces too small for threads.
-
-    Threads of the linear algebra library cost a hundred times what they bring to a product
-    this narrow, and how they part the sums would depend on the machine.
-    """
-    n_rows = max(_PIECE // max(right.size, 1), 1)
-    product = np.empty((left.shape[0], right.shape[1]))
-    for start in range(0, left.shape[0], n_rows):
-        piece = slice(start, start + n_rows)
-        np.matmul(left[piece], right, out=product[piece])
-    return product
-
-
-def _two_sided(t: Floats, nu: float) -> Floats:
-    """Two-sided p of one number of degrees of freedom, by the closed form where it keeps digits."""
-    exact = np.isfinite(t)
-    if nu.is_integer() and nu <= _CLOSED:
-        angle = np.arctan2(np.abs(t), np.sqrt(nu))
-        cosine, sine = np.cos(angle), np.sin(angle)
-        # Abramowitz and Stegun 26.7.3 (odd) and 26.7.4 (even)
-        odd = int(nu) % 2
-        term = cosine if odd else np.ones_like(cosine)
-        series = term.copy() if nu > 1 else np.zeros_like(cosine)
-        for step in range(1 + odd, int(nu) - 1, 2):
-            term = term * cosine**2 * (step / (step + 1))
-            series += term
-        p_value = 1 - (2 / np.pi * (angle + sine * series) if odd else sine * series)
-        exact &= p_value < _KEEPS_DIGITS
-    else:
-        p_value = np.where(np.isnan(t), np.nan, 0.0)
-    p_value[exact] = betainc(nu / 2, 0.5, nu / (nu + t[exact] ** 2))
-    return p_value
-
-
 def _checked(matrix: ArrayLike, responses: ArrayLike) -> tuple[Floats, Floats]:
     columns = np.asarray(matrix, dtype=np.float64)
     values = np.asarray(responses, dtype=np.float64)
@@ -402,14 +362,6 @@ def _checked(matrix: ArrayLike, responses: ArrayLike) -> tuple[Floats, Floats]:
             needed="finite levels for every run that has a value",
         )
     return columns, values
-
-
-def patterns_of(known: Bools) -> tuple[Bools, Integers]:
-    """Different patterns of known runs, and which one each response has."""
-    if (known == known[:1]).all():
-        return known[:1].copy(), np.zeros(known.shape[0], dtype=np.intp)
-    is_used, pattern = np.unique(known, axis=0, return_inverse=True)
-    return is_used, pattern.reshape(-1)
 
 
 def _is_singular(columns: Floats) -> bool:

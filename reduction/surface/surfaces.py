@@ -4,16 +4,14 @@ References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
    R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3, App. C.
-.. [2] R. H. Myers and D. C. Montgomery, Response Surface Methodology, 2nd ed. New York: Wiley,
-   2002, example 7.5, p. 347.
-.. [3] R. V. Lenth, "Response-Surface Methods in R, Using rsm," J. Stat. Softw., vol. 32, no. 7,
+.. [2] R. V. Lenth, "Response-Surface Methods in R, Using rsm," J. Stat. Softw., vol. 32, no. 7,
    2009.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -21,25 +19,16 @@ from numpy.typing import ArrayLike
 
 from reduction.errors import SettingsError
 from reduction.record import Floats, Integers
-from reduction.surface.anova import (
-    anova_table,
-    lack_of_fit,
-    replicate_cells,
-    statistics_from_r2,
-)
-from reduction.surface.blocks import block_columns, fit_random_intercept
+from reduction.surface.anova import anova_table, lack_of_fit, replicate_cells
+from reduction.surface.blocks import block_columns
 from reduction.surface.canonical import canonical_analysis
-from reduction.surface.coding import engineering_matrix
 from reduction.surface.diagnostics import diagnose
-from reduction.surface.fit import (
-    covariance_factor,
-    fit_least_squares,
-    times,
-    two_sided_p,
-    variance_factor,
-)
-from reduction.surface.product import BlockEffects, LeastSquares, ResponseSurfaces
+from reduction.surface.estimates import deviations, fixed_estimates, with_blocks
+from reduction.surface.fit import covariance_factor, fit_least_squares, two_sided_p
+from reduction.surface.overall import statistics_from_r2
+from reduction.surface.product import LeastSquares, ResponseSurfaces
 from reduction.surface.remarks import remarks
+from reduction.surface.rows import times
 from reduction.surface.runs import coded_levels, require_motion, require_names
 from reduction.surface.terms import model_matrix, quadratic_exponents, term_kinds, term_names
 from reduction.surface.transform import Transform, box_cox_exponent, transform
@@ -48,18 +37,6 @@ __all__ = ["fit_surfaces"]
 
 _SEQUENCE = {"linear": "first order", "interaction": "interactions", "square": "squares"}
 """Order of the sources in the analysis of variance, that of R's rsm."""
-
-
-@dataclass(frozen=True)
-class _Estimates:
-    """Coefficients in printed order and what they are judged by."""
-
-    coefficient: Floats
-    covariance_factor: Floats
-    pattern: Integers
-    sigma: Floats
-    degrees_of_freedom: Floats
-    error_term: tuple[str, ...]
 
 
 def fit_surfaces(
@@ -124,7 +101,7 @@ def fit_surfaces(
     Notes
     -----
     Source: [1]_, eq. 5, with 9 and 5 degrees of freedom where its F statistic has 10 and 4
-    (`statistics_from_r2`).  Numbers are those of R's lm and rsm [3]_; with blocks r2 is about
+    (`statistics_from_r2`).  Numbers are those of R's lm and rsm [2]_; with blocks r2 is about
     their means, where R's is about the grand mean.  The coded plan is only the plan: levels
     are used as they were met, so that fifteen runs are seldom orthogonal.  Responses are
     fitted apart: K_1 and tau of runs that give E' and E'' are better derived from surfaces of
@@ -176,14 +153,14 @@ def fit_surfaces(
         values[bent] = transform(measured[bent], power[bent, None])
     fit = fit_least_squares(matrix, values, n_baseline=baseline.shape[1])
     fit = replace(fit, reason=np.where(np.isnan(power), np.int8(6), fit.reason))
-    found = _fixed(fit, column)
+    found = fixed_estimates(fit, column)
     effects = None
     if grouping is not None:
         names, index, columns = grouping
-        found, effects = _with_blocks(
+        found, effects = with_blocks(
             found, fit, surface, values, names, index, columns, block_treatment
         )
-    deviation, engineering_deviation, to_engineering = _deviations(found, exponents, low, high)
+    deviation, engineering_deviation, to_engineering = deviations(found, exponents, low, high)
     judged = (fit.reason == 0)[:, None] & (deviation > 0)
     t = np.divide(found.coefficient, deviation, out=np.full(deviation.shape, np.nan), where=judged)
     r2, adjusted, predicted = _shares(fit, baseline.shape[1])
@@ -293,75 +270,6 @@ def _scales(
         power[sought] = found.exponent
         interval[sought] = np.stack([found.low, found.high], axis=1)
     return scale, power, interval
-
-
-def _fixed(fit: LeastSquares, column: Integers) -> _Estimates:
-    """Least squares in printed order."""
-    freedom = np.where(fit.degrees_of_freedom > 0, fit.degrees_of_freedom, np.nan)
-    return _Estimates(
-        fit.coefficient[:, column],
-        fit.covariance_factor[:, column[:, None], column],
-        fit.pattern,
-        fit.sigma,
-        np.repeat(freedom[:, None], column.size, axis=1),
-        ("residuals",) * column.size,
-    )
-
-
-def _with_blocks(
-    fixed: _Estimates,
-    fit: LeastSquares,
-    surface: Floats,
-    values: Floats,
-    names: tuple[str, ...],
-    index: Integers,
-    columns: Floats,
-    treatment: Literal["fixed", "random"],
-) -> tuple[_Estimates, BlockEffects]:
-    """Estimates as the treatment of the blocks wants them, and the blocks' own levels."""
-    n_responses = len(values)
-    if treatment == "fixed":
-        free = fit.coefficient[:, 1 : len(names)]
-        effect = np.hstack([free, -free.sum(axis=1, keepdims=True)])
-        none, inside = np.full(n_responses, np.nan), np.zeros(n_responses, dtype=bool)
-        return fixed, BlockEffects(names, index, columns, treatment, effect, none, inside)
-    mixed = fit_random_intercept(surface, values, block=index)
-    terms = tuple("blocks" if between else "residuals" for between in mixed.is_between)
-    estimates = _Estimates(
-        mixed.coefficient,
-        mixed.covariance_factor,
-        np.arange(n_responses),
-        mixed.sigma,
-        mixed.degrees_of_freedom,
-        terms,
-    )
-    effects = BlockEffects(
-        names,
-        index,
-        columns,
-        treatment,
-        mixed.effect,
-        mixed.standard_deviation,
-        mixed.at_boundary,
-    )
-    return estimates, effects
-
-
-def _deviations(
-    found: _Estimates, exponents: Integers, low: ArrayLike, high: ArrayLike
-) -> tuple[Floats, Floats, Floats]:
-    """Standard uncertainties of coded and of engineering coefficients, and the way between."""
-    factor = found.covariance_factor
-    to_engineering = engineering_matrix(exponents, low=low, high=high)
-    rows = np.broadcast_to(to_engineering, factor.shape)
-    engineering = variance_factor(rows, factor, pattern=np.arange(len(factor)))
-    coded = np.einsum("ptt->pt", factor)
-    sigma = found.sigma[:, None]
-    return (
-        np.sqrt(coded)[found.pattern] * sigma,
-        np.sqrt(engineering)[found.pattern] * sigma,
-        to_engineering,
-    )
 
 
 def _shares(fit: LeastSquares, n_baseline: int) -> tuple[Floats, Floats, Floats]:

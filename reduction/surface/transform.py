@@ -28,7 +28,7 @@ from scipy.special import boxcox, chdtri
 
 from reduction.errors import DataError, SettingsError
 from reduction.record import Bools, Floats
-from reduction.surface.fit import patterns_of, times
+from reduction.surface.rows import patterns_of, times
 
 __all__ = ["Transform", "back_transform", "box_cox_exponent", "retransformed_mean", "transform"]
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.surface.anova import statistics_from_r2
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import box_behnken
 from reduction.surface.fit import covariance_factor, variance_factor
+from reduction.surface.overall import statistics_from_r2
 from reduction.surface.terms import model_matrix, quadratic_exponents, term_names
 
 # Table 3, K_ap of seven new lines: r2, F-STAT as printed
