@@ -14,12 +14,20 @@ from reduction.strain.model import StrainModel
 
 __all__ = ["history_of", "history_remarks"]
 
+Models = Mapping[tuple[str, str], StrainModel]
 
-def _greatest_strain(survey: Survey, name: str, model: StrainModel) -> float:
-    """Greatest strain: measured, or at one of the samples at the greatest position."""
-    if model.method == "extensometer":
+
+def _greatest_strain(survey: Survey, name: str, models: Models) -> float:
+    """Greatest strain: measured, or at one of the samples at the greatest position.
+
+    NaN where the test failed, or has no number of it.
+    """
+    model = models.get((survey.plan.id, name))
+    if survey.steps is not None or (model is not None and model.method == "extensometer"):
         return survey.greatest_measured_strain.get(name, float("nan"))
-    position, tension, _ = survey.greatest[name]
+    if model is None or name not in survey.greatest:
+        return float("nan")
+    position, tension = survey.greatest[name]
     return float(np.nanmax(free_length_strain_of(model, position=position, tension=tension)))
 
 
@@ -29,7 +37,7 @@ def _set_after_rest(
     """Growth of the length at which the specimen becomes taut, since its first test. [1]."""
     if not earlier:
         return float("nan"), float("nan")
-    first = min(earlier, key=lambda entry: (entry.plan.order or 0, entry.plan.step_place))
+    first = earlier[0]
     pair = (first, survey)
     if any(name not in entry.first_rise for entry in pair):
         return float("nan"), float("nan")
@@ -48,11 +56,33 @@ def _set_after_rest(
     return float(growth), float(spread)
 
 
-def history_of(
-    survey: Survey,
-    surveys: Sequence[Survey],
-    models: Mapping[tuple[str, str], StrainModel],
-) -> History | None:
+def _place(survey: Survey, surveys: Sequence[Survey]) -> tuple[int, int] | None:
+    """Place in the order of tests; a test that is a part of another has the place of that one."""
+    order = survey.plan.order
+    for entry in surveys:
+        if entry.plan.log == survey.plan.part_of:
+            order = entry.plan.order
+    return None if order is None else (order, survey.plan.step_place)
+
+
+def _earlier(survey: Survey, surveys: Sequence[Survey], name: str) -> list[Survey]:
+    """Tests of a specimen before a test, oldest first."""
+    place = _place(survey, surveys)
+    before = [
+        ((entry.plan.order, entry.plan.step_place), entry)
+        for entry in surveys
+        if entry.plan.order is not None
+        and entry.plan.part_of is None
+        and name in entry.plan.specimens
+    ]
+    return [
+        entry
+        for at, entry in sorted(before, key=lambda pair: pair[0])
+        if place is not None and at < place
+    ]
+
+
+def history_of(survey: Survey, surveys: Sequence[Survey], models: Models) -> History | None:
     """Earlier maximum strain and tension and cumulative cycles of each specimen.
 
     Parameters
@@ -67,39 +97,24 @@ def history_of(
     Returns
     -------
     history : History or None
-        None where the test has no place in the order.
+        None where the test has no place in the order.  A number is NaN where an earlier test
+        failed or has none of it: a part of a sum, or of a maximum, would pass for the whole.
     """
-    by_log = {entry.plan.log: entry for entry in surveys}
-    order = survey.plan.order
-    if survey.plan.part_of in by_log:
-        order = by_log[survey.plan.part_of].plan.order
-    if order is None:
+    if _place(survey, surveys) is None:
         return None
-    place = (order, survey.plan.step_place)
+    nothing = float("nan")
     tests: list[tuple[str, ...]] = []
     strain, tension, cycles, left = [], [], [], []
     for name in survey.plan.specimens:
-        earlier = [
-            entry
-            for entry in surveys
-            if entry.plan.order is not None
-            and (entry.plan.order, entry.plan.step_place) < place
-            and entry.plan.part_of is None
-            and name in entry.plan.specimens
-        ]
-        seen = [entry for entry in earlier if name in entry.greatest]
-        strains = [
-            _greatest_strain(entry, name, models[entry.plan.id, name])
-            for entry in seen
-            if (entry.plan.id, name) in models
-        ]
+        earlier = _earlier(survey, surveys, name)
         tests.append(tuple(entry.plan.id for entry in earlier))
-        strain.append(float(np.max(strains)) if strains else float("nan"))
-        tension.append(max((entry.greatest[name][2] for entry in seen), default=float("nan")))
-        cycles.append(float(sum(entry.n_cycles for entry in earlier)))
+        strain.append(_greatest([_greatest_strain(entry, name, models) for entry in earlier]))
+        tension.append(_greatest([entry.greatest_tension.get(name, nothing) for entry in earlier]))
+        failed = any(entry.error is not None for entry in earlier)
+        cycles.append(nothing if failed else float(sum(entry.n_cycles for entry in earlier)))
         model = models.get((survey.plan.id, name))
-        free = float("nan") if model is None else model.coefficients.get("relaxed_free_length")
-        left.append(_set_after_rest(survey, seen, name, float("nan") if free is None else free))
+        free = None if model is None else model.coefficients.get("relaxed_free_length")
+        left.append(_set_after_rest(survey, earlier, name, nothing if free is None else free))
     return History(
         earlier_tests=tuple(tests),
         earlier_maximum_strain=np.array(strain),
@@ -110,7 +125,12 @@ def history_of(
     )
 
 
-def history_remarks(survey: Survey, surveys: Sequence[Survey]) -> tuple[str, ...]:
+def _greatest(values: Sequence[float]) -> float:
+    """The greatest; NaN where one of them is not known, or there is none."""
+    return float(np.max(values)) if values else float("nan")
+
+
+def history_remarks(survey: Survey, surveys: Sequence[Survey], models: Models) -> tuple[str, ...]:
     """What the campaign leaves open about the place of a test in its specimens' history.
 
     Parameters
@@ -119,6 +139,8 @@ def history_remarks(survey: Survey, surveys: Sequence[Survey]) -> tuple[str, ...
         The test.
     surveys : sequence of Survey
         All tests of the campaign.
+    models : mapping of (test, specimen) to StrainModel
+        How position becomes strain.
 
     Returns
     -------
@@ -126,10 +148,12 @@ def history_remarks(survey: Survey, surveys: Sequence[Survey]) -> tuple[str, ...
         Sentences for a reader of the product; empty where nothing is open.
     """
     plan = survey.plan
+    remarks = _unknown(survey, surveys, models)
     if plan.part_of is not None:
         return (
             f"a part of {plan.part_of}: its history is that of the whole; cycles of the whole "
             "before this part are not counted",
+            *remarks,
         )
     shared = [
         name
@@ -141,4 +165,28 @@ def history_remarks(survey: Survey, surveys: Sequence[Survey]) -> tuple[str, ...
             f"no place in the order of tests is given for {', '.join(shared)}: what earlier tests "
             "did to the rubber is not known here; set order",
         )
-    return ()
+    return remarks
+
+
+def _unknown(survey: Survey, surveys: Sequence[Survey], models: Models) -> tuple[str, ...]:
+    """Earlier tests of which a number is lacking, and what has none for it here."""
+    failed: dict[str, list[str]] = {}
+    bare: dict[str, list[str]] = {}
+    for name in survey.plan.specimens:
+        for entry in _earlier(survey, surveys, name):
+            if entry.error is not None:
+                failed.setdefault(entry.plan.id, []).append(name)
+            elif np.isnan(_greatest_strain(entry, name, models)):
+                bare.setdefault(entry.plan.id, []).append(name)
+    return (
+        *(
+            f"earlier test {test} failed: what it did to {', '.join(names)} is not known, and "
+            "earlier_cycles, earlier_maximum_strain and earlier_maximum_tension have no number"
+            for test, names in failed.items()
+        ),
+        *(
+            f"earlier test {test} has no strain of {', '.join(names)}: earlier_maximum_strain "
+            "has no number"
+            for test, names in bare.items()
+        ),
+    )

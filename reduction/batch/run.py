@@ -166,6 +166,7 @@ def reduce_survey(
             survey.steps,
             description=description,
             specimens=specimens,
+            history=history,
             sources=survey.sources,
             settings_json=settings,
         )
@@ -260,7 +261,7 @@ def run_campaign(
             continue
         try:
             product = reduce_survey(campaign, survey, of_test, history, settings, pulls)
-            remarks = history_remarks(survey, surveys)
+            remarks = history_remarks(survey, surveys, models)
             product = replace(product, notes=(*product.notes, *remarks))
             write_archive(to_dataset(product, version=__version__, command=command), path)
         except Exception as failure:

@@ -16,6 +16,7 @@ from reduction.errors import DataError, LogError, ReductionError
 from reduction.ingest.datum import length_at_slack
 from reduction.ingest.record_of_test import read_record
 from reduction.ingest.steps import read_step_readings
+from reduction.moduli.stepwise import greatest_step_strain
 from reduction.pipeline.locate import Located, locate
 from reduction.provenance import Source
 from reduction.record import Floats, Record, SpliceMarks, StepReadings
@@ -35,8 +36,9 @@ class Survey:
 
     ``mark_tension`` holds, by specimen, one tension [N] for each pooled mark that was
     read in this test, in the order of the marks.  ``greatest`` holds, by specimen, position
-    [m] and tension [N] of the samples at the greatest position, and the greatest tension [N];
-    ``greatest_measured_strain`` that of the extensometer [1], where there is one;
+    [m] and tension [N] of the samples at the greatest position, ``greatest_tension`` [N] that
+    of the test; ``greatest_measured_strain`` [1] that of the extensometer, where there is one,
+    or of the readings of a stepwise test;
     ``first_rise`` position [m] and tension [N] of the samples up to half of its peak.
     """
 
@@ -50,7 +52,8 @@ class Survey:
     mark_tension_at_start: dict[str, Floats] = field(default_factory=dict)
     zero_strain_position: float | None = None
     has_extensometer: bool = False
-    greatest: dict[str, tuple[Floats, Floats, float]] = field(default_factory=dict)
+    greatest: dict[str, tuple[Floats, Floats]] = field(default_factory=dict)
+    greatest_tension: dict[str, float] = field(default_factory=dict)
     greatest_measured_strain: dict[str, float] = field(default_factory=dict)
     first_rise: dict[str, tuple[Floats, Floats]] = field(default_factory=dict)
     slack_tension: float = float("nan")
@@ -134,7 +137,14 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
     files = [(campaign.file(name), campaign.layouts[layout], name) for name, layout in plan.files]
     if plan.kind == "stepwise":
         readings, sources = read_step_readings(files, test_id=plan.id)
-        return [Survey(plan, sources, steps=readings, n_rows=readings.time.size)]
+        survey = Survey(plan, sources, steps=readings, n_rows=readings.time.size)
+        for name in plan.specimens[:1]:  # weights hang from one specimen
+            gauge = campaign.specimens[name].gauge_length
+            survey.greatest_tension[name] = float(readings.tension.max())
+            survey.greatest_measured_strain[name] = greatest_step_strain(
+                readings, stated_gauge_length=gauge
+            )
+        return [survey]
     record, sources = read_record(
         files,
         test_id=plan.id,
@@ -186,6 +196,11 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
     survey.has_extensometer = record.measured_strain is not None
     survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
     survey.greatest = _greatest(located)
+    survey.greatest_tension = {
+        name: float(np.nanmax(tension))
+        for name, tension in zip(record.specimens, located.tension, strict=True)
+        if np.isfinite(tension).any()
+    }
     if record.measured_strain is not None:
         survey.greatest_measured_strain = {
             name: float(np.nanmax(strain))
@@ -201,8 +216,8 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
     return survey
 
 
-def _greatest(located: Located) -> dict[str, tuple[Floats, Floats, float]]:
-    """Position and tension of the samples at the greatest position, and the greatest tension.
+def _greatest(located: Located) -> dict[str, tuple[Floats, Floats]]:
+    """Position and tension of the samples at the greatest position.
 
     At a held length the rubber goes on stretching as its splices relax, so the greatest
     strain is at one of these samples, which the strain model tells.
@@ -216,11 +231,7 @@ def _greatest(located: Located) -> dict[str, tuple[Floats, Floats, float]]:
     found = {}
     for name, tension in zip(record.specimens, located.tension, strict=True):
         if np.isfinite(tension[at_top]).any():
-            found[name] = (
-                position[at_top],
-                tension[at_top],
-                float(np.nanmax(tension)),
-            )
+            found[name] = (position[at_top], tension[at_top])
     return found
 
 

@@ -25,7 +25,7 @@ from reduction.moduli.weights import (
 )
 from reduction.record import Bools, Floats, Integers, StepReadings, freeze_arrays
 
-__all__ = ["StepwiseResult", "reduce_stepwise"]
+__all__ = ["StepwiseResult", "greatest_step_strain", "reduce_stepwise"]
 
 
 @dataclass(frozen=True)
@@ -139,6 +139,56 @@ def _inconsistency_note(
     return f"{text}, and the intervals beside it would be {' and '.join(beside)} MPa"
 
 
+def _gauge(readings: StepReadings, stated: float | None) -> tuple[float, float, Bools]:
+    """Gauge length, its uncertainty, and the readings that contradict it."""
+    if np.isfinite(readings.printed_strain).any() or stated is None:
+        gauge, uncertainty = recover_gauge_length(readings.length, readings.printed_strain)
+    else:
+        gauge, uncertainty = stated, float("nan")
+    is_inconsistent = find_inconsistent_readings(
+        readings.length, readings.printed_strain, gauge_length=gauge
+    )
+    return gauge, uncertainty, is_inconsistent
+
+
+def greatest_step_strain(
+    readings: StepReadings, *, stated_gauge_length: float | None = None
+) -> float:
+    """Greatest strain that a stepwise test reached.
+
+    Parameters
+    ----------
+    readings : StepReadings
+        In SI, in the order they were taken.
+    stated_gauge_length : float, optional
+        Used where no elongation was recorded. [m]
+
+    Returns
+    -------
+    strain : float
+        Over the readings that do not contradict the gauge length; NaN where all do. [1]
+
+    Raises
+    ------
+    DataError
+        If a length is impossible, or neither elongation nor gauge length is known.
+
+    Examples
+    --------
+    Table 4 of [1]_ at 208 lb, and after 45 min of creep: 212 % of 6.125 in are printed.
+
+    >>> inch, none = 0.0254, np.full(2, np.nan)
+    >>> round(greatest_step_strain(
+    ...     StepReadings(("1120", "1205"), np.array([0.0, 2700.0]), np.array([925.0, 823.0]),
+    ...         inch * np.array([19.00, 19.13]), none, none),
+    ...     stated_gauge_length=6.125 * inch), 2)
+    2.12
+    """
+    gauge, _, is_inconsistent = _gauge(readings, stated_gauge_length)
+    sound = readings.length[~is_inconsistent]
+    return float(sound.max() / gauge - 1) if sound.size else float("nan")
+
+
 def reduce_stepwise(
     readings: StepReadings, *, area: float, stated_gauge_length: float | None = None
 ) -> StepwiseResult:
@@ -190,13 +240,7 @@ def reduce_stepwise(
         )
     as_positive("area", area)
     branch = step_branches(readings.tension)
-    if np.isfinite(readings.printed_strain).any() or stated_gauge_length is None:
-        gauge, gauge_uncertainty = recover_gauge_length(length, readings.printed_strain)
-    else:
-        gauge, gauge_uncertainty = stated_gauge_length, float("nan")
-    is_inconsistent = find_inconsistent_readings(
-        length, readings.printed_strain, gauge_length=gauge
-    )
+    gauge, gauge_uncertainty, is_inconsistent = _gauge(readings, stated_gauge_length)
     strain = length / gauge - 1
     growth, weight_change = np.diff(length), np.diff(readings.tension)
     against = (growth * weight_change < 0) | ((weight_change == 0) & (growth != 0))

@@ -49,6 +49,8 @@ def _unequal(first: Specimen, other: Specimen, index: int, history: History | No
     if history is None:
         return [*found, "what earlier tests did to either is not known: no order is given"]
     cycles, strain = history.earlier_cycles[[index, 0]], history.earlier_maximum_strain[[index, 0]]
+    if np.isnan(cycles).any():
+        return [*found, "what earlier tests did to them is not wholly known: one of those failed"]
     if cycles[0] != cycles[1]:
         found.append(
             f"unequal histories in the campaign: {cycles[0]:.0f} earlier cycles against "

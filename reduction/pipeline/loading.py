@@ -22,7 +22,7 @@ __all__ = ["parts_of_first_loading"]
 
 
 def _elastomers(
-    name: str, strain: Floats, stress: Floats, earlier_maximum_strain: float
+    name: str, strain: Floats, stress: Floats, earlier_maximum_strain: float, *, is_first: bool
 ) -> tuple[tuple[ElastomerFit, ...], str]:
     """Hyperelastic laws of one first loading, or the reason why there are none."""
     known = np.isfinite(stress)
@@ -38,11 +38,13 @@ def _elastomers(
         fits = fit_elastomers(strain[known], stress[known], specimen=name)
     except (DataError, FitError) as error:
         return (), f"{name}: no hyperelastic law from the first loading: {error}"
-    if not np.isfinite(earlier_maximum_strain):
+    if is_first:
         return fits, ""
     note = (
         "not a first loading of the specimen: earlier tests reached "
         f"{100 * earlier_maximum_strain:.0f} %, and below that the rubber is softened"
+        if np.isfinite(earlier_maximum_strain)
+        else "not a first loading of the specimen: how far earlier tests reached is not known"
     )
     return tuple(replace(fit, notes=(*fit.notes, note)) for fit in fits), ""
 
@@ -91,8 +93,15 @@ def parts_of_first_loading(
         "notes": notes,
     }
     earlier = np.full(area.size, np.nan) if history is None else history.earlier_maximum_strain
+    is_first = [True] * area.size if history is None else [not one for one in history.earlier_tests]
     found = [
-        _elastomers(name, curves.strain_bin, rise[index] / area[index], float(earlier[index]))
+        _elastomers(
+            name,
+            curves.strain_bin,
+            rise[index] / area[index],
+            float(earlier[index]),
+            is_first=is_first[index],
+        )
         for index, name in enumerate(names)
         if specimens[index].is_rubber
     ]

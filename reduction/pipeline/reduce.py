@@ -161,6 +161,7 @@ def reduce_steps(
     *,
     description: TestDescription,
     specimens: tuple[Specimen, ...],
+    history: History | None,
     sources: tuple[Source, ...],
     settings_json: str,
 ) -> ReducedTest:
@@ -186,6 +187,7 @@ def reduce_steps(
         ),
         settings_json=settings_json,
         notes=check_constant_volume(specimen),
+        history=history,
         stepwise=stepwise,
     )
 

@@ -1,0 +1,130 @@
+"""What a specimen had seen before a test: from logs, from weights, and where an earlier test failed."""
+
+import json
+
+import numpy as np
+import pytest
+
+from reduction.archive.open import open_archive
+
+CAMPAIGN = """
+[campaign]
+id = "row"
+title = "Four tests of one cord"
+synthetic = true
+[specimens.cord]
+kind = "elastomer"
+diameter = ["10 mm"]
+gauge_length = "1.2 m"
+[layouts.logger]
+format = "delimited"
+[layouts.logger.channels]
+time = { column = "t", unit = "s" }
+crosshead_position = { column = "x", unit = "m", datum = "displacement" }
+tension.1 = { column = "F", unit = "N" }
+[layouts.weights]
+format = "delimited"
+[layouts.weights.channels]
+time = { column = "t", unit = "s" }
+tension.1 = { column = "F", unit = "N" }
+gauge_length = { column = "length", unit = "m", standard_uncertainty = "0.5 mm" }
+[defaults]
+layout = "logger"
+specimens = ["cord"]
+[tests.A]
+file = "A.csv"
+order = 1
+[tests.weights]
+file = "weights.csv"
+layout = "weights"
+kind = "stepwise"
+order = 2
+[tests.B]
+file = "B.csv"
+order = 3
+[tests.C]
+file = "C.csv"
+order = 4
+"""
+NUMBERS = ("earlier_maximum_strain", "earlier_maximum_tension", "earlier_cycles")
+# greatest strain [1], greatest tension [N] and cycles: 2000 N/m on 1.2 m, as drawn below
+DRAWN = {"A": (0.25, 600, 10), "weights": (0.35, 840, 0), "B": (0.2, 480, 12)}
+
+
+def write_log(path, low, high, n_cycles, seed):
+    """Cycles of 10 s between two displacements from slack."""
+    time = np.arange(0, 10 * n_cycles + 0.05, 0.1)
+    position = low + (high - low) * (1 - np.abs(time / 5 % 2 - 1))
+    generator = np.random.default_rng(seed)
+    columns = [
+        time,
+        position + generator.normal(0, 1e-4, time.size),
+        2000 * position + generator.normal(0, 0.2, time.size),
+    ]
+    np.savetxt(path, np.column_stack(columns), fmt="%.5f", delimiter=",", header="t,x,F",
+               comments="")  # fmt: skip
+
+
+@pytest.fixture
+def row(tmp_path):
+    write_log(tmp_path / "A.csv", 0.1, 0.3, 10, 1)
+    write_log(tmp_path / "B.csv", 0.1, 0.24, 12, 2)
+    write_log(tmp_path / "C.csv", 0.1, 0.2, 8, 3)
+    forces = np.array([240, 480, 720, 840, 600, 360])
+    lengths = 1.2 * (1 + forces / 2400)
+    lines = [
+        f"{600 * i},{f},{x:.4f}\n" for i, (f, x) in enumerate(zip(forces, lengths, strict=True))
+    ]
+    (tmp_path / "weights.csv").write_text("t,F,length\n" + "".join(lines))
+    (tmp_path / "campaign.toml").write_text(CAMPAIGN)
+    return tmp_path
+
+
+def run(folder, command, *options):
+    done = command("run", folder / "campaign.toml", "--json", *options, cwd=folder)
+    return {test["id"]: test for test in json.loads(done.stdout)["tests"]}
+
+
+def history(folder, test):
+    with open_archive(folder / "processed" / "row" / f"{test}.nc") as archive:
+        numbers = tuple(float(archive[name].values[0]) for name in NUMBERS)
+        return str(archive["earlier_tests"].values[0]), numbers, archive["note"].values.tolist()
+
+
+def break_log(folder, name):
+    lines = (folder / name).read_text().splitlines()
+    lines[100] = "ovrflw,1,1"
+    (folder / name).write_text("\n".join(lines) + "\n")
+
+
+def greatest(tests):
+    strain, tension, cycles = np.array([DRAWN[test] for test in tests]).T
+    return strain.max(), tension.max(), cycles.sum()
+
+
+def test_weights_are_in_the_history_and_have_one(row, command):
+    assert all(test["status"] != "failed" for test in run(row, command).values())
+    for test, earlier in (
+        ("weights", ["A"]),
+        ("B", ["A", "weights"]),
+        ("C", ["A", "weights", "B"]),
+    ):
+        names, numbers, _ = history(row, test)
+        assert names == ", ".join(earlier)
+        assert numbers == pytest.approx(greatest(earlier), rel=3e-3)
+    names, numbers, _ = history(row, "A")
+    assert names == "" and np.isnan(numbers[:2]).all() and numbers[2] == 0
+
+
+def test_what_a_failed_test_did_is_not_known_and_is_said(row, command):
+    break_log(row, "A.csv")
+    statuses = run(row, command)
+    assert [statuses[test]["status"] for test in ("A", "B")] == ["failed", "reduced_with_notes"]
+    for test in ("weights", "B", "C"):
+        names, numbers, notes = history(row, test)
+        assert names.startswith("A")
+        assert np.isnan(numbers).all()
+        assert (
+            "earlier test A failed: what it did to cord is not known, and earlier_cycles, "
+            "earlier_maximum_strain and earlier_maximum_tension have no number"
+        ) in notes
