@@ -214,8 +214,13 @@ def anova_table(
             needed=f"from {n_baseline} to {fit.coefficient.shape[1]} without a gap",
         )
     none = np.where(np.isin(fit.reason, (1, 2, 6)), np.nan, 1.0)
-    squares = [fit.sequential_sum_of_squares[:, part].sum(axis=1) for part in groups.values()]
-    degrees = [none * (stop - start) for start, stop in edges]
+    # the column of a block that a response does without is NaN and no degree of freedom
+    stands = np.isfinite(fit.sequential_sum_of_squares)
+    squares = [
+        none * np.sum(fit.sequential_sum_of_squares[:, part], axis=1, where=stands[:, part])
+        for part in groups.values()
+    ]
+    degrees = [none * stands[:, part].sum(axis=1) for part in groups.values()]
     residual_df = none * fit.degrees_of_freedom
     unexplained = [lack.sum_of_squares, lack.pure_error_sum_of_squares]
     unexplained_df = [none * lack.degrees_of_freedom, none * lack.pure_error_degrees_of_freedom]

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
 from reduction.record import Bools, Floats, Integers, freeze_arrays
-from reduction.surface.rows import patterns_of
+from reduction.surface.rows import block_contrasts, patterns_of
 
 __all__ = ["RandomIntercept", "block_columns", "fit_random_intercept"]
 
@@ -115,9 +115,7 @@ def block_columns(labels: Sequence[str]) -> tuple[tuple[str, ...], Integers, Flo
             hint="Leave the blocks out.",
         )
     index = np.array([names.index(label) for label in labels])
-    member = index[:, None] == np.arange(len(names))
-    columns = member[:, :-1].astype(np.float64) - member[:, -1:]
-    return names, index, columns
+    return names, index, block_contrasts(index)
 
 
 def fit_random_intercept(
@@ -203,6 +201,7 @@ def fit_random_intercept(
         factor[rows] = inverse = np.linalg.inv(normal)
         coefficient[rows] = found = np.einsum("rst,rt->rs", inverse, right)
         effect[rows] = weight * ((known - found @ part.T) @ of_block)
+        effect[np.ix_(rows, count == 0)] = np.nan
         within = part.shape[0] - np.linalg.matrix_rank(np.hstack([part, of_block]))
         between = int((count > 0).sum()) - int(is_between.sum())
         freedom[rows] = np.where(is_between, between, within)

@@ -62,12 +62,12 @@ def diagnose(fit: LeastSquares) -> Diagnostics:
     [[0.333 0.333 0.333]] [[0.75 0.   0.75]]
     """
     leverage = fit.leverage[fit.pattern]
-    n_columns = fit.coefficient.shape[1]
+    n_columns = np.isfinite(fit.coefficient).sum(axis=1, keepdims=True)
     df = fit.degrees_of_freedom[:, None]
     own = np.where(leverage < _FIXES_A_TERM, 1 - leverage, np.nan)
     sigma = np.where(fit.reason == 0, fit.sigma, np.nan)[:, None]
     inner = fit.residual / (sigma * np.sqrt(own))
-    distance = inner**2 * leverage / own / n_columns
+    distance = inner**2 * leverage / own / np.maximum(n_columns, 1)
     # with every other residual nil the scatter without the run is nil, and t has no bound
     without = df - inner**2
     safe = (without > 1e-9 * df) & (df > 1)

@@ -49,16 +49,19 @@ def with_blocks(
     values: Floats,
     names: tuple[str, ...],
     index: Integers,
-    columns: Floats,
     treatment: Literal["fixed", "random"],
 ) -> tuple[Estimates, BlockEffects]:
     """Estimates as the treatment of the blocks wants them, and the blocks' own levels."""
     n_responses = len(values)
     if treatment == "fixed":
-        free = fit.coefficient[:, 1 : len(names)]
-        effect = np.hstack([free, -free.sum(axis=1, keepdims=True)])
+        # level of each block's runs above the surface: also where a response misses a block
+        above = values - fixed.coefficient @ np.nan_to_num(surface).T
+        member = (index == np.arange(len(names))[:, None]) & np.isfinite(values)[:, None]
+        count = member.sum(axis=2)
+        level = np.where(member, above[:, None], 0.0).sum(axis=2)
+        effect = np.divide(level, count, out=np.full(level.shape, np.nan), where=count > 0)
         none, inside = np.full(n_responses, np.nan), np.zeros(n_responses, dtype=bool)
-        return fixed, BlockEffects(names, index, columns, treatment, effect, none, inside)
+        return fixed, BlockEffects(names, index, treatment, effect, none, inside)
     mixed = fit_random_intercept(surface, values, block=index)
     terms = tuple("blocks" if between else "residuals" for between in mixed.is_between)
     estimates = Estimates(
@@ -72,7 +75,6 @@ def with_blocks(
     effects = BlockEffects(
         names,
         index,
-        columns,
         treatment,
         mixed.effect,
         mixed.standard_deviation,

@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError, FitError
 from reduction.record import Bools, Floats, Integers
 from reduction.surface.product import LeastSquares
-from reduction.surface.rows import patterns_of, times
+from reduction.surface.rows import block_contrasts, patterns_of, times
 from reduction.surface.student import student_p
 
 __all__ = [
@@ -243,7 +243,11 @@ def variance_factor(
 
 
 def fit_least_squares(
-    matrix: ArrayLike, responses: ArrayLike, *, n_baseline: int = 1
+    matrix: ArrayLike,
+    responses: ArrayLike,
+    *,
+    n_baseline: int = 1,
+    block: Integers | None = None,
 ) -> LeastSquares:
     """Fit every response to the columns of a matrix, with what tests of it need.
 
@@ -256,6 +260,8 @@ def fit_least_squares(
         NaN where a run is missing. [unit of the response]
     n_baseline : int
         Columns about which r2 is taken.
+    block : ndarray of int, shape (n_runs,), optional
+        Block of each run, from 0, where the baseline behind the mean are its contrasts. [1]
 
     Returns
     -------
@@ -271,7 +277,9 @@ def fit_least_squares(
     Notes
     -----
     A response that misses runs is fitted to those it has, and has leverage, covariance and
-    degrees of freedom of its own.  Residuals below 1e-12 of the response are rounding.
+    degrees of freedom of its own.  Where it misses a whole block, its mean is that over the
+    blocks it has, and the columns of blocks it does without have no coefficient.  Residuals
+    below 1e-12 of the response are rounding.
 
     Examples
     --------
@@ -299,28 +307,36 @@ def fit_least_squares(
         )
     }
     reason = np.zeros(values.shape[0], dtype=np.int8)
-    degrees = is_used.sum(axis=1)[pattern] - n_columns
+    degrees = np.zeros(values.shape[0], dtype=np.intp)
     for index in range(n_patterns):
         rows = slice(None) if n_patterns == 1 else np.flatnonzero(pattern == index)
         used = is_used[index]
-        part = columns[used]
-        if part.shape[0] < n_columns or _is_singular(part):
-            reason[rows] = 1 if part.shape[0] < n_columns else 2
+        part, kept, n_fixed = _present(columns, used, n_baseline, block)
+        degrees[rows] = part.shape[0] - kept.size
+        if part.shape[0] < kept.size or _is_singular(part):
+            reason[rows] = 1 if part.shape[0] < kept.size else 2
             continue
+        whole = kept.size == n_columns
         basis, upper = np.linalg.qr(part)
         inverse = np.linalg.inv(upper)
         known = values[rows][:, used]
         projection = times(known, basis)
         residual = known - times(projection, basis.T)
         leverage = np.sum(basis**2, axis=1)
-        out["coefficient"][rows] = coefficient = times(projection, inverse.T)
-        out["covariance_factor"][index] = inverse @ inverse.T
+        coefficient = times(projection, inverse.T)
+        out["coefficient"][rows] = _spread(coefficient, kept, n_columns)
+        out["covariance_factor"][index][np.ix_(kept, kept)] = inverse @ inverse.T
         out["leverage"][index, used] = leverage
-        out["fitted"][rows] = times(coefficient, columns.T)
-        out["residual"][rows] = _spread(residual, used)
-        out["sequential_sum_of_squares"][rows] = projection**2
+        # without its block a run that is missing has no level
+        out["fitted"][rows] = (
+            times(coefficient, columns.T)
+            if whole
+            else _spread(known - residual, np.flatnonzero(used), used.size)
+        )
+        out["residual"][rows] = _spread(residual, np.flatnonzero(used), used.size)
+        out["sequential_sum_of_squares"][rows] = _spread(projection**2, kept, n_columns)
         remainder = np.sum(residual**2, axis=1)
-        total = remainder + np.sum(projection[:, n_baseline:] ** 2, axis=1)
+        total = remainder + np.sum(projection[:, n_fixed:] ** 2, axis=1)
         out["residual_sum_of_squares"][rows] = remainder
         out["total_sum_of_squares"][rows] = total
         out["prediction_sum_of_squares"][rows] = np.sum(
@@ -328,7 +344,7 @@ def fit_least_squares(
         )
         rounding = (_ROUNDING * np.max(np.abs(known), axis=1)) ** 2 * known.shape[1]
         reason[rows] = np.select(
-            [part.shape[0] == n_columns, total <= rounding, remainder <= rounding], [3, 4, 5], 0
+            [part.shape[0] == kept.size, total <= rounding, remainder <= rounding], [3, 4, 5], 0
         )
     return LeastSquares(
         **out, is_used=is_used, pattern=pattern, degrees_of_freedom=degrees, reason=reason
@@ -372,10 +388,23 @@ def _is_singular(columns: Floats) -> bool:
     return bool(values[-1] < _SINGULAR * values[0])
 
 
-def _spread(values: Floats, used: Bools) -> Floats:
-    """Columns for all runs, NaN where one is not used."""
-    if used.all():
+def _present(
+    columns: Floats, used: Bools, n_baseline: int, block: Integers | None
+) -> tuple[Floats, Integers, int]:
+    """Matrix of the runs used, place of its columns, and columns of its baseline."""
+    part, places = columns[used], np.arange(columns.shape[1])
+    if block is None or np.unique(block[used]).size in (0, n_baseline):
+        return part, places, n_baseline
+    contrasts = block_contrasts(block[used])
+    n_fixed = 1 + contrasts.shape[1]
+    part = np.hstack([part[:, :1], contrasts, part[:, n_baseline:]])
+    return part, np.concatenate([places[:n_fixed], places[n_baseline:]]), n_fixed
+
+
+def _spread(values: Floats, places: Integers, count: int) -> Floats:
+    """Columns at their places among all, NaN elsewhere."""
+    if places.size == count:
         return values
-    wide = np.full((values.shape[0], used.size), np.nan)
-    wide[:, used] = values
+    wide = np.full((values.shape[0], count), np.nan)
+    wide[:, places] = values
     return wide

@@ -268,12 +268,11 @@ class BlockEffects:
         In the order of their first run.
     index : ndarray of int, shape (n_runs,)
         Block of each run.
-    columns : ndarray, shape (n_runs, n_blocks - 1)
-        Of the blocks in the model matrix: effects add up to nil. [1]
     treatment : str
         ``fixed`` or ``random``.
     effect : ndarray, shape (n_responses, n_blocks)
-        Above the mean over the blocks; predicted (shrunk) where random. [unit of the response]
+        Above the mean over the blocks; predicted (shrunk) where random; NaN for a block in
+        which the response has no value. [unit of the response]
     standard_deviation : ndarray, shape (n_responses,)
         Between blocks, by REML; NaN where fixed. [unit of the response]
     at_boundary : ndarray of bool, shape (n_responses,)
@@ -282,7 +281,6 @@ class BlockEffects:
 
     names: tuple[str, ...]
     index: Integers
-    columns: Floats
     treatment: str
     effect: Floats
     standard_deviation: Floats

@@ -26,6 +26,18 @@ def times(left: Floats, right: Floats) -> Floats:
     return product
 
 
+def block_contrasts(block: Integers) -> Floats:
+    """Columns that tell the blocks present apart, shape (n_runs, n_present - 1).
+
+    1 in a block, -1 in the last one: their coefficients are effects that add up to nil, and
+    the mean of the surface is that over the blocks.
+    """
+    present, own = np.unique(block, return_inverse=True)
+    member = own[:, None] == np.arange(present.size)
+    contrasts: Floats = member[:, :-1].astype(np.float64) - member[:, -1:]
+    return contrasts
+
+
 def patterns_of(known: Bools) -> tuple[Bools, Integers]:
     """Different patterns of known runs, and which one each response has."""
     if (known == known[:1]).all():

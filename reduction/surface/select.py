@@ -23,6 +23,7 @@ from reduction.errors import SettingsError
 from reduction.record import Bools, Floats, Integers, freeze_arrays
 from reduction.surface.fit import two_sided_p
 from reduction.surface.product import ResponseSurfaces
+from reduction.surface.rows import block_contrasts
 from reduction.surface.terms import model_matrix
 
 __all__ = ["ReducedSurfaces", "reduce_terms"]
@@ -130,9 +131,6 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
     n_responses, n_terms = surfaces.coefficient.shape
     subsets = _subsets(surfaces.exponents, hierarchical=hierarchical)
     responses = surfaces.fitted + surfaces.residual
-    baseline = np.ones((len(surfaces.coded), 1))
-    if surfaces.blocks is not None:
-        baseline = np.hstack([baseline, surfaces.blocks.columns])
     out = {
         name: np.full((n_responses, n_terms), np.nan)
         for name in ("coefficient", "coefficient_standard_uncertainty", "t", "p_value")
@@ -145,9 +143,13 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
         if rows.size == 0:
             continue
         terms = model_matrix(surfaces.coded[used], surfaces.exponents)
+        baseline = terms[:, :1]
+        if surfaces.blocks is not None:
+            contrasts = block_contrasts(surfaces.blocks.index[used])
+            baseline = np.hstack([baseline, contrasts])
         known = responses[rows][:, used]
         criterion = np.stack(
-            [_criterion(np.hstack([baseline[used], terms[:, kept]]), known) for kept in subsets]
+            [_criterion(np.hstack([baseline, terms[:, kept]]), known) for kept in subsets]
         )
         choice = np.argmin(criterion, axis=0)
         best[rows] = criterion[choice, np.arange(rows.size)]
@@ -156,7 +158,7 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
         for chosen in np.unique(choice):
             members = rows[choice == chosen]
             kept = subsets[chosen]
-            columns = np.hstack([baseline[used], terms[:, kept]])
+            columns = np.hstack([baseline, terms[:, kept]])
             basis, upper = np.linalg.qr(columns)
             inverse = np.linalg.inv(upper)
             values = responses[members][:, used]

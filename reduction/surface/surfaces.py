@@ -151,15 +151,18 @@ def fit_surfaces(
     if set(scale) != {"none"}:
         bent = np.array([kind != "none" for kind in scale])
         values[bent] = transform(measured[bent], power[bent, None])
-    fit = fit_least_squares(matrix, values, n_baseline=baseline.shape[1])
+    fit = fit_least_squares(
+        matrix,
+        values,
+        n_baseline=baseline.shape[1],
+        block=None if grouping is None else grouping[1],
+    )
     fit = replace(fit, reason=np.where(np.isnan(power), np.int8(6), fit.reason))
     found = fixed_estimates(fit, column)
     effects = None
     if grouping is not None:
-        names, index, columns = grouping
-        found, effects = with_blocks(
-            found, fit, surface, values, names, index, columns, block_treatment
-        )
+        names, index, _ = grouping
+        found, effects = with_blocks(found, fit, surface, values, names, index, block_treatment)
     deviation, engineering_deviation, to_engineering = deviations(found, exponents, low, high)
     judged = (fit.reason == 0)[:, None] & (deviation > 0)
     t = np.divide(found.coefficient, deviation, out=np.full(deviation.shape, np.nan), where=judged)

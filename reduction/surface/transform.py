@@ -249,9 +249,11 @@ def box_cox_exponent(
     found = np.full((3, logarithm.shape[0]), np.nan)
     for index, used in enumerate(is_used):
         rows = np.flatnonzero(pattern == index)
-        if used.sum() <= columns.shape[1]:
+        left, size, _ = np.linalg.svd(columns[used], full_matrices=False)
+        # columns of blocks that are missing add nothing
+        basis = left[:, size > 1e-9 * size.max(initial=0.0)]
+        if used.sum() <= basis.shape[1]:
             continue
-        basis, _ = np.linalg.qr(columns[used])
         part = logarithm[rows][:, used]
         scaled = np.exp(part - part.mean(axis=1, keepdims=True))
         drop = float(chdtri(1, 1 - confidence)) / 2

@@ -10,6 +10,7 @@ from statsmodels.stats.anova import anova_lm
 from reduction.errors import DataError, FitError, SettingsError
 from reduction.surface.designs import box_behnken
 from reduction.surface.product import FIT_REASONS
+from reduction.surface.select import reduce_terms
 from reduction.surface.surfaces import fit_surfaces
 from reduction.surface.terms import model_matrix, quadratic_exponents
 
@@ -217,6 +218,44 @@ def test_pure_error_with_blocks_is_that_of_blocks_and_cells(lines):
     other = ols("y ~ C(cell) + C(line)", data).fit()
     assert lack.pure_error_sum_of_squares[0] == pytest.approx(other.ssr, rel=1e-9)
     assert lack.pure_error_degrees_of_freedom[0] == other.df_resid
+
+
+def test_a_response_that_a_specimen_does_not_have_is_fitted_to_the_others(lines):
+    """As K_1 of a line without a slow pull; the last block and one in the middle."""
+    runs, names, values = lines
+    for missing in "BD":
+        partly = values.copy()
+        partly[1, names == missing] = np.nan
+        found = surfaces(partly, runs, blocks=names)
+        rest = names != missing
+        alone = surfaces(values[1:2, rest], runs[rest], blocks=names[rest])
+        for field in ("coefficient", "coefficient_standard_uncertainty", "p_value", "r2",
+                      "adjusted_r2", "predicted_r2", "overall_f", "sigma"):  # fmt: skip
+            np.testing.assert_allclose(
+                getattr(found, field)[1], getattr(alone, field)[0], rtol=1e-8, atol=1e-12
+            )
+        np.testing.assert_allclose(found.anova.f[1], alone.anova.f[0], rtol=1e-8)
+        np.testing.assert_allclose(
+            found.anova.degrees_of_freedom[1], alone.anova.degrees_of_freedom[0]
+        )
+        np.testing.assert_allclose(found.lack_of_fit.f[1], alone.lack_of_fit.f[0], rtol=1e-8)
+        np.testing.assert_allclose(
+            found.diagnostics.cooks_distance[1, rest],
+            alone.diagnostics.cooks_distance[0],
+            rtol=1e-7,
+        )
+        np.testing.assert_allclose(
+            found.blocks.effect[1, np.array(list("ABCD")) != missing],
+            alone.blocks.effect[0],
+            atol=1e-9,
+        )
+        assert np.isnan(found.blocks.effect[1, "ABCD".index(missing)])
+        np.testing.assert_array_equal(
+            reduce_terms(found).is_kept[1], reduce_terms(alone).is_kept[0]
+        )
+        random = surfaces(partly, runs, blocks=names, block_treatment="random")
+        assert random.term_degrees_of_freedom[1, 0] == 2
+        assert np.isnan(random.blocks.effect[1, "ABCD".index(missing)])
 
 
 def test_random_blocks_widen_the_mean_alone(lines):
