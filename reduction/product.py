@@ -23,6 +23,7 @@ from reduction.moduli.product import (
     Slips,
 )
 from reduction.moduli.stepwise import StepwiseResult
+from reduction.notes import by_severity
 from reduction.phases.standstill import Standstills
 from reduction.provenance import Source, Step
 from reduction.record import Floats, Integers, Record, Specimen
@@ -124,14 +125,15 @@ class ReducedTest:
     pulls: tuple[SlowPull | None, ...] = ()
 
     def all_notes(self) -> tuple[tuple[str, str], ...]:
-        """Every note as (stage, text), in the order of the stages, none twice.
+        """Every note as (stage, text), most serious first, none twice.
 
+        Notes that are alike in that stand in the order of the stages.
         A note of the test that a stage gave too stands under the stage alone.
         """
         pairs = list(dict.fromkeys(self._stage_notes()))
         said = {text for _, text in pairs}
         pairs += [("test", text) for text in dict.fromkeys(self.notes) if text not in said]
-        return tuple(pairs)
+        return by_severity(pairs)
 
     def _stage_notes(self) -> Iterator[tuple[str, str]]:
         if self.record is not None:

@@ -115,9 +115,7 @@ _ROWS = (
     Quantity("test_strain_amplitude", "1", "strain amplitude, mean over the test"),
     Quantity("test_mean_tension", "N", "mean tension of the cycles, mean over the test"),
     Quantity("test_tension_amplitude", "N", "tension amplitude, mean over the test"),
-    Quantity(
-        "test_apparent_spring_constant", "N", "apparent spring constant, mean over the test"
-    ),
+    Quantity("test_apparent_spring_constant", "N", "apparent spring constant, mean over the test"),
     Quantity("test_dynamic_modulus", "Pa", "dynamic modulus, mean over the test"),
     Quantity("test_hysteresis_energy", "J m-1", "hysteresis energy of a cycle, mean over the test"),
     Quantity("test_storage_spring_constant", "N", "storage spring constant, mean over the test"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,17 +13,29 @@ from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.errors import LogError, ReductionError, SettingsError
 from reduction.ingest.quality import account_rows
+from reduction.notes import Severity, by_severity, severity_of
 
 __all__ = ["note_message", "status_row"]
 
+_SERIOUS: dict[Severity, str] = {"doubt": " of the data", "refusal": ""}
+
 
 def note_message(notes: Sequence[tuple[str, str]]) -> str:
-    """How many notes there are, and the first that is about the test and not the specimen."""
-    texts = list(dict.fromkeys(text for _, text in notes))
-    if not texts:
+    """How many notes there are, how many of them are serious, and the most serious of all."""
+    severity: dict[str, Severity] = {}
+    for stage, text in by_severity(notes):
+        severity.setdefault(text, severity_of(stage, text))
+    if not severity:
         return ""
-    about = [text for stage, text in notes if not stage.startswith("specimen")] or texts
-    return f"{len(texts)} note{'s' if len(texts) > 1 else ''}; first: {about[0]}"
+    kinds = Counter(severity.values())
+    serious = [
+        f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}{of}"
+        for kind, of in _SERIOUS.items()
+        if kinds[kind]
+    ]
+    among = f" ({', '.join(serious)})" if serious else ""
+    count = f"{len(severity)} note{'s' if len(severity) > 1 else ''}"
+    return f"{count}{among}; first: {next(iter(severity))}"
 
 
 def _error_message(campaign: Campaign, survey: Survey, error: ReductionError) -> str:

@@ -23,7 +23,7 @@ from reduction.report.specimentables import (
     slope_sentences,
 )
 from reduction.report.steptables import interval_table, step_table
-from reduction.report.summary import all_notes
+from reduction.report.summary import grouped_notes
 from reduction.report.testtables import (
     elastomer_table,
     flag_table,
@@ -54,13 +54,13 @@ class Part:
 
 @dataclass(frozen=True)
 class Section:
-    """One test: its parts, every note, and where its numbers come from."""
+    """One test: its parts, every note under its heading, and where its numbers come from."""
 
     key: str
     title: str
     subtitle: str
     parts: tuple[Part, ...]
-    notes: tuple[str, ...]
+    notes: tuple[tuple[str, list[str]], ...]
     provenance: tuple[tuple[str, str], ...]
     documents: tuple[tuple[str, str], ...] = field(default=())
 
@@ -116,7 +116,7 @@ def make_section(view: TestView) -> Section:
         title=view.id,
         subtitle=f"{view.kind}; specimens: {', '.join(view.specimens)}",
         parts=tuple(part for part in parts if part.figures or part.tables or part.sentences),
-        notes=tuple(all_notes(view)),
+        notes=tuple(grouped_notes(view)),
         provenance=tuple((name, text) for name, text in (*lines, *about) if text),
         documents=tuple((name, text) for name, text in documents if text),
     )

@@ -10,28 +10,32 @@ from typing import Literal
 
 import numpy as np
 
+from reduction.notes import SEVERITIES, severity_of
+from reduction.notes import Severity as NoteSeverity
 from reduction.report.htmltable import Cell, Table, count, make_table, span, words
 from reduction.report.style import shorten, shown
 from reduction.report.view import Status, TestView, all_specimens, any_synthetic
 
 __all__ = [
-    "Finding", "Severity", "Tile", "all_notes", "find_faults", "summary_sentence", "test_table",
-    "tiles",
+    "Finding", "Severity", "Tile", "all_notes", "find_faults", "grouped_notes", "summary_sentence",
+    "test_table", "tiles",
 ]  # fmt: skip
 
 Severity = Literal["failure", "warning", "note", "refusal"]
 _ORDER: tuple[Severity, ...] = ("failure", "warning", "note", "refusal")
 _NOT_SHOWN = "no archive"
 _STATUS_WORDS = {"unchanged": "reduced earlier, unchanged"}
+_FINDING: dict[NoteSeverity, Severity] = {
+    "doubt": "warning", "refusal": "refusal", "note": "note", "method": "note",
+}  # fmt: skip
+_HEADINGS: dict[NoteSeverity, str] = {
+    "doubt": "Doubts of the data, or of a number",
+    "refusal": "Numbers that are not given, and why",
+    "note": "Also to know",
+    "method": "How numbers were made",
+}
 _MOST_NAMES = 200
 """Characters of the list of specimens under the title."""
-# words of a note after which a reader may have to put a number aside; the rest is background
-_WARNING = re.compile(
-    r"contradict|disagree|inconsisten|extrapolat|outside|saturat|stuck|spike|backward|repeated"
-    r"|\bgaps?\b|missing|broken|slipped|steps? of|not stable|do not use|not a first loading|unequal"
-    r"|fewer|second look|implies|points off|grows|gives no|creep, not",
-    re.IGNORECASE,
-)
 # an archive counts the holds of each specimen apart, the page goes by time
 _NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
 
@@ -89,6 +93,15 @@ def all_notes(view: TestView) -> list[str]:
         is_said = text.startswith((f"{stage}:", f"{room}:", f"{room},"))
         notes.append(text if is_said else f"{stage}: {text}")
     return notes
+
+
+def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
+    """Return the notes of a test under headings, most serious first; no empty heading."""
+    stages, texts = view.texts("note_stage"), view.texts("note")
+    kinds = [severity_of(*pair) for pair in zip(stages, texts, strict=True)]
+    said = list(zip(kinds, all_notes(view), strict=True))
+    groups = [(_HEADINGS[kind], [text for own, text in said if own == kind]) for kind in SEVERITIES]
+    return [(heading, notes) for heading, notes in groups if notes]
 
 
 def summary_sentence(tests: Sequence[TestView]) -> str:
@@ -177,7 +190,7 @@ def _all_faults(
             yield "warning", view.id, text, text
         raw = zip(view.texts("note_stage"), view.texts("note"), strict=True)
         for (stage, note), text in zip(raw, all_notes(view), strict=True):
-            yield _severity(stage, note), view.id, _pattern(view, note), text
+            yield _FINDING[severity_of(stage, note)], view.id, _pattern(view, note), text
 
 
 def _pattern(view: TestView, note: str) -> str:
@@ -188,14 +201,6 @@ def _pattern(view: TestView, note: str) -> str:
     for specimen in view.specimens:
         note = re.sub(rf"\b{re.escape(specimen)}\b", "#", note)
     return _NUMBER.sub("#", note)
-
-
-def _severity(stage: str, text: str) -> Severity:
-    if text.startswith("refused:"):
-        return "refusal"
-    if stage.startswith("specimen"):
-        return "note"
-    return "warning" if _WARNING.search(text) else "note"
 
 
 def _test_row(view: TestView) -> list[Cell]:

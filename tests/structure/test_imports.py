@@ -18,6 +18,7 @@ LAYER = {
     "record": 1,
     "settings": 1,
     "checks": 1,
+    "notes": 1,
     "phases": 2,
     "strain": 2,
     "cycles": 2,

@@ -431,3 +431,11 @@ def test_the_segments_are_unfolded_where_no_round_strain_is_reached(report, rich
     page = report(replace(rich_test, curves=curves))
     folded = [a for tag, a in page.elements if tag == "details" and a.get("class") == "segments"]
     assert len(folded) == 1 and "open" in folded[0]
+
+
+def test_the_notes_of_a_test_stand_under_headings_most_serious_first(report, rich_test):
+    text = "".join(report(rich_test).text)
+    text = text[text.index("Every note of this test") :]
+    places = [text.index(words) for words in ("Doubts of the data", "Numbers that are not given")]
+    assert places == sorted(places)
+    assert places[0] < text.index("the last cycle is broken") < places[1]
