@@ -7,6 +7,7 @@ by definition for the pound-force, the inch and the foot.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from functools import lru_cache
 from tokenize import TokenError
 from typing import Literal
@@ -15,7 +16,16 @@ import pint
 
 from reduction.errors import SettingsError
 
-__all__ = ["DIMENSIONS", "Dimension", "UnitSystem", "display_unit", "parse_quantity", "scale_to_si"]
+__all__ = [
+    "DIMENSIONS",
+    "Dimension",
+    "UnitSystem",
+    "combined_unit",
+    "display_unit",
+    "parse_quantity",
+    "scale_of_unit",
+    "scale_to_si",
+]
 
 Dimension = Literal[
     "time", "length", "force", "strain", "stress", "area", "frequency", "temperature", "angle",
@@ -50,6 +60,11 @@ _NO_UNIT = (
 )  # fmt: skip
 # no unit of a test house is longer, and a tower of powers would never end
 _LONGEST, _MOST_POWERS = 40, 4
+_UNIT_AND_POWER = re.compile(r"([^\s\d-]+)(-?\d+)?")
+# a dimension that shares its units with another one stands behind it
+_AS_FORCE_FIRST: tuple[Dimension, ...] = (
+    "force", "number", *(name for name in DIMENSIONS if name not in ("force", "number")),
+)  # fmt: skip
 _QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
 
 
@@ -137,6 +152,85 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
             needed=f"a unit of {dimension}, such as {target}",
         ) from error
     return float(one - zero), float(zero)
+
+
+def scale_of_unit(unit: str) -> tuple[str, float, float]:
+    """SI unit of a unit whose dimension nobody has stated, and the way to it.
+
+    Parameters
+    ----------
+    unit : str
+        As a person or a header of this package writes it: ``lbf``, ``J/m``, ``J m-1``,
+        ``Pa s``; ``lb`` is a force here too.
+
+    Returns
+    -------
+    si_unit : str
+        As in `DIMENSIONS` where one fits, else made of base units.
+    factor, offset : float
+        To SI: ``factor * value + offset``.
+
+    Raises
+    ------
+    SettingsError
+        If the unit is unknown.
+
+    Examples
+    --------
+    >>> scale_of_unit("ft lbf")
+    ('kg m2 s-2', 1.35581794833140, 0.0)
+    >>> scale_of_unit("J m-1")
+    ('N', 1.0, 0.0)
+    """
+    # a power may stand behind its unit, as in products
+    text = re.sub(r"(?<=[A-Za-z])(-?\d+)\b", r"**\1", unit.strip())
+    for dimension in _AS_FORCE_FIRST:
+        try:
+            return DIMENSIONS[dimension], *scale_to_si(text, dimension)
+        except SettingsError as error:
+            if "is not a unit of" not in error.problem:
+                hint = "Without a unit the numbers stay as they are."
+                raise SettingsError(
+                    error.problem, found=error.found, needed="a unit that is known", hint=hint
+                ) from error
+    base = _registry().Quantity(1.0, _pint_text(text)).to_base_units()
+    powers = pint.util.to_units_container(base.units).items()
+    si_unit = " ".join(
+        _registry().get_symbol(name) + ("" if power == 1 else f"{power:g}")
+        for name, power in sorted(powers)
+    )
+    return si_unit, float(base.magnitude), 0.0
+
+
+def combined_unit(unit: str, others: Sequence[str], powers: Sequence[int]) -> str:
+    """Unit of a coefficient: that of the response over those of its factors.
+
+    Parameters
+    ----------
+    unit : str
+        Of the response.
+    others : sequence of str
+        Of the factors.
+    powers : sequence of int
+        Of the factors in the term.
+
+    Returns
+    -------
+    combined : str
+        As products write units.
+
+    Examples
+    --------
+    >>> combined_unit("N", ["Hz", "m s-1"], [2, 1])
+    'N Hz-2 m-1 s'
+    """
+    parts = [] if unit in ("1", "") else [unit]
+    for other, power in zip(others, powers, strict=True):
+        if power and other != "1":
+            for name, own in _UNIT_AND_POWER.findall(other):
+                total = -power * int(own or 1)
+                parts.append(name if total == 1 else f"{name}{total}")
+    return " ".join(parts) or "1"
 
 
 def parse_quantity(

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
 from reduction.campaign.experiments import plan_experiment
-from reduction.campaign.faults import faults_of, in_toml, listed, open_questions, quantity_of
+from reduction.campaign.faults import in_toml, quantity_of
 from reduction.campaign.marks import read_marks
 from reduction.campaign.model import (
     CampaignFile,
@@ -25,6 +23,7 @@ from reduction.campaign.numbers import apply_numbers
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
 from reduction.campaign.specimens import specimen_of
 from reduction.campaign.testtable import merge_tests, read_test_table
+from reduction.campaign.toml import read_toml
 from reduction.errors import LogError, SettingsError
 from reduction.record import SpliceMarks
 from reduction.settings import CycleSettings, ReductionSettings, StrainSettings
@@ -48,32 +47,14 @@ def _hint(path: Path) -> str | None:
 
 
 def _parse(path: Path) -> CampaignFile:
-    try:
-        with path.open("rb") as lines:
-            table = tomllib.load(lines)
-    except OSError as error:
-        raise in_toml(
-            path, "the campaign cannot be read", found=error.strerror or str(error),
-            needed="a campaign.toml; `reduction init FOLDER` writes a first one",
-        ) from error  # fmt: skip
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise in_toml(
-            path, "the campaign is not TOML", found=str(error), hint=_hint(path)
-        ) from error
-    places = open_questions(path.parent, table)
-    if places:
-        count = f"{len(places)} values are" if len(places) > 1 else "1 value is"
-        raise in_toml(path, listed(f"{count} still '?', first {places[0]}", places))
-    try:
-        return CampaignFile.model_validate(table)
-    except ValidationError as error:
-        faults = faults_of(error, table)
-        count = f"{len(faults)} settings" if len(faults) > 1 else "1 setting"
-        headline = (
-            f"{count} cannot be used, first '{faults[0].place}' "
-            "(`reduction schema` prints every key that is known)"
-        )
-        raise in_toml(path, listed(headline, faults)) from error
+    return read_toml(
+        path,
+        CampaignFile,
+        what="the campaign",
+        needed="a campaign.toml; `reduction init FOLDER` writes a first one",
+        keys="`reduction schema` prints every key that is known",
+        hint=_hint,
+    )
 
 
 def _inside(path: Path, name: str, *, is_needed: bool = True) -> str:

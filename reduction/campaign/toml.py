@@ -1,0 +1,72 @@
+"""A TOML file to its pydantic model; whatever is wrong with it is told at once, by key."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from reduction.campaign.faults import faults_of, in_toml, listed, open_questions
+
+__all__ = ["read_toml"]
+
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+def read_toml(
+    path: Path,
+    model: type[_Model],
+    *,
+    what: str,
+    needed: str,
+    keys: str,
+    hint: Callable[[Path], str | None] = lambda path: None,
+) -> _Model:
+    """Read and validate.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    model : type of BaseModel
+        What it has to be.
+    what, needed, keys : str
+        For the messages: ``the campaign``; what would do where there is no file; where the
+        keys are listed.
+    hint : callable
+        What to do about a file that is not TOML.
+
+    Returns
+    -------
+    file : BaseModel
+        An instance of the model.
+
+    Raises
+    ------
+    SettingsError
+        If the file cannot be read, a value is still ``?``, or a key or value cannot be used:
+        up to ten places, one a line.
+    """
+    try:
+        with path.open("rb") as lines:
+            table = tomllib.load(lines)
+    except OSError as error:
+        raise in_toml(
+            path, f"{what} cannot be read", found=error.strerror or str(error), needed=needed
+        ) from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise in_toml(path, f"{what} is not TOML", found=str(error), hint=hint(path)) from error
+    places = open_questions(path.parent, table)
+    if places:
+        count = f"{len(places)} values are" if len(places) > 1 else "1 value is"
+        raise in_toml(path, listed(f"{count} still '?', first {places[0]}", places))
+    try:
+        return model.model_validate(table)
+    except ValidationError as error:
+        faults = faults_of(error, table)
+        count = f"{len(faults)} settings" if len(faults) > 1 else "1 setting"
+        headline = f"{count} cannot be used, first '{faults[0].place}' ({keys})"
+        raise in_toml(path, listed(headline, faults)) from error
