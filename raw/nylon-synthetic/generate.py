@@ -23,12 +23,12 @@ TENSION_AMPLITUDE = (0.05, 0.12)  # half range, share of the rated break strengt
 LOAD_STRAIN = (0.0, 1.389e-4, -3.906e-8, 3.795e-12)
 # mean, then shares of it on frequency, mean tension and tension amplitude, all coded
 DISSIPATION_SPRING_CONSTANT = (1.70e4, 0.02, 0.06, -0.04)  # lbf per unit strain
-RELAXATION_TIME = (4.0, 0.0, -0.04, 0.03)  # s
+RELAXATION_TIME = (5.0, 0.0, -0.04, 0.03)  # s
 
 SAMPLES_A_CYCLE, CYCLES, BREAK_IN = 80, 14, 4
 LENGTH = 72.0  # in, between the pins at the reference tension
 GAUGE_SHARE = 0.92  # strain of the whole length over that of the gauge length
-LOAD_NOISE, STRAIN_NOISE, STROKE_NOISE = 0.5, 1.0e-5, 0.001  # lbf, 1, in
+LOAD_NOISE, STRAIN_NOISE, STROKE_NOISE = 0.3, 0.5e-5, 0.001  # lbf, 1, in
 BREAK_IN_STRAIN, BREAK_IN_TIME = 2.0e-3, 15.0  # the mean strain still grows at first
 
 # Box-Behnken in order of rising peak load; the three centres are spread over it

@@ -12,6 +12,7 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -139,8 +140,8 @@ def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats, Floa
     return cosine, sine, mean
 
 
-def part_means(values: Floats, basis: CycleBasis, middle: Integers) -> tuple[Floats, Floats]:
-    """Mean over time of a series before and after a sample inside each cycle.
+def part_means(values: Floats, basis: CycleBasis, middles: Integers) -> Floats:
+    """Mean over time of a series in the three parts of each cycle between its middles.
 
     Parameters
     ----------
@@ -148,12 +149,12 @@ def part_means(values: Floats, basis: CycleBasis, middle: Integers) -> tuple[Flo
         Without NaN. [any]
     basis : CycleBasis
         From `cycle_basis`.
-    middle : ndarray of int, shape (n_cycles,)
-        Above the first and below the last sample of each cycle. [1]
+    middles : ndarray of int, shape (2, n_cycles)
+        Middle sample of the rise and of the fall, rising between the ends of the cycle. [1]
 
     Returns
     -------
-    early, late : ndarray, shape (n_cycles,)
+    means : ndarray, shape (3, n_cycles)
         In the unit of the series. [any]
 
     Raises
@@ -164,29 +165,33 @@ def part_means(values: Floats, basis: CycleBasis, middle: Integers) -> tuple[Flo
     Examples
     --------
     >>> basis = cycle_basis(np.arange(9.0), np.array([0]), np.array([8]))
-    >>> early, late = part_means(np.repeat([1.0, 3.0], [4, 5]), basis, np.array([4]))
-    >>> print(early, late)
-    [1.] [3.]
+    >>> print(part_means(np.repeat([1.0, 3.0, 5.0], 3), basis, np.array([[3], [6]])).ravel())
+    [1. 3. 5.]
     """
     first, last, share = basis.first, basis.last, basis.share
     weighted = values * share
-    early = sums_over_cycles(weighted, first, middle) / sums_over_cycles(share, first, middle)
-    late = sums_over_cycles(weighted, middle, last) + values[last] * basis.end_share
-    return early, late / (sums_over_cycles(share, middle, last) + basis.end_share)
+    ends = (first, *middles, last)
+    means = []
+    for start, stop in pairwise(ends):
+        total = sums_over_cycles(weighted, start, stop)
+        weight = sums_over_cycles(share, start, stop)
+        if stop is last:
+            total += values[last] * basis.end_share
+            weight += basis.end_share
+        means.append(total / weight)
+    return np.array(means)
 
 
-def mean_drift(
-    early: Floats, late: Floats, *, first: Floats, middle: Floats, last: Floats
-) -> Floats:
+def mean_drift(means: Floats, ends: Floats) -> Floats:
     """Steady drift of a series over each cycle, from its means across the ends of cycles.
 
     Parameters
     ----------
-    early, late : ndarray, shape (n_cycles,)
-        Means over the two parts of each cycle, from `part_means`. [any]
-    first, middle, last : ndarray, shape (n_cycles,)
-        Times between which they were taken; where the end of a cycle is the start of the
-        next, the two touch. [s]
+    means : ndarray, shape (3, n_cycles)
+        Of the three parts of each cycle, from `part_means`. [any]
+    ends : ndarray, shape (4, n_cycles)
+        Times of the start, the middles of rise and fall, and the end; where the end of a
+        cycle is the start of the next, the two touch. [s]
 
     Returns
     -------
@@ -201,31 +206,35 @@ def mean_drift(
 
     Notes
     -----
-    A mean from the middle of one rise to the middle of the next, a period later, lies around
-    an end of a cycle, and the change from one end to the other is the drift.  At the middle of
-    a rise the series is near its mean, so a sample more or less, as noise puts the turns,
-    does not enter; in a mean from turn to turn it does, with the whole amplitude.  Beside a
-    transient (the first cycle after a ramp, a change of amplitude) one of these changes says
-    nothing of this cycle: the median of three neighbours is taken, and of two the lesser, or
-    zero where they disagree in sign.
+    A mean from the middle of one rise to the middle of the next, or from fall to fall, is
+    that of a period; the two together lie around the end of a cycle, and the change from one
+    end to the other is the drift.  At such a middle the series is near its mean, so a sample
+    more or less, as noise puts the turns, does not enter; in a mean from turn to turn it does,
+    with the whole amplitude.  Beside a transient (the first cycle after a ramp, a change of
+    amplitude) one of these changes says nothing of this cycle: the median of three neighbours
+    is taken, and of two the lesser, or zero where they disagree in sign.
 
     Examples
     --------
     Means that grow by 2 a cycle, and a transient in the first cycle of four.
 
-    >>> start = np.array([0.0, 8, 16, 24])
-    >>> times = dict(first=start, middle=start + 2, last=start + 8)
-    >>> print(mean_drift(2 * np.arange(4.0), 2 * np.arange(4.0), **times))
+    >>> ends = np.array([[0.0], [2], [6], [8]]) + np.arange(0, 32, 8)
+    >>> print(mean_drift(np.tile(2 * np.arange(4.0), (3, 1)), ends))
     [2. 2. 2. 2.]
-    >>> print(mean_drift(np.array([9.0, 5, 5, 5]), np.array([6.0, 5, 5, 5]), **times))
+    >>> print(mean_drift(np.array([[9.0, 5, 5, 5], [6, 5, 5, 5], [5, 5, 5, 5]]), ends))
     [0. 0. 0. 0.]
     """
-    n_cycles = early.size
+    n_cycles = means.shape[1]
     if n_cycles < 3:
         return np.zeros(n_cycles)
-    before, after = (last - middle)[:-1], (middle - first)[1:]
-    around_end = (late[:-1] * before + early[1:] * after) / (before + after)
-    around_end[last[:-1] != first[1:]] = np.nan
+    times = np.diff(ends, axis=0)
+    low, mid, high = means * times
+    from_rise = mid[:-1] + high[:-1] + low[1:]
+    from_fall = high[:-1] + low[1:] + mid[1:]
+    around_end = from_rise / (times[1, :-1] + times[2, :-1] + times[0, 1:])
+    around_end += from_fall / (times[2, :-1] + times[0, 1:] + times[1, 1:])
+    around_end /= 2
+    around_end[ends[3, :-1] != ends[0, 1:]] = np.nan
     change = np.full(n_cycles, np.nan)
     change[1:-1] = np.diff(around_end)
     beside = np.stack([np.append(np.nan, change[:-1]), change, np.append(change[1:], np.nan)])

@@ -32,7 +32,7 @@ _REACH = 4
 _MEASURED = (
     "peak", "valley", "high", "low", "energy", "strain_step_norm", "force_cosine", "force_sine",
     "force_mean", "strain_cosine", "strain_sine", "strain_mean", "force_end", "strain_end",
-    "force_early", "force_late", "strain_early", "strain_late",
+    "force_rise", "force_turn", "force_fall", "strain_rise", "strain_turn", "strain_fall",
 )  # fmt: skip
 _FIELDS = (
     "frequency", "cycle_start_time", "mean_tension", "tension_amplitude", "mean_strain",
@@ -106,7 +106,7 @@ def _extremes(values: Floats, first: Integers, last: Integers) -> tuple[Floats, 
 
 
 def _measure(
-    tension: Floats, strain: Floats, basis: CycleBasis, middle: Integers, waveform: Waveform
+    tension: Floats, strain: Floats, basis: CycleBasis, middles: Integers, waveform: Waveform
 ) -> Floats:
     """What only the samples tell, one row a quantity of `_MEASURED`, one column a cycle."""
     first, last = basis.first, basis.last
@@ -121,8 +121,8 @@ def _measure(
             *fundamental(stretch, basis),
             (force[first] + force[last]) / 2,
             (stretch[first] + stretch[last]) / 2,
-            *part_means(force, basis, middle),
-            *part_means(stretch, basis, middle),
+            *part_means(force, basis, middles),
+            *part_means(stretch, basis, middles),
         ]
     )
     measured[:, lost_force | lost_stretch] = np.nan
@@ -132,7 +132,7 @@ def _measure(
 def _derive(
     measured: Floats,
     cycles: Cycles,
-    turns: dict[str, Floats],
+    ends: Floats,
     *,
     noise: float,
     strain_noise: float,
@@ -141,11 +141,14 @@ def _derive(
     row = dict(zip(_MEASURED, measured, strict=True))
     n_samples = (cycles.last - cycles.first).astype(np.float64)
     peak, valley = row["peak"], row["valley"]
-    amplitude = (peak - valley) / 2
-    strain_amplitude = (row["high"] - row["low"]) / 2
     force_cos, strain_cos = row["force_cosine"], row["strain_cosine"]
-    force_drift = mean_drift(row["force_early"], row["force_late"], **turns)
-    strain_drift = mean_drift(row["strain_early"], row["strain_late"], **turns)
+    force_drift, strain_drift = (
+        mean_drift(np.stack([row[f"{name}_{part}"] for part in ("rise", "turn", "fall")]), ends)
+        for name in ("force", "strain")
+    )
+    # between a turn and the next, half a period, a drift adds half of itself to the range
+    amplitude = (peak - valley - np.abs(force_drift) / 2) / 2
+    strain_amplitude = (row["high"] - row["low"] - np.abs(strain_drift) / 2) / 2
     force_sin = row["force_sine"] + force_drift / np.pi
     strain_sin = row["strain_sine"] + strain_drift / np.pi
     energy = without_drift(
@@ -261,7 +264,8 @@ def close_loops(
     carried through and, for extremes, the turn between two samples; nothing else.  K_ap
     by amplitudes is one of three readings of "slope of the loop"; for an ellipse it is
     hypot(K', K''), and K' itself is the slope of the regression of tension on strain.  An
-    open loop is closed by a straight line and freed of its drift (`without_drift`).  A
+    open loop is closed by a straight line and freed of its drift (`without_drift`), and
+    so are the amplitudes: half the range less a quarter of the drift.  A
     cycle that lacks up to a tenth of its readings has them bridged by straight lines; one
     that lacks more is NaN throughout.
 
@@ -286,12 +290,11 @@ def close_loops(
     """
     period = time[cycles.last] - time[cycles.first]
     measured = np.empty((tension.shape[0], len(_MEASURED), cycles.n_cycles))
-    # the middle of the rise, at least a sample from either end
-    middle = np.maximum(cycles.branch_first[:, 0] + cycles.branch_last[:, 0], 2 * cycles.first + 2)
-    middle //= 2
-    turns = {
-        "first": time[cycles.first], "middle": time[middle], "last": time[cycles.last]
-    }  # fmt: skip
+    # the middles of rise and fall, at least a sample apart and from either end
+    middles = (cycles.branch_first + cycles.branch_last).T // 2
+    middles[0] = np.clip(middles[0], cycles.first + 1, cycles.last - 2)
+    middles[1] = np.clip(middles[1], middles[0] + 1, cycles.last - 1)
+    ends = time[np.stack([cycles.first, *middles, cycles.last])]
 
     def measure_block(block: slice) -> None:
         low = max(int(cycles.first[block.start]) - _REACH, 0)
@@ -299,7 +302,7 @@ def close_loops(
         basis = cycle_basis(time[low:high], cycles.first[block] - low, cycles.last[block] - low)
         for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
             measured[index, :, block] = _measure(
-                force[low:high], stretch[low:high], basis, middle[block] - low, waveform
+                force[low:high], stretch[low:high], basis, middles[:, block] - low, waveform
             )
 
     run_blocks(measure_block, _blocks_of_cycles(cycles))
@@ -310,7 +313,7 @@ def close_loops(
         values, errors = _derive(
             measured[index],
             cycles,
-            turns,
+            ends,
             noise=reading_noise(force),
             strain_noise=reading_noise(stretch),
         )

@@ -132,10 +132,11 @@ def test_fundamental_on_uneven_times():
     assert cosine[0] == pytest.approx(3, abs=2e-3) and sine[0] == pytest.approx(-1, abs=2e-3)
 
 
-def drift_of(values, first, last, middle):
+def drift_of(values, first, last):
     time = np.arange(values.size, dtype=float)
-    early, late = part_means(values, cycle_basis(time, first, last), middle)
-    return mean_drift(early, late, first=time[first], middle=time[middle], last=time[last])
+    middles = np.stack([(3 * first + last) // 4, (first + 3 * last) // 4])
+    means = part_means(values, cycle_basis(time, first, last), middles)
+    return mean_drift(means, time[np.stack([first, *middles, last])])
 
 
 def test_a_drift_linear_in_time_is_taken_off_by_the_means_of_the_cycles():
@@ -143,7 +144,7 @@ def test_a_drift_linear_in_time_is_taken_off_by_the_means_of_the_cycles():
     wave = 5 * np.cos(2 * np.pi * t / 200) + 2 * np.sin(2 * np.pi * t / 200)
     first = np.array([0, 200, 400])
     cosine, sine, _ = fundamental(wave + 0.01 * t, cycle_basis(t, first, first + 200))
-    drift = drift_of(wave + 0.01 * t, first, first + 200, first + 50)
+    drift = drift_of(wave + 0.01 * t, first, first + 200)
     assert drift == pytest.approx(2)
     assert sine == pytest.approx(2 - 2 / np.pi, abs=1e-3)
     assert cosine == pytest.approx(5, abs=1e-3)
@@ -153,8 +154,18 @@ def test_a_drift_linear_in_time_is_taken_off_by_the_means_of_the_cycles():
 def test_drift_is_known_where_three_cycles_touch():
     # runs of one, two and four cycles of ten samples on one straight line
     first = np.array([0, 20, 30, 50, 60, 70, 80])
-    drift = drift_of(-0.1 * np.arange(91.0), first, first + 10, first + 3)
+    drift = drift_of(-0.1 * np.arange(91.0), first, first + 10)
     assert drift == pytest.approx([0.0, 0.0, 0.0, -1.0, -1.0, -1.0, -1.0])
+
+
+def test_a_drift_that_dies_out_is_that_of_its_own_cycle():
+    # by a fifth from cycle to cycle
+    first = 80 * np.arange(8)
+    t = np.arange(641.0)
+    growth = -np.exp(-0.22 * t / 80)
+    drift = drift_of(growth - np.cos(2 * np.pi * t / 80), first, first + 80)
+    own = growth[first + 80] - growth[first]
+    assert drift[2:-2] == pytest.approx(own[2:-2], rel=0.01)
 
 
 def test_a_turn_found_a_sample_off_is_no_drift():
@@ -164,7 +175,7 @@ def test_a_turn_found_a_sample_off_is_no_drift():
     turns = 20 * np.arange(21)
     turns[1:-1] += rng.integers(-1, 2, 19)
     first, last = turns[:-1], turns[1:]
-    drift = drift_of(wave, first, last, (first + last) // 4 + first // 2)
+    drift = drift_of(wave, first, last)
     # each turn moves a mean from turn to turn by an amplitude over twenty samples
     means = fundamental(wave, cycle_basis(np.arange(402.0), first, last))[2]
     assert np.std(np.diff(means)) > 0.04

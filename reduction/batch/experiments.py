@@ -1,0 +1,180 @@
+"""Experiments of a campaign from the archives of their runs."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.open import open_archive
+from reduction.campaign.plan import Campaign, ExperimentPlan
+from reduction.errors import ArchiveError
+from reduction.experiment import ExperimentResult, RunTable
+from reduction.pipeline.experiment import LineOfRuns, fit_experiment
+from reduction.provenance import Source
+from reduction.record import Floats
+from reduction.surface.levels import FactorLevels
+from reduction.vocabulary import quantity
+
+__all__ = ["fit_experiments"]
+
+_LINE = ("storage_spring_constant", "loss_spring_constant", "quasi_static_spring_constant")
+_MEASURED = ("frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
+_UNITS = {"temperature": "K", "diameter": "m"}
+# what one run and specimen gives, by name
+_Row = dict[str, Any]
+
+
+def fit_experiments(
+    campaign: Campaign, archive_of: Callable[[str], Path]
+) -> tuple[list[ExperimentResult], tuple[Source, ...]]:
+    """Fit every experiment of a campaign.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        With its experiments.
+    archive_of : callable
+        Path of a run's archive by the run's id; it need not exist.
+
+    Returns
+    -------
+    results : list of ExperimentResult
+        In the order of the campaign.
+    sources : tuple of Source
+        The archives that were read, by name, with their hashes.
+    """
+    results, sources = [], {}
+    for plan in campaign.experiments.values():
+        rows = [
+            row
+            for run, coded in plan.runs.items()
+            for row in _rows_of_run(campaign, plan, run, coded, archive_of(run))
+        ]
+        for run in plan.runs:
+            path = archive_of(run)
+            if path.exists():
+                content = path.read_bytes()
+                digest = hashlib.sha256(content).hexdigest()
+                sources[path.name] = Source(path.name, digest, len(content))
+        results.append(_fit(plan, rows))
+    return results, tuple(sources.values())
+
+
+def _rows_of_run(
+    campaign: Campaign, plan: ExperimentPlan, run: str, coded: tuple[float, ...], path: Path
+) -> list[_Row]:
+    """One row a specimen of a run; a run without an archive has one that says so."""
+    log = run.partition(".")[0]
+    specimens = campaign.tests[log].specimens
+    about = {"run": run, "coded": coded}
+    try:
+        with open_archive(path) as archive:
+            given = [str(name) for name in archive["specimen"].values]
+            return [about | _row(plan, archive, given.index(name), name) for name in specimens]
+    except ArchiveError:
+        missing = {"remark": "its test gave no product"}
+        return [about | missing | {"specimen": name} for name in specimens]
+
+
+def _row(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> _Row:
+    """What the archive of a run holds of one specimen."""
+
+    def of_test(name: str) -> float:
+        stated = archive.get(f"test_{name}")
+        return float("nan") if stated is None else float(stated.values[place])
+
+    row: _Row = {name: of_test(name) for name in (*_MEASURED, *_LINE, *plan.responses)}
+    for name in plan.responses:
+        row[f"u {name}"] = of_test(f"{name}_standard_uncertainty")
+    settings = json.loads(archive.attrs["settings"])
+    begin = int(settings["reduction"]["cycles"]["break_in_cycles"])
+    if "peak_tension" in archive:
+        row["peak"] = float(np.nanmax(archive["peak_tension"].values[place, begin:]))
+        row["least"] = float(np.nanmin(archive["valley_tension"].values[place, begin:]))
+    strength = archive.get("rated_break_strength")
+    row["strength"] = float("nan") if strength is None else float(strength.values[place])
+    needs_line = {"dissipation_spring_constant", "relaxation_time", "dashpot_coefficient"}
+    remark = ""
+    if needs_line & set(plan.responses):
+        remark = _refusal(archive, place)
+    return row | {"specimen": specimen, "remark": remark}
+
+
+def _refusal(archive: xr.Dataset, place: int) -> str:
+    """Why a run has no K_1 and tau; empty where it has."""
+    if "test_line_refusal" not in archive:
+        return "K_1 and tau refused: the quasi-static spring constant is not known"
+    flags = archive["test_line_refusal"]
+    code = int(flags.values[place])
+    meanings = dict(
+        zip(flags.attrs["flag_values"].tolist(), flags.attrs["flag_meanings"].split(), strict=True)
+    )
+    return "" if code == 0 else f"K_1 and tau refused: {meanings[code].replace('_', ' ')}"
+
+
+def _column(rows: list[_Row], name: str) -> Floats:
+    return np.array([row.get(name, np.nan) for row in rows], dtype=np.float64)
+
+
+def _levels(
+    plan: ExperimentPlan, rows: list[_Row]
+) -> tuple[tuple[FactorLevels, ...], tuple[str, ...], Floats]:
+    """Factors in one unit, their units, and the levels as reached, shape (n_runs, n_factors)."""
+    strengths = _column(rows, "strength")
+    known = np.unique(strengths[np.isfinite(strengths)])
+    factors, units, columns = [], [], []
+    for index, factor in enumerate(plan.factors):
+        name = factor.name
+        coded = np.array([row["coded"][index] for row in rows])
+        centre, half = (factor.low + factor.high) / 2, (factor.high - factor.low) / 2
+        unit = quantity(name).unit if name in _MEASURED else _UNITS.get(name, "1")
+        reached = _column(rows, name) if name in _MEASURED else centre + coded * half
+        if factor.basis == "mean_tension":
+            reached, unit = reached / _column(rows, "mean_tension"), "1"
+        elif factor.basis == "rated_break_strength" and known.size == 1:
+            # lines of one strength: the surface is in newtons
+            factor = FactorLevels(name, factor.low * known[0], factor.high * known[0])
+        elif factor.basis == "rated_break_strength":
+            reached, unit = reached / strengths, "1"
+        factors.append(factor)
+        units.append(unit)
+        columns.append(reached)
+    return tuple(factors), tuple(units), np.stack(columns, axis=1)
+
+
+def _fit(plan: ExperimentPlan, rows: list[_Row]) -> ExperimentResult:
+    factors, units, level = _levels(plan, rows)
+    runs = RunTable(
+        run=tuple(row["run"] for row in rows),
+        specimen=tuple(row["specimen"] for row in rows),
+        coded_plan=np.array([row["coded"] for row in rows], dtype=np.float64),
+        level=level,
+        response=np.array([_column(rows, name) for name in plan.responses]),
+        response_standard_uncertainty=np.array(
+            [_column(rows, f"u {name}") for name in plan.responses]
+        ),
+        frequency=_column(rows, "frequency"),
+        mean_tension=_column(rows, "mean_tension"),
+        tension_amplitude=_column(rows, "tension_amplitude"),
+        peak_tension=_column(rows, "peak"),
+        minimum_tension=_column(rows, "least"),
+        rated_break_strength=_column(rows, "strength"),
+        remark=tuple(row["remark"] for row in rows),
+    )
+    return fit_experiment(
+        runs,
+        LineOfRuns(*(_column(rows, name) for name in _LINE)),
+        name=plan.name,
+        kind=plan.kind,
+        factors=factors,
+        factor_units=units,
+        response_names=plan.responses,
+        transform=plan.transform,
+        specimens_as=plan.specimens_as,
+    )
