@@ -6,7 +6,14 @@ import re
 from pathlib import Path
 
 from reduction.record import Quality
-from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES, QUANTITIES
+from reduction.vocabulary import (
+    BRANCH_VALUES,
+    PHASE_VALUES,
+    RESPONSE_PATTERNS,
+    RESPONSES,
+    SINGLE_QUANTITIES,
+    Quantity,
+)
 
 __all__ = ["glossary"]
 
@@ -37,6 +44,12 @@ One name a quantity, the same in code, archives and tables; files are SI. A vari
 | variable | values |
 |---|---|
 """
+_RESPONSES = f"""\
+In `surfaces.nc` a name is made of a response and what is said of it. `<response>` is one of
+{", ".join(f"`{name}`" for name in RESPONSES)},
+or one of them after `log_` (natural logarithm of the number in SI) or `box_cox_`; `<unit>` is its
+unit, 1 where it is transformed. In a table whose rows are of several responses the name begins
+with `response_`, and the column `unit` says what `[unit]` is."""
 
 
 def _symbol(text: str) -> str:
@@ -45,6 +58,14 @@ def _symbol(text: str) -> str:
 
 def _row(*cells: str) -> str:
     return "|" + "|".join(f" {cell} " if cell else " " for cell in cells) + "|"
+
+
+def _quantity(one: Quantity) -> str:
+    unit = f"`{one.unit}`" if "<" in one.unit else one.unit or "text"
+    return _row(f"`{one.name}`", unit, one.long_name, _symbol(one.symbol))
+
+
+_HEADER, _RULE = _row("name", "unit", "what", "symbol in the source"), "|---|---|---|---|"
 
 
 def glossary() -> str:
@@ -56,12 +77,12 @@ def glossary() -> str:
         _row(f"`{name}`", ", ".join(f"{value} {word}" for word, value in values.items()))
         for name, values in flags.items()
     ]
-    lines += ["", "## Quantities", "", _row("name", "unit", "what", "symbol in the source")]
-    lines += ["|---|---|---|---|"]
+    lines += ["", "## Quantities", "", _HEADER, _RULE]
     lines += [
-        _row(f"`{one.name}`", one.unit or "text", one.long_name, _symbol(one.symbol))
-        for one in sorted(QUANTITIES.values(), key=lambda one: one.name)
+        _quantity(one) for one in sorted(SINGLE_QUANTITIES.values(), key=lambda one: one.name)
     ]
+    lines += ["", "## Quantities of a response", "", _RESPONSES, "", _HEADER, _RULE]
+    lines += [_quantity(one) for one in RESPONSE_PATTERNS]
     return _HEAD + "\n".join(lines) + "\n"
 
 

@@ -11,9 +11,22 @@ References
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-__all__ = ["BRANCH_NAMES", "BRANCH_VALUES", "PHASE_VALUES", "QUANTITIES", "Quantity", "quantity"]
+__all__ = [
+    "BRANCH_NAMES",
+    "BRANCH_VALUES",
+    "PHASE_VALUES",
+    "QUANTITIES",
+    "RESPONSES",
+    "RESPONSE_PATTERNS",
+    "SINGLE_QUANTITIES",
+    "SURFACE_NAMES",
+    "Quantity",
+    "quantity",
+]
 
 
 @dataclass(frozen=True)
@@ -33,6 +46,22 @@ class Quantity:
 PHASE_VALUES = {"rest": 0, "approach": 1, "hold": 2, "cycling": 3}
 BRANCH_VALUES = {"none": 0, "ascending": 1, "descending": 2}
 BRANCH_NAMES = ("ascending", "descending")
+
+RESPONSES = (
+    "apparent_spring_constant",
+    "hysteresis_energy",
+    "dissipation_spring_constant",
+    "relaxation_time",
+    "storage_spring_constant",
+    "loss_spring_constant",
+    "loss_factor",
+    "dashpot_coefficient",
+)
+"""What a response surface can be of."""
+
+_SCALES = {"log_": "logarithm of {}", "box_cox_": "Box-Cox transform of {}"}
+SURFACE_NAMES = (*RESPONSES, *(f"{scale}{name}" for scale in _SCALES for name in RESPONSES))
+"""Names of surfaces: of a response, or of its transform, which has no unit."""
 
 _ROWS = (
     # per sample; no standard name for time: the table's wants an epoch, a test has none
@@ -373,11 +402,230 @@ _ROWS = (
     Quantity("n_tests", "1", "number of tests with a tangent modulus at this strain"),
     Quantity("table", "", "file in which the column stands"),
     Quantity("column", "", "column"),
-    Quantity("unit", "", "unit of the column"),
+    Quantity("unit", "", "unit of the column, or of the response in a row"),
     Quantity("meaning", "", "what the column holds"),
     Quantity("no_uncertainty", "", "why the column has no standard uncertainty beside it"),
+    # experiments; numbers of factors stand beside the unit of the factor, which differs
+    Quantity("experiment", "", "experiment"),
+    Quantity("experiment_kind", "", "kind of design"),
+    Quantity("factor", "1", "number of the factor"),
+    Quantity("factor_name", "", "factor"),
+    Quantity("factor_unit", "", "SI unit of the factor"),
+    Quantity("factor_low", "1", "level that is -1, as a number of the unit of the factor"),
+    Quantity("factor_high", "1", "level that is +1, as a number of the unit of the factor"),
+    Quantity("run", "1", "number of the run, in the order of the campaign"),
+    Quantity("run_name", "", "test or step that was the run"),
+    Quantity("run_specimen", "", "specimen of the run"),
+    Quantity("run_block", "", "block of the run"),
+    Quantity("run_remark", "", "why a run has no number"),
+    Quantity("run_plan", "1", "coded level of the column in the run, as planned"),
+    Quantity("run_level", "1", "level in the run as reached, as a number of the factor's unit"),
+    Quantity("run_coded_level", "1", "coded level in the run, as reached"),
+    Quantity("run_frequency", "Hz", "cycle frequency, mean over the run"),
+    Quantity("run_mean_tension", "N", "mean tension, mean over the run"),
+    Quantity("run_tension_amplitude", "N", "tension amplitude, mean over the run"),
+    Quantity("run_peak_tension", "N", "greatest tension of the run's cycles"),
+    Quantity("run_minimum_tension", "N", "least tension of the run's cycles"),
+    Quantity("run_rated_break_strength", "N", "rated break strength of the run's specimen"),
+    Quantity("run_cell", "1", "runs with one number count as repeats; 0 where it has no levels"),
+    Quantity(
+        "derived_dissipation_spring_constant",
+        "N",
+        "dissipation spring constant from the surfaces of the storage and loss spring constants",
+    ),
+    Quantity(
+        "derived_relaxation_time",
+        "s",
+        "relaxation time from the surfaces of the storage and loss spring constants",
+    ),
+    Quantity("plan_column", "1", "number of the column of the plan"),
+    Quantity("plan_column_name", "", "factor of the column, or dummy"),
+    Quantity("term", "", "coefficient as printed", "003 B1..B10, eq 5"),
+    Quantity("term_other", "", "coefficient as printed, second axis"),
+    Quantity("term_name", "", "term of the surface"),
+    Quantity("term_unit_engineering", "", "unit by which that of the response is multiplied"),
+    Quantity("term_exponent", "1", "power of the factor in the term"),
+    Quantity("term_error", "", "what the coefficient is judged by"),
+    Quantity("direction", "1", "number of the principal direction, curvature falling"),
+    Quantity("anova_source", "", "source of variation"),
+    Quantity("anova_error_term", "", "what the source is tested against"),
+    Quantity("block_name", "", "block"),
+    Quantity("block_treatment", "", "whether the blocks are fixed or random"),
+    Quantity("replicate_tolerance", "1", "largest difference of coded levels between repeats"),
+    Quantity("condition_number", "1", "condition number of the model matrix"),
+    Quantity("effect_error_from", "", "what the error of the effects is from: dummy or lenth"),
+    Quantity("effect_degrees_of_freedom", "1", "degrees of freedom of the error of the effects"),
+    Quantity("effect_significance", "1", "level of the least significant effect, two-sided"),
+    Quantity("response", "", "response, or its transform"),
+    Quantity("coefficient_engineering_unit", "", "unit of the coefficient in engineering units"),
+    # forms of mooring codes
+    Quantity("stiffness_form", "", "form of dynamic stiffness"),
+    Quantity("stiffness_equation", "", "equation of the form"),
+    Quantity("stiffness_term", "1", "number of the coefficient of the form"),
+    Quantity("stiffness_term_other", "1", "number of the coefficient of the form, second axis"),
+    Quantity("stiffness_coefficient_name", "", "coefficient of the form"),
+    Quantity("stiffness_coefficient_unit", "", "unit of the coefficient of the form"),
+    Quantity("stiffness_coefficient", "1", "coefficient of the form, as a number of its unit"),
+    Quantity("stiffness_coefficient_low", "1", "lower end of the interval of the coefficient"),
+    Quantity("stiffness_coefficient_high", "1", "upper end of the interval of the coefficient"),
+    Quantity("stiffness_p_value", "1", "probability of the coefficient if it were nil"),
+    Quantity("stiffness_covariance", "1", "covariance of two coefficients of the form"),
+    Quantity("stiffness_confidence", "1", "confidence of the intervals of the coefficients"),
+    Quantity("stiffness_mean_load_low", "1", "lowest mean tension over the break strength"),
+    Quantity("stiffness_mean_load_high", "1", "highest mean tension over the break strength"),
+    Quantity("stiffness_n_coefficients", "1", "number of coefficients of the form"),
+    Quantity("stiffness_sigma", "1", "standard deviation about the form, over break strength"),
+    Quantity("stiffness_degrees_of_freedom", "1", "degrees of freedom of the form"),
+    Quantity("stiffness_r2", "1", "share of the variation that the form explains"),
+    Quantity("stiffness_adjusted_r2", "1", "adjusted r2 of the form"),
+    Quantity("stiffness_predicted_r2", "1", "r2 of runs predicted each without itself"),
+    Quantity("stiffness_prediction_sum_of_squares", "1", "PRESS of the form, over break strength"),
+    Quantity("stiffness_aicc", "1", "corrected Akaike criterion of the form, lower is better"),
+    Quantity("stiffness_refusal", "", "why the form has no number"),
+    Quantity("stiffness_fitted", "N", "apparent spring constant by the form"),
+    Quantity("stiffness_residual", "N", "apparent spring constant less that by the form"),
+    # whether one relaxation time holds over frequency
+    Quantity("single_time_exponent", "1", "n of relaxation time ~ frequency**-n"),
+    Quantity("single_time_exponent_low", "1", "lower end of the interval of n"),
+    Quantity("single_time_exponent_high", "1", "upper end of the interval of n"),
+    Quantity("single_time_p_value_one_time", "1", "probability of such an n if it were 0"),
+    Quantity("single_time_p_value_inverse_frequency", "1", "probability of such an n if it were 1"),
+    Quantity(
+        "single_time_ratio", "1", "relaxation time at the lowest over that at the highest frequency"
+    ),
+    Quantity("single_time_ratio_low", "1", "lower end of the interval of the ratio of times"),
+    Quantity("single_time_ratio_high", "1", "upper end of the interval of the ratio of times"),
+    Quantity("single_time_frequency_ratio", "1", "highest over lowest frequency"),
+    Quantity("single_time_degrees_of_freedom", "1", "degrees of freedom of the exponent"),
+    Quantity("single_time_loss_exponent", "1", "m of loss factor ~ frequency**m"),
+    Quantity("single_time_loss_exponent_low", "1", "lower end of the interval of m"),
+    Quantity("single_time_loss_exponent_high", "1", "upper end of the interval of m"),
+    Quantity("single_time_verdict", "", "whether one relaxation time holds over frequency"),
+    Quantity("single_time_confidence", "1", "confidence of the intervals of the exponents"),
+    Quantity("single_time_tolerance", "1", "by which an exponent may miss 0 or 1"),
+    Quantity("note_experiment", "", "experiment that the note is of"),
+    Quantity("caution", "", "what to know of the runs as reached"),
+    Quantity("caution_kind", "", "kind of caution"),
+    Quantity("caution_hint", "", "what can be done about it"),
+    Quantity("caution_runs", "", "runs that the caution is of; empty: the experiment"),
+    Quantity("caution_experiment", "", "experiment that the caution is of"),
 )
-QUANTITIES = {row.name: row for row in _ROWS}
+SINGLE_QUANTITIES = {row.name: row for row in _ROWS}
+"""Names that stand for themselves."""
+
+RESPONSE_PATTERNS = (
+    Quantity("<response>_coefficient", "<unit>", "coefficient, coded units", "003 Tables 3-5"),
+    Quantity(
+        "<response>_coefficient_engineering",
+        "<unit>",
+        "coefficient of the factors as numbers of their SI units",
+    ),
+    Quantity("<response>_t", "1", "Student's t of the coefficient"),
+    Quantity("<response>_p_value", "1", "probability of the coefficient if it were nil"),
+    Quantity("<response>_term_degrees_of_freedom", "1", "degrees of freedom of the coefficient"),
+    Quantity(
+        "<response>_covariance_factor", "1", "covariance of two coded coefficients over sigma**2"
+    ),
+    Quantity("<response>_transform", "", "scale the surface was fitted on"),
+    Quantity("<response>_transform_exponent", "1", "exponent of Box and Cox; 1 none, 0 logarithm"),
+    Quantity("<response>_transform_exponent_low", "1", "lower end of the interval of the exponent"),
+    Quantity(
+        "<response>_transform_exponent_high", "1", "upper end of the interval of the exponent"
+    ),
+    Quantity("<response>_n_runs", "1", "number of runs with a value"),
+    Quantity("<response>_refusal", "", "what the surface does not give, and why"),
+    Quantity("<response>_sigma", "<unit>", "standard deviation of a run about the surface"),
+    Quantity("<response>_degrees_of_freedom", "1", "degrees of freedom of sigma"),
+    Quantity("<response>_r2", "1", "share of the variation that the surface explains"),
+    Quantity("<response>_adjusted_r2", "1", "r2 adjusted for the number of terms"),
+    Quantity("<response>_predicted_r2", "1", "r2 of runs predicted each without itself"),
+    Quantity("<response>_overall_f", "1", "F of all terms but the mean"),
+    Quantity("<response>_overall_p_value", "1", "probability of the overall F if there were none"),
+    Quantity(
+        "<response>_printed_f",
+        "1",
+        "F as CG-D-39-80 prints it, which counts the mean twice; for comparison",
+        "003 F-ratio, Tables 3-5",
+    ),
+    Quantity("<response>_lack_of_fit_f", "1", "F of lack of fit against pure error"),
+    Quantity("<response>_lack_of_fit_p_value", "1", "probability of that F if the surface fits"),
+    Quantity("<response>_lack_of_fit_refusal", "", "why lack of fit is not tested"),
+    Quantity(
+        "<response>_probability_plot_correlation",
+        "1",
+        "squared correlation of residuals with normal scores",
+    ),
+    Quantity(
+        "<response>_stationary_point", "1", "coded level of the factor where the slope is nil"
+    ),
+    Quantity(
+        "<response>_stationary_point_engineering",
+        "1",
+        "level where the slope is nil, as a number of the unit of the factor",
+    ),
+    Quantity("<response>_stationary_point_is_inside", "1", "whether it lies within the levels"),
+    Quantity(
+        "<response>_stationary_value", "<unit>", "value of the surface where its slope is nil"
+    ),
+    Quantity("<response>_stationary_kind", "1", "minimum, maximum or saddle"),
+    Quantity("<response>_stationary_refusal", "", "why there is no stationary point"),
+    Quantity("<response>_eigenvalue", "<unit>", "curvature along a principal direction"),
+    Quantity("<response>_eigenvector", "1", "share of the factor in a principal direction"),
+    Quantity("<response>_measured", "<unit>", "mean over the cycles of the run"),
+    Quantity("<response>_fitted", "<unit>", "value of the surface at the run"),
+    Quantity("<response>_residual", "<unit>", "value of the run less that of the surface"),
+    Quantity("<response>_leverage", "1", "share of the run's own value in its fitted one"),
+    Quantity("<response>_cooks_distance", "1", "shift of the surface if the run were left out"),
+    Quantity("<response>_studentized_residual", "1", "residual over its own standard deviation"),
+    Quantity("<response>_deleted_residual", "1", "the same, with the scatter of the other runs"),
+    Quantity("<response>_anova_degrees_of_freedom", "1", "degrees of freedom of the source"),
+    Quantity("<response>_anova_sum_of_squares", "<unit squared>", "sum of squares of the source"),
+    Quantity("<response>_anova_mean_square", "<unit squared>", "mean square of the source"),
+    Quantity("<response>_anova_f", "1", "F of the source against its error term"),
+    Quantity("<response>_anova_p_value", "1", "probability of that F if the source were nil"),
+    Quantity("<response>_block_effect", "<unit>", "block above the mean over the blocks"),
+    Quantity("<response>_block_standard_deviation", "<unit>", "standard deviation between blocks"),
+    Quantity("<response>_block_at_boundary", "1", "whether the blocks differ no more than runs"),
+    Quantity("<response>_effect", "<unit>", "mean at the high level less that at the low one"),
+    Quantity("<response>_effect_t", "1", "Student's t of the effect"),
+    Quantity("<response>_effect_p_value", "1", "probability of the effect if it were nil"),
+    Quantity("<response>_effect_is_significant", "1", "whether the effect is above the minimum"),
+    Quantity("<response>_effect_refusal", "", "why the response has no effects"),
+    Quantity("<response>_mean", "<unit>", "mean over the runs"),
+    Quantity("<response>_minimum_significant_effect", "<unit>", "least significant effect"),
+    Quantity(
+        "<response>_simultaneous_minimum_effect", "<unit>", "least effect, all of them together"
+    ),
+)
+"""Names of what an experiment says of a response.
+
+``<response>`` is one of `SURFACE_NAMES`, or ``response`` in a table whose rows differ in unit.
+"""
+
+
+def _squared(unit: str) -> str:
+    """Unit of a square: ``J m-1`` to ``J2 m-2``."""
+    return re.sub(r"([A-Za-z]+)(-?\d+)?", lambda found: f"{found[1]}{2 * int(found[2] or 1)}", unit)
+
+
+def _of_responses() -> Iterator[Quantity]:
+    """Every pattern for every surface and for a column of several."""
+    for name in (*SURFACE_NAMES, "response"):
+        base = next((name.removeprefix(one) for one in _SCALES if name.startswith(one)), "")
+        unit = "1" if base else "unit" if name == "response" else SINGLE_QUANTITIES[name].unit
+        words = (base or name).replace("_", " ")
+        words = _SCALES[name.removesuffix(base)].format(words) if base else words
+        units = {"<unit>": unit, "<unit squared>": _squared(unit)}
+        for pattern in RESPONSE_PATTERNS:
+            yield Quantity(
+                pattern.name.replace("<response>", name),
+                units.get(pattern.unit, pattern.unit),
+                f"{words}: {pattern.long_name}",
+            )
+
+
+QUANTITIES = SINGLE_QUANTITIES | {row.name: row for row in _of_responses()}
+"""Every name that may stand in a product or a table."""
 
 
 def quantity(name: str) -> Quantity:
