@@ -8,25 +8,95 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping, Sequence
 
 from reduction.archive.schema import SCHEMA_VERSION
 from reduction.errors import ArchiveError
 from reduction.product import ReducedTest
+from reduction.provenance import Source, Step
 
-__all__ = ["CONVENTIONS", "global_attributes"]
+__all__ = ["CONVENTIONS", "experiment_attributes", "global_attributes"]
 
 CONVENTIONS = "CF-1.11 ACDD-1.3"
 _SOFTWARE = "mooring-reduction"
 _KEYWORDS = "mooring, tension test, elastic modulus, hysteresis"
+_KEYWORDS_OF_EXPERIMENTS = "mooring, designed experiment, response surface, spring constant"
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 def global_attributes(test: ReducedTest, *, version: str, command: str) -> dict[str, str]:
     """Return the global attributes in a fixed order; empty ones are left out."""
     about = test.description
-    given = dict(about.attributes)
     names = " and ".join(one.name for one in test.specimens)
-    title = given.pop("title", f"Campaign {about.campaign_id}")
+    return _complete(
+        about.attributes,
+        {
+            "summary": f"Reduced {about.kind} test {about.test_id} of specimen {names}.",
+            "keywords": _KEYWORDS,
+            "id": f"{about.campaign_id}/{about.test_id}",
+            "campaign": about.campaign_id,
+            "test": about.test_id,
+            "test_kind": about.kind,
+            "control": about.control,
+            "waveform": about.waveform,
+            "test_order": "" if about.order is None else str(about.order),
+            **_raw_files(test.sources),
+            "raw_metadata": "" if test.record is None else _as_json(test.record.metadata),
+            "settings": test.settings_json,
+        },
+        steps=test.steps,
+        version=version,
+        command=command,
+    )
+
+
+def experiment_attributes(
+    names: Sequence[str],
+    *,
+    campaign_id: str,
+    attributes: Mapping[str, str],
+    sources: Sequence[Source],
+    steps: Sequence[Step],
+    settings_json: str,
+    version: str,
+    command: str,
+) -> dict[str, str]:
+    """Return the global attributes of an archive of experiments, in the same order."""
+    return _complete(
+        attributes,
+        {
+            "summary": f"Response surfaces and effects of experiment {' and '.join(names)}.",
+            "keywords": _KEYWORDS_OF_EXPERIMENTS,
+            "id": f"{campaign_id}/surfaces",
+            "campaign": campaign_id,
+            **_raw_files(sources),
+            "settings": settings_json,
+        },
+        steps=steps,
+        version=version,
+        command=command,
+    )
+
+
+def _raw_files(sources: Sequence[Source]) -> dict[str, str]:
+    return {
+        "raw_file": "\n".join(one.name for one in sources),
+        "raw_file_sha256": "\n".join(one.sha256 for one in sources),
+        "raw_file_bytes": "\n".join(str(one.size) for one in sources),
+    }
+
+
+def _complete(
+    attributes: Mapping[str, str],
+    product: dict[str, str],
+    *,
+    steps: Sequence[Step],
+    version: str,
+    command: str,
+) -> dict[str, str]:
+    """What the laboratory gave and what the product is, with what every product says."""
+    given = dict(attributes)
+    title = given.pop("title", f"Campaign {product['campaign']}")
     source = given.pop("source", "")
     if given.get("synthetic") == "yes":
         # a reader who sees only the title or only the source has to see it too
@@ -36,25 +106,12 @@ def global_attributes(test: ReducedTest, *, version: str, command: str) -> dict[
         "Conventions": CONVENTIONS,
         "schema_version": SCHEMA_VERSION,
         "title": title,
-        "summary": given.pop(
-            "summary", f"Reduced {about.kind} test {about.test_id} of specimen {names}."
-        ),
-        "keywords": given.pop("keywords", _KEYWORDS),
+        "summary": given.pop("summary", product.pop("summary")),
+        "keywords": given.pop("keywords", product.pop("keywords")),
         "source": source,
-        "id": f"{about.campaign_id}/{about.test_id}",
-        "campaign": about.campaign_id,
-        "test": about.test_id,
-        "test_kind": about.kind,
-        "control": about.control,
-        "waveform": about.waveform,
-        "test_order": "" if about.order is None else str(about.order),
-        "raw_file": "\n".join(one.name for one in test.sources),
-        "raw_file_sha256": "\n".join(one.sha256 for one in test.sources),
-        "raw_file_bytes": "\n".join(str(one.size) for one in test.sources),
-        "raw_metadata": "" if test.record is None else _as_json(test.record.metadata),
-        "settings": test.settings_json,
+        **product,
         "command": command,
-        "history": "\n".join(step.line(version) for step in test.steps),
+        "history": "\n".join(step.line(version) for step in steps),
         "software": _SOFTWARE,
         "software_version": version,
         "processing_level": "reduced",
