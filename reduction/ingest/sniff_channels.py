@@ -36,7 +36,8 @@ _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
     ),
     "crosshead_position": (
         "length",
-        (r"crosshead|traverse", r"^position|^pos$", r"weg$|\bweg\b", r"extension", r"displace?ment",
+        (r"crosshead|traverse", r"^position|^pos$", r"weg$|\bweg\b", r"extension",
+         r"displace?ment|\bdisp\b|^disp",
          r"stroke|tool separation", r"^machine$|^maschine$"),
         _NOT_MEASURED,
     ),

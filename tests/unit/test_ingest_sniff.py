@@ -428,3 +428,9 @@ def test_a_binary_file_without_columns_is_refused(tmp_path):
         file["notes"] = ["a"]
     with pytest.raises(LogError, match="no columns of numbers are found"):
         sniff_layout(tmp_path / "log")
+
+
+@pytest.mark.parametrize("name", ["Disp (mm)", "disp_mm", "Axial Disp (mm)", "Displacement (mm)"])
+def test_a_short_word_for_displacement_is_a_position(tmp_path, name):
+    path = write(tmp_path, f"Time (s),{name},Load (N)\n0,1,2\n1,2,3\n2,3,4\n")
+    assert columns(proposed(path))["crosshead_position"] == (name, "mm")
