@@ -439,3 +439,9 @@ def test_the_notes_of_a_test_stand_under_headings_most_serious_first(report, ric
     places = [text.index(words) for words in ("Doubts of the data", "Numbers that are not given")]
     assert places == sorted(places)
     assert places[0] < text.index("the last cycle is broken") < places[1]
+
+
+def test_a_page_in_us_units_says_what_of_it_is_not(report, rich_test):
+    words = "Notes, settings and history are as in the archives, in SI."
+    assert words in "".join(report(rich_test, units="us").text)
+    assert words not in "".join(report(rich_test).text)
