@@ -59,6 +59,12 @@ def _parse(path: Path) -> CampaignFile:
 
 def _inside(path: Path, name: str, *, is_needed: bool = True) -> str:
     """A file name that stays inside the campaign folder, or `SettingsError`."""
+    if "://" in name:
+        raise in_toml(
+            path, "URLs are not read by this version", found=repr(name),
+            needed="a file inside the folder of campaign.toml",
+            hint="Download it first.",
+        )  # fmt: skip
     folder = path.parent.resolve()
     target = (folder / name).resolve()
     if not name or Path(name).is_absolute() or not target.is_relative_to(folder):

@@ -394,3 +394,9 @@ def test_the_campaigns_of_the_project_load(name):
     assert campaign.id == name
     assert len(campaign.tests) == {"tmt-synthetic": 10, "buoy-technology-1997": 1}[name]
     assert (campaign.attributes.get("synthetic") == "yes") == (name == "tmt-synthetic")
+
+
+def test_a_file_on_the_net_is_refused_in_words(folder):
+    words = "URLs are not read by this version; found 'https://example.org/T.csv'; needed a file"
+    with pytest.raises(SettingsError, match=words):
+        load(folder, BASE + TEST.replace("T.csv", "https://example.org/T.csv"))
