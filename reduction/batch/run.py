@@ -119,7 +119,9 @@ def check_campaign(
     for survey in _selected(surveys, tests):
         error = survey.error or errors.get(survey.plan.id)
         statuses.append(
-            status_row(campaign, survey, "no_work" if error is None else "failed", error=error)
+            status_row(campaign, survey, "no_work", message="ready for a run")
+            if error is None
+            else status_row(campaign, survey, "failed", error=error)
         )
     return statuses, models
 

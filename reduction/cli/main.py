@@ -12,10 +12,12 @@ import typer
 
 from reduction import __version__
 from reduction.cli.outcome import Outcome, guarded
+from reduction.cli.usage import Commands, here
 
 __all__ = ["app"]
 
 app = typer.Typer(
+    cls=Commands,
     name="reduction",
     help="Reduces cyclic tension tests of compliant mooring elements.",
     no_args_is_help=True,
@@ -27,7 +29,9 @@ app = typer.Typer(
 Json = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, SI.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Nothing but errors.")]
 Units = Annotated[str, typer.Option("--units", help="What is shown: si or us (psi, lbf, ft).")]
-CampaignPath = Annotated[Path, typer.Argument(metavar="CAMPAIGN.toml", show_default=False)]
+CampaignPath = Annotated[
+    Path, typer.Argument(metavar="CAMPAIGN.toml", show_default=False, callback=here)
+]
 
 
 def _version(value: bool) -> None:
@@ -47,7 +51,9 @@ def main(
 
 @app.command()
 def init(
-    folder: Annotated[Path, typer.Argument(help="Folder of logs.", show_default=False)],
+    folder: Annotated[
+        Path, typer.Argument(help="Folder of logs.", show_default=False, callback=here)
+    ],
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -60,7 +66,9 @@ def init(
 
 @app.command()
 def sniff(
-    file: Annotated[Path, typer.Argument(help="An unknown log.", show_default=False)],
+    file: Annotated[
+        Path, typer.Argument(help="An unknown log.", show_default=False, callback=here)
+    ],
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -115,7 +123,10 @@ def run(
 @app.command()
 def report(
     processed_dir: Annotated[
-        Path, typer.Argument(help="processed/CAMPAIGN, or processed/ for all.", show_default=False)
+        Path,
+        typer.Argument(
+            help="processed/CAMPAIGN, or processed/ for all.", show_default=False, callback=here
+        ),
     ],
     reports: Annotated[Path, typer.Option(help="Where the report goes.")] = Path("reports"),
     json: Json = False,

@@ -55,13 +55,11 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
     rows = []
     for test in tests:
         message = escape(test.message)  # text from files of strangers: no markup is read in it
-        # nothing is reduced in a check: what can be read and located is ready for a run
-        status = "ready" if test.status == "no_work" else test.status
         rate = test.found.get("rate", {}).get("value")
         rows.append(
             {
                 "test": test.test,
-                "status": status,
+                "status": test.status,
                 "rows": str(test.n_rows),
                 "rate [Hz]": "" if rate is None else f"{rate:.4g}",
                 "gaps": str(test.found.get("gaps", "")),

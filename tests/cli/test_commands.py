@@ -330,3 +330,37 @@ def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
     )
     assert done.returncode == 6
     assert "a.csv/small/status.csv cannot be written; found Not a directory" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        (("run", "--jobs", "0", "c.toml"), "Invalid value for '--jobs': "),
+        (("check", "c.toml", "--colour"), "No such option: --colour"),
+        (("check",), "Missing argument 'CAMPAIGN.toml'."),
+        (("chek", "c.toml"), "No such command 'chek'."),
+        (
+            ("check", "https://example.org/c.toml"),
+            "URLs are not read by this version; found 'https://example.org/c.toml'; needed a file",
+        ),
+    ],
+)
+def test_a_line_that_cannot_be_used_is_one_line_and_one_object(command, tmp_path, line, message):
+    done = command(*line, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert message in done.stderr and done.stderr.count("\n") == 1
+    asked = command(*line, "--json", cwd=tmp_path)
+    assert asked.returncode == 2 and asked.stderr == done.stderr
+    assert json.loads(asked.stdout) == {
+        "tests": [], "error": done.stderr.strip(), "exit_status": 2,
+    }  # fmt: skip
+
+
+def test_a_check_shows_the_status_that_its_json_has(small, command):
+    campaign = small / "raw" / "campaign.toml"
+    shown = command("check", campaign, cwd=small).stdout
+    assert "no_work" in shown and "ready for a run" in shown
+    answer = json.loads(command("check", campaign, "--json", cwd=small).stdout)
+    assert {(test["status"], test["message"]) for test in answer["tests"]} == {
+        ("no_work", "ready for a run")
+    }

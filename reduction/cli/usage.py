@@ -1,0 +1,63 @@
+"""A command line that cannot be used: one line on standard error, and JSON where asked for."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+__all__ = ["Commands", "here"]
+
+USAGE = 2
+# click's own class, which some versions of typer carry within themselves
+_UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+_URL = re.compile(r"^([a-z][a-z0-9+.-]+):/+", re.IGNORECASE)
+
+
+def here(path: Path) -> Path:
+    """A path of this machine; an address on the net is refused in words."""
+    address = _URL.match(str(path))
+    if address is None:
+        return path
+    whole = f"{address[1]}://{str(path)[address.end() :]}"
+    raise typer.BadParameter(
+        f"URLs are not read by this version; found '{whole}'; needed a file on this machine. "
+        "Download it first."
+    )
+
+
+class Commands(TyperGroup):
+    """The commands; the answer to a line that none of them can read is in the form of theirs."""
+
+    def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
+        """Run the command that the line names."""
+        given = list(sys.argv[1:] if args is None else args)
+        options["standalone_mode"] = False
+        try:
+            status = super().main(given, *rest, **options)
+        except _UsageError as error:
+            status = _refuse(given, error)
+        except typer.Abort:
+            status = 1
+        sys.exit(status if isinstance(status, int) else 0)
+
+
+def _refuse(given: Sequence[str], error: Any) -> int:
+    """One line on standard error; help where nothing was asked for."""
+    message = error.format_message()
+    if not given:
+        typer.echo(message, err=True)
+        return USAGE
+    about = "" if error.ctx is None else f" See '{error.ctx.command_path} --help'."
+    line = " ".join(message.split())
+    line = f"{line}{'' if line.endswith(('.', '?')) else '.'}{about}"
+    typer.echo(line, err=True)
+    if "--json" in given:
+        typer.echo(json.dumps({"tests": [], "error": line, "exit_status": USAGE}, indent=2))
+    return USAGE
