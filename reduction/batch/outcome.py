@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import Any
-
-import numpy as np
 
 from reduction.batch.status import Status, TestStatus
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.errors import LogError, ReductionError, SettingsError
-from reduction.ingest.quality import account_rows
 from reduction.notes import Severity, by_severity, severity_of
 
 __all__ = ["note_message", "status_row"]
@@ -48,28 +44,6 @@ def _error_message(campaign: Campaign, survey: Survey, error: ReductionError) ->
     return f"{campaign.file(survey.plan.files[0][0])}: {error}"
 
 
-def _found(survey: Survey) -> dict[str, Any]:
-    """What `check` prints of a test, beside rows and cycles."""
-    if survey.located is None:
-        return {}
-    record = survey.located.record
-    step = np.diff(record.time)
-    step = step[np.isfinite(step) & (step > 0)]
-    gaps = account_rows(record).n_flagged.get("crosshead_position", {}).get("gap", 0)
-    return {
-        "rate": {"value": float(1 / np.median(step)) if step.size else None, "unit": "Hz"},
-        "gaps": int(gaps),
-        "standstills": survey.located.standstills.n_standstills,
-        "flags": {
-            channel: masks for channel, masks in account_rows(record).n_flagged.items() if masks
-        },
-        "notes": [
-            *record.notes,
-            *(() if survey.located.cycles is None else survey.located.cycles.notes),
-        ],
-    }
-
-
 def status_row(
     campaign: Campaign,
     survey: Survey,
@@ -89,5 +63,5 @@ def status_row(
         n_cycles=survey.n_cycles,
         raw_sha256=" ".join(source.sha256 for source in survey.sources),
         seconds=seconds,
-        found=_found(survey),
+        found=survey.found,
     )

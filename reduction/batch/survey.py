@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
+from reduction.batch.found import found_in
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
 from reduction.errors import DataError, LogError, ReductionError
 from reduction.ingest.datum import length_at_slack
@@ -39,7 +41,8 @@ class Survey:
     [m] and tension [N] of the samples at the greatest position, ``greatest_tension`` [N] that
     of the test; ``greatest_measured_strain`` [1] that of the extensometer, where there is one,
     or of the readings of a stepwise test;
-    ``first_rise`` position [m] and tension [N] of the samples up to half of its peak.
+    ``first_rise`` position [m] and tension [N] of the samples up to half of its peak; ``found``
+    what a person is told of the log.
     """
 
     plan: TestPlan
@@ -57,6 +60,7 @@ class Survey:
     greatest_measured_strain: dict[str, float] = field(default_factory=dict)
     first_rise: dict[str, tuple[Floats, Floats]] = field(default_factory=dict)
     slack_tension: float = float("nan")
+    found: dict[str, Any] = field(default_factory=dict)
     error: ReductionError | None = None
 
 
@@ -194,6 +198,7 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
     located = locate(record, kind=plan.kind, settings=plan.settings)
     survey = Survey(plan, sources, located, n_rows=record.n_samples)
     survey.has_extensometer = record.measured_strain is not None
+    survey.found = found_in(located)
     survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
     survey.greatest = _greatest(located)
     survey.greatest_tension = {

@@ -1,0 +1,41 @@
+"""What the first pass found in a log, in the numbers that a person looks at first."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from reduction.ingest.quality import account_rows
+from reduction.pipeline.locate import Located
+
+__all__ = ["found_in"]
+
+
+def found_in(located: Located) -> dict[str, Any]:
+    """Rate, gaps, standstills, flags and notes of a record, beside its rows and cycles.
+
+    Parameters
+    ----------
+    located : Located
+        The record.
+
+    Returns
+    -------
+    found : dict
+        As the JSON answer has it.
+    """
+    record = located.record
+    step = np.diff(record.time)
+    step = step[np.isfinite(step) & (step > 0)]
+    n_flagged = account_rows(record).n_flagged
+    return {
+        "rate": {"value": float(1 / np.median(step)) if step.size else None, "unit": "Hz"},
+        "gaps": int(n_flagged.get("crosshead_position", {}).get("gap", 0)),
+        "standstills": located.standstills.n_standstills,
+        "flags": {channel: masks for channel, masks in n_flagged.items() if masks},
+        "notes": [
+            *record.notes,
+            *(() if located.cycles is None else located.cycles.notes),
+        ],
+    }
