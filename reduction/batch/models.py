@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from reduction.batch.survey import Survey
+from reduction.batch.survey import Survey, as_reduction_error
 from reduction.campaign.plan import Campaign
 from reduction.errors import ReductionError
 from reduction.record import Floats, SpliceMarks
@@ -73,6 +73,7 @@ def fit_strain_models(
                     has_extensometer=survey.has_extensometer,
                     reference_position=survey.zero_strain_position,
                 )
-            except ReductionError as error:
-                errors[survey.plan.id] = error
+            except Exception as error:
+                # one test's failure, even where it is a defect here
+                errors[survey.plan.id] = as_reduction_error(error)
     return models, errors

@@ -75,10 +75,14 @@ def fit_pulls(
         known = [model for model in of_test if model is not None]
         if test not in named or survey.error is not None or len(known) < len(of_test):
             continue
-        located = located_again(campaign, survey)
-        position, tension = located.position, located.tension
-        strain = strain_of_record(located.record, position, tension, known)
-        found, _ = pull_specimens(located, strain, tension, pull_conditions(campaign, survey))
+        try:
+            located = located_again(campaign, survey)
+            position, tension = located.position, located.tension
+            strain = strain_of_record(located.record, position, tension, known)
+            found, _ = pull_specimens(located, strain, tension, pull_conditions(campaign, survey))
+        except Exception:
+            # even a defect here is the failure of that test alone, where it shows again
+            found = (None,) * len(of_test)
         for name, pull in zip(survey.plan.specimens, found, strict=True):
             if pull is not None:
                 pulls[test, name] = pull
