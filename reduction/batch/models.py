@@ -29,6 +29,12 @@ def _pooled(
     return tension
 
 
+def _failed_logs(surveys: Sequence[Survey]) -> tuple[str, ...]:
+    """Logs of which nothing could be read, so that no mark in them has a tension."""
+    sound = {survey.plan.log for survey in surveys if survey.error is None or survey.mark_tension}
+    return tuple(dict.fromkeys(s.plan.log for s in surveys if s.plan.log not in sound))
+
+
 def fit_strain_models(
     campaign: Campaign, surveys: Sequence[Survey]
 ) -> tuple[dict[tuple[str, str], StrainModel], dict[str, ReductionError]]:
@@ -56,6 +62,7 @@ def fit_strain_models(
         name: _pooled(marks, surveys, lambda survey: survey.mark_tension_at_start)
         for name, marks in campaign.marks.items()
     }
+    failed = _failed_logs(surveys)
     models: dict[tuple[str, str], StrainModel] = {}
     errors: dict[str, ReductionError] = {}
     for survey in surveys:
@@ -72,6 +79,7 @@ def fit_strain_models(
                     settings=survey.plan.settings.strain,
                     has_extensometer=survey.has_extensometer,
                     reference_position=survey.zero_strain_position,
+                    failed_tests=failed,
                 )
             except Exception as error:
                 # one test's failure, even where it is a defect here

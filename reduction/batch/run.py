@@ -8,17 +8,17 @@ from pathlib import Path
 
 from reduction import __version__
 from reduction.archive.dataset import to_dataset
-from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive, write_whole
 from reduction.batch.describe import describe, settings_json
 from reduction.batch.history import history_of, history_remarks
 from reduction.batch.models import fit_strain_models
 from reduction.batch.outcome import note_message, status_row
 from reduction.batch.pulls import fit_pulls, pull_conditions, pulls_of
-from reduction.batch.status import TestStatus, read_status, status_csv
+from reduction.batch.standing import failed_beside, standing_product
+from reduction.batch.status import Status, TestStatus, read_status, status_csv
 from reduction.batch.survey import Survey, as_reduction_error, located_again, survey_campaign
 from reduction.campaign.plan import Campaign
-from reduction.errors import ArchiveError, SettingsError
+from reduction.errors import SettingsError
 from reduction.line.product import SlowPull
 from reduction.pipeline.reduce import reduce_steps, reduce_test
 from reduction.product import History, ReducedTest
@@ -65,31 +65,6 @@ def _selected(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
         for survey in surveys
         if survey.plan.id in tests or survey.plan.id.rpartition(".")[0] in tests
     ]
-
-
-def _standing_notes(path: Path, survey: Survey, settings: str) -> list[tuple[str, str]] | None:
-    """Notes of a product that stands as it is; None where it has to be made.
-
-    It stands where raw hash, settings and version are the same.
-    """
-    if not path.exists():
-        return None
-    try:
-        with open_archive(path) as archive:
-            sums = "\n".join(source.sha256 for source in survey.sources)
-            same = (
-                archive.attrs.get("settings") == settings
-                and archive.attrs.get("software_version") == __version__
-                and archive.attrs.get("raw_file_sha256") == sums
-            )
-            if not same:
-                return None
-            if "note" not in archive:
-                return []
-            stages, notes = archive["note_stage"].values, archive["note"].values
-            return [(str(stage), str(text)) for stage, text in zip(stages, notes, strict=True)]
-    except ArchiveError:
-        return None  # an archive that cannot be read is made again
 
 
 def check_campaign(
@@ -237,52 +212,48 @@ def run_campaign(
     chosen = _selected(surveys, tests)
     models, errors = fit_strain_models(campaign, surveys)
     slow_pulls = fit_pulls(campaign, surveys, models)
+    failed = [entry.plan.id for entry in surveys if entry.error or entry.plan.id in errors]
     statuses: list[TestStatus] = []
     for survey in chosen:
         name = survey.plan.id
         path = folder / f"{name}.nc"
         start = clock()
         error = survey.error or errors.get(name)
-        if error is not None:
-            statuses.append(status_row(campaign, survey, "failed", error=error))
-            continue
-        if progress is not None:
+        if error is None and progress is not None:
             progress("reduce", name)
-        of_test = [
-            models[name, entry] for entry in survey.plan.specimens if (name, entry) in models
-        ]
-        history = history_of(survey, surveys, models)
-        pulls = pulls_of(campaign, survey, slow_pulls)
-        settings = settings_json(campaign, survey, of_test, history, pulls)
-        standing = None if force else _standing_notes(path, survey, settings)
-        if standing is not None:
-            message = note_message(standing)
-            statuses.append(
-                status_row(campaign, survey, "unchanged", message=message, seconds=clock() - start)
-            )
-            continue
         try:
-            product = reduce_survey(campaign, survey, of_test, history, settings, pulls)
+            if error is not None:
+                raise error
+            history = history_of(survey, surveys, models)
+            pulls = pulls_of(campaign, survey, slow_pulls)
+            of_test = [
+                models[name, entry] for entry in survey.plan.specimens if (name, entry) in models
+            ]
+            settings = settings_json(campaign, survey, of_test, history, pulls)
+            beside = failed_beside(survey, surveys, failed)
             remarks = history_remarks(survey, surveys, models)
-            product = replace(product, notes=(*product.notes, *remarks))
-            write_archive(to_dataset(product, version=__version__, command=command), path)
+            standing = (
+                None
+                if force
+                else standing_product(path, survey, settings, remarks=remarks, failed=beside)
+            )
+            if standing is not None:
+                status: Status = "unchanged"
+                message = "; ".join(filter(None, [standing.remark, note_message(standing.notes)]))
+            else:
+                product = reduce_survey(campaign, survey, of_test, history, settings, pulls)
+                product = replace(product, notes=(*product.notes, *remarks))
+                write_archive(to_dataset(product, version=__version__, command=command), path)
+                notes = product.all_notes()
+                status = "reduced_with_notes" if notes else "reduced"
+                message = note_message(notes)
         except Exception as failure:
             # a campaign goes on after a failed test, even where the failure is a defect here
-            error = as_reduction_error(failure)
-            statuses.append(
-                status_row(campaign, survey, "failed", error=error, seconds=clock() - start)
-            )
-            continue
-        survey.located = None  # its record is in the archive now
-        notes = product.all_notes()
+            error, status, message = as_reduction_error(failure), "failed", ""
+        survey.located = None  # its record is in the archive now, or is of no more use
+        seconds = clock() - start
         statuses.append(
-            status_row(
-                campaign,
-                survey,
-                "reduced_with_notes" if notes else "reduced",
-                message=note_message(notes),
-                seconds=clock() - start,
-            )
+            status_row(campaign, survey, status, error=error, message=message, seconds=seconds)
         )
     if progress is not None:
         progress("tables", campaign.id)

@@ -9,6 +9,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -117,6 +118,7 @@ def fit_strain_model(
     settings: StrainSettings | None = None,
     has_extensometer: bool = False,
     reference_position: float | None = None,
+    failed_tests: Sequence[str] = (),
 ) -> StrainModel:
     """Fit the strain method of one specimen in one test.
 
@@ -139,6 +141,8 @@ def fit_strain_model(
         Whether the log has a strain channel.
     reference_position : float, optional
         Crosshead position at zero strain, for ``gauge-length``. [m]
+    failed_tests : sequence of str
+        Tests whose log could not be read, so that their marks have no tension. [1]
 
     Returns
     -------
@@ -216,5 +220,7 @@ def fit_strain_model(
     if model.method == "tension-driven" and mark_tension_at_start is not None:
         early = replace(readings, tension=np.asarray(mark_tension_at_start, dtype=np.float64))
         at_start = fit_to_marks("tension-driven", early)
-    remarks = remarks_on(model, readings.marks, test_id, at_start=at_start)
+    # a method that was asked for and needs no tension loses nothing with a log
+    lost = failed_tests if stated in (None, "tension-driven") else ()
+    remarks = remarks_on(model, readings.marks, test_id, at_start=at_start, failed_tests=lost)
     return replace(model, notes=(*notes, *model.notes, *remarks))

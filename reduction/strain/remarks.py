@@ -9,6 +9,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import sqrt
 
 import numpy as np
@@ -130,12 +131,35 @@ def _on_reading_time(
     )
 
 
+def _on_left_out(
+    model: StrainModel, marks: SpliceMarks, n_used: int, failed_tests: Sequence[str]
+) -> tuple[str, ...]:
+    """Stretched marks that the law of tension lacks: their log failed, or shows no hold."""
+    rows = np.flatnonzero(~marks.is_slack)
+    tests = [marks.test[row] for row in rows if marks.test[row] in failed_tests]
+    notes: tuple[str, ...] = ()
+    if tests:
+        notes += (
+            f"{model.specimen}: {len(tests)} of {rows.size} stretched marks are of tests that "
+            f"failed ({', '.join(dict.fromkeys(tests))}), so that their tension is not known; the "
+            "law of tension is without them",
+        )
+    without_hold = rows.size - n_used - len(tests)
+    if model.method == "tension-driven" and without_hold > 0:
+        notes += (
+            f"{model.specimen}: {without_hold} of {rows.size} stretched marks have no "
+            "hold in the logs and are left out",
+        )
+    return notes
+
+
 def remarks_on(
     model: StrainModel,
     marks: SpliceMarks,
     test_id: str,
     *,
     at_start: StrainModel | None = None,
+    failed_tests: Sequence[str] = (),
 ) -> tuple[str, ...]:
     """Remarks on a model fitted to marks.
 
@@ -149,6 +173,8 @@ def remarks_on(
         Test to which the model will be applied.
     at_start : StrainModel, optional
         The same fit with the tension at the start of each hold.
+    failed_tests : sequence of str
+        Tests whose log could not be read, so that their marks have no tension. [1]
 
     Returns
     -------
@@ -182,14 +208,7 @@ def remarks_on(
             f"{model.specimen}: {test_id} has no marks of its own; its strain rests on those of "
             + ", ".join(tests),
         )
-    if model.method == "tension-driven":
-        rows = np.flatnonzero(~marks.is_slack)
-        n_used = int(is_stretched.sum())
-        if n_used < rows.size:
-            notes += (
-                f"{model.specimen}: {rows.size - n_used} of {rows.size} stretched marks have no "
-                "hold in the logs and are left out",
-            )
+    notes += _on_left_out(model, marks, int(is_stretched.sum()), failed_tests)
     expected = sqrt(3) * marks.reading_uncertainty / model.coefficients["relaxed_free_length"]
     notes += _on_constant_fraction(model, is_stretched)
     notes += _on_scatter(model, is_stretched, expected)

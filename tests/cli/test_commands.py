@@ -109,7 +109,9 @@ def test_a_test_that_did_not_change_is_not_done_again(reduced, command):
 
 def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"
-    old = (reduced / "processed" / "small" / "A.nc").read_bytes()
+    old, beside = (
+        (reduced / "processed" / "small" / name).read_bytes() for name in ("A.nc", "B.nc")
+    )
     log = reduced / "raw" / "A.csv"
     lines = log.read_text().splitlines()
     lines[1000] = "99.7,ovrflw,1,1"
@@ -120,11 +122,23 @@ def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(reduced, 
     assert statuses["A"]["status"] == "failed" and statuses["A"]["exit_status"] == 3
     assert "A.csv:1001 [crosshead_ft]" in statuses["A"]["message"]
     assert "ovrflw" in done.stderr and "Traceback" not in done.stderr
-    # the marks of A can no longer be used, so B is another reduction than before
-    assert statuses["B"]["status"] == "reduced_with_notes"
+    # the marks of A can no longer be used, but B stands as it was made with them
+    assert statuses["B"]["status"] == "unchanged"
+    assert statuses["B"]["message"].startswith("kept as an earlier, complete run made it: A failed")
+    assert (reduced / "processed" / "small" / "B.nc").read_bytes() == beside
     assert (reduced / "processed" / "small" / "A.nc").read_bytes() == old
     with (reduced / "processed" / "small" / "status.csv").open(newline="") as file:
         assert {row["test"]: row["status"] for row in csv.DictReader(file)}["A"] == "failed"
+    # only when it is asked for is B made without them, and says which marks it lacks and why
+    command("run", campaign, "--json", "--force", cwd=reduced)
+    with open_archive(reduced / "processed" / "small" / "B.nc") as archive:
+        notes = archive["note"].values.tolist()
+    for name in ("new", "used"):
+        assert (
+            f"{name}: 3 of 6 stretched marks are of tests that failed (A), so that their tension "
+            "is not known; the law of tension is without them"
+        ) in notes
+    assert not any("no hold in the logs" in note for note in notes)
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+import reduction.batch.run
 from reduction.archive.open import open_archive
 
 CAMPAIGN = """
@@ -128,3 +129,88 @@ def test_what_a_failed_test_did_is_not_known_and_is_said(row, command):
             "earlier test A failed: what it did to cord is not known, and earlier_cycles, "
             "earlier_maximum_strain and earlier_maximum_tension have no number"
         ) in notes
+
+
+def test_products_of_a_complete_run_stand_when_an_earlier_test_fails(row, command):
+    run(row, command)
+    folder = row / "processed" / "row"
+    before = {path.name: path.read_bytes() for path in folder.glob("*.nc")}
+    sound = (row / "A.csv").read_text()
+    break_log(row, "A.csv")
+    statuses = run(row, command)
+    assert statuses["A"]["status"] == "failed"
+    for test in ("weights", "B", "C"):
+        assert statuses[test]["status"] == "unchanged"
+        assert statuses[test]["message"].startswith(
+            "kept as an earlier, complete run made it: A failed in this one"
+        )
+    assert {path.name: path.read_bytes() for path in folder.glob("*.nc")} == before
+    # what is its own is looked at all the same
+    write_log(row / "C.csv", 0.1, 0.22, 8, 4)
+    statuses = run(row, command)
+    assert statuses["B"]["status"] == "unchanged"
+    assert statuses["C"]["status"] == "reduced_with_notes"
+    assert np.isnan(history(row, "C")[1]).all()
+    # made without A on request; with A again from then on
+    assert run(row, command, "--force")["B"]["status"] == "reduced_with_notes"
+    assert np.isnan(history(row, "B")[1]).all()
+    again = run(row, command)
+    assert again["B"]["status"] == "unchanged" and "kept as" not in again["B"]["message"]
+    (row / "A.csv").write_text(sound)
+    assert run(row, command)["B"]["status"] == "reduced_with_notes"
+    assert (folder / "B.nc").read_bytes() == before["B.nc"]
+
+
+def test_a_product_made_while_one_test_failed_does_not_stand_for_another(row, command):
+    sound = (row / "A.csv").read_text()
+    break_log(row, "A.csv")
+    run(row, command)
+    (row / "A.csv").write_text(sound)
+    break_log(row, "B.csv")
+    statuses = run(row, command)
+    assert statuses["weights"]["status"] == statuses["C"]["status"] == "reduced_with_notes"
+    assert any(note.startswith("earlier test B failed") for note in history(row, "C")[2])
+
+
+def test_a_setting_of_its_own_makes_a_product_anew_beside_a_failed_test(row, command):
+    run(row, command)
+    break_log(row, "A.csv")
+    text = (row / "campaign.toml").read_text()
+    (row / "campaign.toml").write_text(text.replace('["10 mm"]', '["11 mm"]'))
+    assert run(row, command)["B"]["status"] == "reduced_with_notes"
+
+
+def test_an_earlier_test_that_is_new_and_fails_makes_the_later_ones_anew(row, command):
+    run(row, command)
+    (row / "new.csv").write_text("t,x,F\n0,0,ovrflw\n")
+    text = (row / "campaign.toml").read_text()
+    (row / "campaign.toml").write_text(text + '[tests.new]\nfile = "new.csv"\norder = 0\n')
+    statuses = run(row, command)
+    assert statuses["new"]["status"] == "failed"
+    assert statuses["B"]["status"] == "reduced_with_notes"
+    assert np.isnan(history(row, "B")[1]).all()
+
+
+@pytest.mark.parametrize("part", ["history_of", "settings_json", "standing_product"])
+def test_a_defect_before_the_reduction_is_the_failure_of_one_test(row, command, monkeypatch, part):
+    sound = getattr(reduction.batch.run, part)
+
+    def spoilt(*arguments, **more):
+        if any(getattr(getattr(one, "plan", None), "id", "") == "B" for one in arguments):
+            raise ZeroDivisionError("for the test")
+        return sound(*arguments, **more)
+
+    monkeypatch.setattr(reduction.batch.run, part, spoilt)
+    statuses = run(row, command)
+    assert statuses["B"]["status"] == "failed" and statuses["B"]["exit_status"] == 1
+    assert "a defect of this program: ZeroDivisionError: for the test" in statuses["B"]["message"]
+    assert [statuses[test]["status"] for test in ("A", "C")] == 2 * ["reduced_with_notes"]
+
+
+def test_a_run_tells_the_rate_and_the_gaps_that_it_was_drawn_with(row, command):
+    lines = (row / "A.csv").read_text().splitlines()
+    (row / "A.csv").write_text("\n".join(lines[:500] + lines[540:]) + "\n")  # 4 s are not there
+    for found in (run(row, command), run(row, command)):  # reduced, and then unchanged
+        assert found["A"]["found"]["rate"]["value"] == pytest.approx(10.0)
+        assert found["A"]["found"]["gaps"] == 1
+        assert found["C"]["found"]["gaps"] == 0
