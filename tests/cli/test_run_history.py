@@ -214,3 +214,23 @@ def test_a_run_tells_the_rate_and_the_gaps_that_it_was_drawn_with(row, command):
         assert found["A"]["found"]["rate"]["value"] == pytest.approx(10.0)
         assert found["A"]["found"]["gaps"] == 1
         assert found["C"]["found"]["gaps"] == 0
+
+
+def test_a_log_in_steps_that_fails_is_one_earlier_test_and_the_later_products_stand(row, command):
+    text = (row / "campaign.toml").read_text()
+    steps = "".join(
+        f'[[tests.A.steps]]\nname = "{name}"\nfrom = "{low} s"\nto = "{high} s"\n'
+        for name, low, high in (("first", 0, 50), ("second", 50, 100))
+    )
+    (row / "campaign.toml").write_text(text.replace("[tests.weights]", steps + "[tests.weights]"))
+    assert {"A.first", "A.second"} < set(run(row, command))
+    names, numbers, _ = history(row, "B")
+    assert names == "A.first, A.second, weights"
+    assert numbers == pytest.approx(greatest(["A", "weights"]), rel=3e-3)
+    before = (row / "processed" / "row" / "B.nc").read_bytes()
+    break_log(row, "A.csv")
+    statuses = run(row, command)
+    assert statuses["A"]["status"] == "failed"
+    assert statuses["B"]["status"] == "unchanged"
+    assert ": A failed in this one" in statuses["B"]["message"]
+    assert (row / "processed" / "row" / "B.nc").read_bytes() == before
