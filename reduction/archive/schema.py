@@ -85,7 +85,9 @@ AXIS = "axis of the curve"
 CHECK = "residual of a check"
 CRITERION = "criterion of a fit"
 MEAN_READING = "mean of readings: its uncertainty is that of the channel"
-NOT_EVALUATED = "not evaluated by this version"
+MOVEMENT = "what the machine did; no number is made from it"
+TWO_METHODS = "two methods on the same marks: what they get wrong they share"
+SEE_PER_DECADE = "from a part of the cycles; peak_tension_per_decade has one, from all of them"
 
 COEFFICIENTS = {
     "relaxed_free_length": "relaxed_free_length",
@@ -205,7 +207,7 @@ _ROWS = chain(
     stated("strain_position_high", _S, BOUND),
     stated("strain_tension_low", _S, BOUND),
     stated("strain_tension_high", _S, BOUND),
-    stated("strain_slope_ratio", _S, NOT_EVALUATED),
+    stated("strain_slope_ratio", _S, TWO_METHODS),
     label("mark_specimen", ("mark",)),
     label("mark_test", ("mark",)),
     label("mark_hold", ("mark",)),
@@ -221,8 +223,8 @@ _ROWS = chain(
     count("cycle_last_sample", ("cycle",)),
     count("branch_first_sample", _CB),
     count("branch_last_sample", _CB),
-    stated("crosshead_rate", _CB, NOT_EVALUATED),
-    stated("tension_rate", _CB, NOT_EVALUATED),
+    stated("crosshead_rate", _CB, MOVEMENT),
+    stated("tension_rate", _CB, MOVEMENT),
     stated("cycle_start_time", _C, CLOCK),
     chain.from_iterable(
         measured(name, _C)
@@ -266,7 +268,7 @@ _ROWS = chain(
             "dynamic_modulus_per_decade",
         )
     ),
-    stated("peak_tension_change", _S, NOT_EVALUATED),
+    stated("peak_tension_change", _S, SEE_PER_DECADE),
     LINE_ROWS,
     # curves
     stated("strain_window", (), SETTING),
@@ -299,7 +301,7 @@ _ROWS = chain(
     count("slip_cycle_high", ("slip",)),
     measured("slip_tension_step", ("slip",)),
     measured("slip_length", ("slip",)),
-    stated("creep_per_cycle", _S, NOT_EVALUATED),
+    stated("creep_per_cycle", _S, SEE_PER_DECADE),
     # elastomer laws
     label("elastomer_specimen", ("elastomer_fit",)),
     label("elastomer_law", ("elastomer_fit",)),
@@ -356,7 +358,7 @@ STEPWISE: dict[str, Variable] = {
         stated("tension", ("step",), "weights as stated"),
         stated("strain", ("step",), "from tape readings", ancillary=("step_flag",)),
         flag("branch", ("step",), BRANCH_VALUES),
-        stated("secant_modulus", ("step",), NOT_EVALUATED),
+        measured("secant_modulus", ("step",)),
     )
 }
 """Names that stand along ``step`` in a stepwise test."""

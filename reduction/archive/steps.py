@@ -33,6 +33,7 @@ def stepwise_values(result: StepwiseResult) -> Values:
         "branch": result.branch,
         "step_flag": np.sum([STEP_MASKS[name] * rows for name, rows in flags.items()], axis=0),
         "secant_modulus": result.secant_modulus,
+        "secant_modulus_standard_uncertainty": result.secant_modulus_standard_uncertainty,
         "relaxed_gauge_length": np.array(result.gauge_length),
         "relaxed_gauge_length_standard_uncertainty": np.array(
             result.gauge_length_standard_uncertainty

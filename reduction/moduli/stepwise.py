@@ -61,8 +61,9 @@ class StepwiseResult:
         weights turn. Uncertainty of the readings alone; neighbours share one.
     interval_branch : ndarray of int, shape (n_steps-1,)
         1 ascending, 2 descending, 0 where the weights turn.
-    secant_modulus : ndarray
-        Stress over strain; NaN where the reading is inconsistent. [Pa]
+    secant_modulus, secant_modulus_standard_uncertainty : ndarray
+        Stress over strain; NaN where the reading is inconsistent. Uncertainty of the
+        reading and of the weight alone, as that of the intervals. [Pa]
     notes : tuple of str
     """
 
@@ -83,6 +84,7 @@ class StepwiseResult:
     interval_modulus_standard_uncertainty: Floats
     interval_branch: Integers
     secant_modulus: Floats
+    secant_modulus_standard_uncertainty: Floats
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -281,6 +283,10 @@ def reduce_stepwise(
     )
     with np.errstate(divide="ignore", invalid="ignore"):
         secant = np.where(is_inconsistent | (strain <= 0), np.nan, readings.tension / area / strain)
+        of_weight = (weight if np.isfinite(weight) else 0.0) / (area * strain)
+        secant_uncertainty = np.where(
+            np.isfinite(secant), np.hypot(of_weight, secant * reading / gauge / strain), np.nan
+        )
     return StepwiseResult(
         clock=readings.clock,
         time=readings.time,
@@ -299,5 +305,6 @@ def reduce_stepwise(
         interval_modulus_standard_uncertainty=np.where(unusable, np.nan, uncertainty),
         interval_branch=np.where(turns, 0, branch[1:]),
         secant_modulus=secant,
+        secant_modulus_standard_uncertainty=secant_uncertainty,
         notes=(*readings.notes, *notes),
     )

@@ -438,6 +438,7 @@ def stepwise_test():
             interval_modulus_standard_uncertainty=array(rng, 2),
             interval_branch=np.array([1, 2]),
             secant_modulus=array(rng, 3),
+            secant_modulus_standard_uncertainty=array(rng, 3),
             notes=("row 1140 disagrees with itself",),
         ),
     )

@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import pytest
 
-from reduction.archive.schema import COEFFICIENTS, SCHEMA
+from reduction.archive.schema import COEFFICIENTS, SCHEMA, schema_of
 from reduction.cycles.product import Loops
 from reduction.moduli.hyperelastic import PARAMETERS
 from reduction.moduli.product import AmplitudeSummary
@@ -13,6 +13,13 @@ from reduction.strain import methods, splice
 
 PER_CYCLE = [item.name for item in fields(Loops) if item.name != "uncertainty"]
 OF_TEST = [item.name for item in fields(AmplitudeSummary) if item.name != "uncertainty"]
+
+
+@pytest.mark.parametrize("is_stepwise", [False, True])
+def test_what_has_no_uncertainty_has_a_reason(is_stepwise):
+    for row in schema_of(is_stepwise=is_stepwise).values():
+        assert row.has_uncertainty or row.no_uncertainty, row.name
+        assert "not evaluated" not in row.no_uncertainty, row.name
 
 
 @pytest.mark.parametrize(

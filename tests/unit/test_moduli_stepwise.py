@@ -49,6 +49,13 @@ def test_uncertainty_of_the_weights_adds_to_it():
     np.testing.assert_allclose(both.interval_modulus_standard_uncertainty, expected)
 
 
+def test_a_secant_modulus_has_the_uncertainty_of_its_reading_and_its_weight():
+    result = reduce_stepwise(readings(tension_standard_uncertainty=2.0), area=AREA)
+    strain = WEIGHTS / AREA / MODULUS
+    relative = np.hypot(0.0005 / GAUGE / strain, 2.0 / WEIGHTS)
+    np.testing.assert_allclose(result.secant_modulus_standard_uncertainty, MODULUS * relative)
+
+
 def test_an_unstated_reading_uncertainty_is_the_scatter_and_a_note_says_so():
     log = readings(uncertainty=float("nan"))
     miss = 0.0006 * np.array([1, -1, 1, -1, 1, -1])

@@ -151,7 +151,9 @@ def test_a_moving_crosshead_has_no_standstill():
 def test_too_short_a_record_is_refused():
     with pytest.raises(DataError, match="too short to stand still; found 3 rows; needed 4"):
         find([0.0, 1, 2], [1.0, 1, 1], [[0.0, 0, 0]])
-    with pytest.raises(DataError, match="no position of the record may be used.* 0 positions in 9 rows"):
+    with pytest.raises(
+        DataError, match="no position of the record may be used.* 0 positions in 9 rows"
+    ):
         find(np.arange(9.0), np.full(9, np.nan), [np.zeros(9)])
 
 
