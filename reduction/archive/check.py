@@ -1,6 +1,6 @@
 """The package's own check of a written file, on the file as it lies on the disk.
 
-A small part of CF, fitted to what `reduction.archive.schema` promises; the whole of CF
+A small part of CF, fitted to what `reduction.archive.schema` and its like promise; the whole of CF
 is checked in the tests by an outside program.
 """
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from reduction.archive.attributes import CONVENTIONS
 from reduction.archive.schema import SCHEMA_VERSION, schema_of
+from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.variable import Variable
 
 __all__ = ["check_archive"]
@@ -56,7 +57,10 @@ def _global_findings(file: netCDF4.Dataset) -> Iterator[str]:
 
 
 def _variable_findings(file: netCDF4.Dataset) -> Iterator[str]:
-    schema = schema_of(is_stepwise="step" in file.dimensions)
+    is_of_experiments = "experiment" in file.dimensions
+    schema = (
+        SURFACE_SCHEMA if is_of_experiments else schema_of(is_stepwise="step" in file.dimensions)
+    )
     for name, variable in file.variables.items():
         if name not in schema:
             yield f"{name} is not in the schema"

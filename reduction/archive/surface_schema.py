@@ -1,0 +1,269 @@
+"""Every variable that an archive of experiments may have.
+
+What an experiment says of a response is named ``<response>_<what>``: the unit is that of the
+response, which differs.  A file has those of its own experiments; where two of them differ in
+length the shorter one ends in NaN, empty text or 0.  Dimensions:
+
+=================================  ========================================================
+dimension                          one entry for
+=================================  ========================================================
+``experiment``                     each experiment; text coordinate
+``term``, ``term_other``           each coefficient, B1, B2, .. as printed; text coordinates
+``factor``                         each factor, from 1; ``factor_name``, ``factor_unit``
+``run``                            each run and specimen, from 1; ``run_name``
+``plan_column``                    each factor, then each dummy column of a screening
+``direction``                      each principal direction, curvature falling
+``anova_row``                      each source of variation; ``anova_source``
+``block``                          each block; ``block_name``
+``stiffness_form``                 each form of dynamic stiffness; text coordinate
+``stiffness_term``                 each coefficient of a form, and ``stiffness_term_other``
+``note``, ``caution``              each note and caution of any experiment
+=================================  ========================================================
+
+Levels of factors stand as numbers beside ``factor_unit``.  The covariance of two coefficients
+is ``<response>_covariance_factor`` times the square of ``<response>_sigma``.  A surface is
+evaluated from the file by `reduction.archive.surface_read.surfaces_of`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+
+from reduction.archive.variable import Variable, count, flag, label, measured, stated
+from reduction.surface.product import STATIONARY_KINDS
+from reduction.vocabulary import RESPONSES, SURFACE_NAMES
+
+__all__ = ["STATIONARY_FLAGS", "SURFACE_SCHEMA", "rows_of_response"]
+
+STATIONARY_FLAGS = {name or "none": code for code, name in STATIONARY_KINDS.items()}
+_NO_YES = {"no": 0, "yes": 1}
+
+_E = ("experiment",)
+_T = ("experiment", "term")
+_F = ("experiment", "factor")
+_R = ("experiment", "run")
+_A = ("experiment", "anova_row")
+_P = ("experiment", "plan_column")
+_S = ("experiment", "stiffness_form")
+_C = ("experiment", "stiffness_form", "stiffness_term")
+
+_TEST = "a statistic of a test"
+_COUNT = "count"
+_SETTING = "setting"
+_PLAN = "as planned"
+_BOUND = "bound"
+_SPREAD = "is itself a measure of spread"
+_CRITERION = "criterion of a fit"
+_PART = "is part of an uncertainty"
+_CHECK = "residual of a check"
+_BASIS = "a direction: see the covariance of the coefficients"
+_OF_RUN = "its uncertainty stands in the archive of the run"
+_NOT_EVALUATED = "not evaluated by this version"
+_FROM_SURFACE = "from the surface: see its covariance"
+
+
+def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
+    """Give the variables of one response; what is measured is not transformed.
+
+    Parameters
+    ----------
+    name : str
+        One of `reduction.vocabulary.SURFACE_NAMES`, or ``response``.
+    is_transformed : bool
+        True for a surface of a transform: runs and effects are of the response itself.
+
+    Yields
+    ------
+    row : Variable
+    """
+    yield from chain(
+        measured(f"{name}_coefficient", _T),
+        measured(f"{name}_coefficient_engineering", _T),
+        stated(f"{name}_t", _T, _TEST),
+        stated(f"{name}_p_value", _T, _TEST),
+        stated(f"{name}_term_degrees_of_freedom", _T, _COUNT),
+        stated(f"{name}_covariance_factor", (*_T, "term_other"), _PART),
+        label(f"{name}_transform", _E),
+        stated(f"{name}_transform_exponent", _E, "see the ends of its interval"),
+        stated(f"{name}_transform_exponent_low", _E, _BOUND),
+        stated(f"{name}_transform_exponent_high", _E, _BOUND),
+        stated(f"{name}_n_runs", _E, _COUNT),
+        label(f"{name}_refusal", _E),
+        stated(f"{name}_sigma", _E, _SPREAD),
+        stated(f"{name}_degrees_of_freedom", _E, _COUNT),
+        *(
+            stated(f"{name}_{what}", _E, _CRITERION)
+            for what in ("r2", "adjusted_r2", "predicted_r2", "probability_plot_correlation")
+        ),
+        *(
+            stated(f"{name}_{what}", _E, _TEST)
+            for what in (
+                "overall_f",
+                "overall_p_value",
+                "printed_f",
+                "lack_of_fit_f",
+                "lack_of_fit_p_value",
+            )
+        ),
+        label(f"{name}_lack_of_fit_refusal", _E),
+        *(
+            stated(f"{name}_anova_{what}", _A, why)
+            for what, why in (
+                ("degrees_of_freedom", _COUNT),
+                ("sum_of_squares", _SPREAD),
+                ("mean_square", _SPREAD),
+                ("f", _TEST),
+                ("p_value", _TEST),
+            )
+        ),
+        measured(f"{name}_stationary_point", _F),
+        stated(f"{name}_stationary_point_engineering", _F, "see the coded one"),
+        flag(f"{name}_stationary_point_is_inside", _E, _NO_YES),
+        stated(f"{name}_stationary_value", _E, _FROM_SURFACE),
+        flag(f"{name}_stationary_kind", _E, STATIONARY_FLAGS),
+        label(f"{name}_stationary_refusal", _E),
+        measured(f"{name}_eigenvalue", ("experiment", "direction")),
+        stated(f"{name}_eigenvector", ("experiment", "direction", "factor"), _BASIS),
+        stated(f"{name}_fitted", _R, _FROM_SURFACE),
+        stated(f"{name}_residual", _R, _CHECK),
+        *(
+            stated(f"{name}_{what}", _R, "says how much a run counts")
+            for what in ("leverage", "cooks_distance")
+        ),
+        *(
+            stated(f"{name}_{what}", _R, _CHECK)
+            for what in ("studentized_residual", "deleted_residual")
+        ),
+        stated(f"{name}_block_effect", ("experiment", "block"), _NOT_EVALUATED),
+        stated(f"{name}_block_standard_deviation", _E, _SPREAD),
+        flag(f"{name}_block_at_boundary", _E, _NO_YES),
+    )
+    if is_transformed:
+        return
+    yield from chain(
+        measured(f"{name}_measured", _R),
+        measured(f"{name}_effect", _P, uncertainty_dims=_E),
+        stated(f"{name}_effect_t", _P, _TEST),
+        stated(f"{name}_effect_p_value", _P, _TEST),
+        flag(f"{name}_effect_is_significant", _P, _NO_YES),
+        label(f"{name}_effect_refusal", _E),
+        stated(f"{name}_mean", _E, _NOT_EVALUATED),
+        stated(f"{name}_minimum_significant_effect", _E, _BOUND),
+        stated(f"{name}_simultaneous_minimum_effect", _E, _BOUND),
+    )
+
+
+_ROWS = chain(
+    # experiments and their axes
+    label("experiment", _E),
+    label("experiment_kind", _E),
+    count("factor", ("factor",)),
+    label("factor_name", _F),
+    label("factor_unit", _F),
+    stated("factor_low", _F, _PLAN),
+    stated("factor_high", _F, _PLAN),
+    label("term", ("term",)),
+    label("term_other", ("term_other",)),
+    label("term_name", _T),
+    label("term_unit_engineering", _T),
+    label("term_error", _T),
+    stated("term_exponent", (*_T, "factor"), "exact"),
+    count("direction", ("direction",)),
+    label("anova_source", _A),
+    label("anova_error_term", _A),
+    label("block_name", ("experiment", "block")),
+    label("block_treatment", _E),
+    stated("replicate_tolerance", _E, _SETTING),
+    stated("condition_number", _E, "a property of the levels"),
+    count("plan_column", ("plan_column",)),
+    label("plan_column_name", _P),
+    label("effect_error_from", _E),
+    stated("effect_degrees_of_freedom", _E, _COUNT),
+    stated("effect_significance", _E, _SETTING),
+    # runs
+    count("run", ("run",)),
+    label("run_name", _R),
+    label("run_specimen", _R),
+    label("run_block", _R),
+    label("run_remark", _R),
+    stated("run_plan", (*_R, "plan_column"), _PLAN),
+    stated("run_level", (*_R, "factor"), _OF_RUN),
+    stated("run_coded_level", (*_R, "factor"), _OF_RUN),
+    *(
+        stated(f"run_{name}", _R, _OF_RUN)
+        for name in (
+            "frequency",
+            "mean_tension",
+            "tension_amplitude",
+            "peak_tension",
+            "minimum_tension",
+        )
+    ),
+    stated("run_rated_break_strength", _R, "stated by the laboratory"),
+    count("run_cell", _R),
+    stated("derived_dissipation_spring_constant", _R, _NOT_EVALUATED),
+    stated("derived_relaxation_time", _R, _NOT_EVALUATED),
+    # forms of mooring codes
+    label("stiffness_form", ("stiffness_form",)),
+    count("stiffness_term", ("stiffness_term",)),
+    count("stiffness_term_other", ("stiffness_term_other",)),
+    label("stiffness_equation", _S),
+    label("stiffness_coefficient_name", _C),
+    label("stiffness_coefficient_unit", _C),
+    measured("stiffness_coefficient", _C),
+    stated("stiffness_coefficient_low", _C, _BOUND),
+    stated("stiffness_coefficient_high", _C, _BOUND),
+    stated("stiffness_p_value", _C, _TEST),
+    stated("stiffness_covariance", (*_C, "stiffness_term_other"), _PART),
+    stated("stiffness_confidence", _S, _SETTING),
+    stated("stiffness_mean_load_low", _S, _BOUND),
+    stated("stiffness_mean_load_high", _S, _BOUND),
+    stated("stiffness_n_coefficients", _S, _COUNT),
+    stated("stiffness_sigma", _S, _SPREAD),
+    stated("stiffness_degrees_of_freedom", _S, _COUNT),
+    *(
+        stated(f"stiffness_{name}", _S, _CRITERION)
+        for name in (
+            "r2",
+            "adjusted_r2",
+            "predicted_r2",
+            "prediction_sum_of_squares",
+            "aicc",
+        )
+    ),
+    label("stiffness_refusal", _S),
+    stated("stiffness_fitted", (*_S, "run"), _FROM_SURFACE),
+    stated("stiffness_residual", (*_S, "run"), _CHECK),
+    # whether one relaxation time holds over frequency
+    measured("single_time_exponent", _E),
+    stated("single_time_exponent_low", _E, _BOUND),
+    stated("single_time_exponent_high", _E, _BOUND),
+    stated("single_time_p_value_one_time", _E, _TEST),
+    stated("single_time_p_value_inverse_frequency", _E, _TEST),
+    stated("single_time_ratio", _E, "see the ends of its interval"),
+    stated("single_time_ratio_low", _E, _BOUND),
+    stated("single_time_ratio_high", _E, _BOUND),
+    stated("single_time_frequency_ratio", _E, _OF_RUN),
+    stated("single_time_degrees_of_freedom", _E, _COUNT),
+    stated("single_time_loss_exponent", _E, "see the ends of its interval"),
+    stated("single_time_loss_exponent_low", _E, _BOUND),
+    stated("single_time_loss_exponent_high", _E, _BOUND),
+    label("single_time_verdict", _E),
+    stated("single_time_confidence", _E, _SETTING),
+    stated("single_time_tolerance", _E, _SETTING),
+    # responses
+    chain.from_iterable(
+        rows_of_response(name, is_transformed=name not in RESPONSES) for name in SURFACE_NAMES
+    ),
+    # what a reader of the numbers has to know
+    label("note", ("note",)),
+    label("note_stage", ("note",)),
+    label("note_experiment", ("note",)),
+    label("caution", ("caution",)),
+    label("caution_kind", ("caution",)),
+    label("caution_hint", ("caution",)),
+    label("caution_runs", ("caution",)),
+    label("caution_experiment", ("caution",)),
+)
+SURFACE_SCHEMA: dict[str, Variable] = {row.name: row for row in _ROWS}

@@ -1,0 +1,156 @@
+"""The experiments of a campaign as one dataset that follows CF."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.attributes import experiment_attributes
+from reduction.archive.build import build_dataset
+from reduction.archive.stiffness import stiffness_values
+from reduction.archive.surface_schema import SURFACE_SCHEMA
+from reduction.archive.surface_values import experiment_values
+from reduction.archive.values import Values, texts
+from reduction.errors import ArchiveError
+from reduction.experiment import ExperimentResult
+from reduction.provenance import Source, Step
+
+__all__ = ["surfaces_to_dataset"]
+
+
+def surfaces_to_dataset(
+    results: Sequence[ExperimentResult],
+    *,
+    campaign_id: str,
+    attributes: Mapping[str, str],
+    sources: Sequence[Source],
+    steps: Sequence[Step],
+    settings_json: str,
+    version: str,
+    command: str,
+) -> xr.Dataset:
+    """Bring experiments into the form of the archive; no file is touched.
+
+    Parameters
+    ----------
+    results : sequence of ExperimentResult
+        One or more, of one campaign.
+    campaign_id : str
+        Of the campaign.
+    attributes : mapping of str to str
+        What the laboratory said of the campaign.
+    sources : sequence of Source
+        The files that the experiments were made from.
+    steps : sequence of Step
+        History lines.
+    settings_json : str
+        Every setting that was in force.
+    version : str
+        Version of this software.
+    command : str
+        What the user asked for, without paths, jobs and scheduler.
+
+    Returns
+    -------
+    dataset : xarray.Dataset
+        Names, dimensions and attributes of `reduction.archive.surface_schema`, encoding
+        included. Equal inputs give equal datasets.
+
+    Raises
+    ------
+    ArchiveError
+        If a response has no name in the vocabulary, two experiments have one name, or a
+        run of a surface is not a run of its experiment.
+    """
+    names = [result.name for result in results]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ArchiveError("an experiment stands twice", found=", ".join(twice))
+    values = _stacked([_values_of(result) for result in results])
+    values |= {"experiment": texts(names)} | _note_values(results) | _caution_values(results)
+    return build_dataset(
+        {
+            name: array
+            for name, array in values.items()
+            if array.dtype.kind != "U" or any(array.flat)
+        },
+        SURFACE_SCHEMA,
+        attributes=experiment_attributes(
+            names,
+            campaign_id=campaign_id,
+            attributes=attributes,
+            sources=sources,
+            steps=steps,
+            settings_json=settings_json,
+            version=version,
+            command=command,
+        ),
+    )
+
+
+def _values_of(result: ExperimentResult) -> Values:
+    values = experiment_values(result)
+    if result.form_quality is not None and result.stiffness_forms:
+        values |= stiffness_values(result.stiffness_forms, result.form_quality)
+    return values
+
+
+def _stacked(parts: Sequence[Values]) -> Values:
+    """Set experiments side by side; an axis of the file is the longest of its kind."""
+    sizes: dict[str, int] = {"experiment": len(parts)}
+    for part in parts:
+        for name, array in part.items():
+            for dim, length in zip(_own_dims(name), array.shape, strict=True):
+                sizes[dim] = max(length, sizes.get(dim, 0))
+    values: Values = {}
+    for name in dict.fromkeys(name for part in parts for name in part):
+        row, given = SURFACE_SCHEMA[name], [part[name] for part in parts if name in part]
+        if "experiment" not in row.dims:
+            values[name] = max(given, key=len)
+            continue
+        fill = "" if row.is_text else np.nan if row.dtype == "f8" else 0
+        kind = np.result_type(*given) if row.is_text else row.dtype
+        values[name] = np.full([sizes[dim] for dim in row.dims], fill, dtype=kind)
+        for number, part in enumerate(parts):
+            if name in part:
+                corner = tuple(slice(length) for length in part[name].shape)
+                values[name][(number, *corner)] = part[name]
+    return values
+
+
+def _own_dims(name: str) -> tuple[str, ...]:
+    return tuple(dim for dim in SURFACE_SCHEMA[name].dims if dim != "experiment")
+
+
+def _note_values(results: Sequence[ExperimentResult]) -> Values:
+    """Notes of surfaces under their own stage, and none twice."""
+    rows = []
+    for result in results:
+        of_surfaces = () if result.surfaces is None else result.surfaces.notes
+        rows += [(result.name, "surfaces", text) for text in of_surfaces]
+        rows += [
+            (result.name, "experiment", text) for text in result.notes if text not in of_surfaces
+        ]
+    return {
+        name: texts([row[column] for row in rows])
+        for column, name in enumerate(("note_experiment", "note_stage", "note"))
+    }
+
+
+def _caution_values(results: Sequence[ExperimentResult]) -> Values:
+    """Cautions, with the names of the runs that they count from 1."""
+    rows = [
+        (
+            result.name,
+            caution.kind,
+            caution.message,
+            caution.hint,
+            ", ".join(result.runs.names[number - 1] for number in caution.runs),
+        )
+        for result in results
+        for caution in result.cautions
+    ]
+    names = ("caution_experiment", "caution_kind", "caution", "caution_hint", "caution_runs")
+    return {name: texts([row[column] for row in rows]) for column, name in enumerate(names)}
