@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
+from reduction.campaign.csvlines import read_lines
 from reduction.errors import LogError
 from reduction.record import SpliceMarks
 from reduction.units import scale_to_si
@@ -98,27 +98,11 @@ def read_marks(path: Path) -> dict[str, SpliceMarks]:
     DataError
         If a row contradicts itself.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise LogError(path, "the marks file is not UTF-8 text", found=str(error)) from error
-    except OSError as error:
-        raise LogError(
-            path, "the marks file cannot be read", found=error.strerror or str(error)
-        ) from error
-    lines = csv.reader(text.splitlines())
-    header = [name.strip() for name in next(lines, [])]
+    header, lines = read_lines(path, "the marks file")
     columns = _columns(path, header)
     where = {name: header.index(name) for name in ("test", "specimen", "hold")}
     rows: dict[str, _Rows] = {}
-    for number, line in enumerate(lines, start=2):
-        if not any(cell.strip() for cell in line):
-            continue
-        if len(line) != len(header):
-            raise LogError(
-                path, "a row of marks has another number of cells than the header", row=number,
-                found=str(len(line)), needed=str(len(header)),
-            )  # fmt: skip
+    for number, line in lines:
         entry = rows.setdefault(line[where["specimen"]].strip(), _Rows())
         hold = line[where["hold"]].strip()
         _check_hold(path, number, hold)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from collections.abc import Mapping
@@ -11,6 +10,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TypeVar, get_args
 
+from reduction.campaign.csvlines import read_lines
 from reduction.errors import LogError, SettingsError
 from reduction.outcomes.product import IN_THE_TERMINATION, Outcome, OutcomeQuantity, Place
 from reduction.units import Dimension, scale_to_si
@@ -266,28 +266,12 @@ def read_results(path: Path) -> tuple[Outcome, ...]:
     LogError
         With the row and the column, if the header or a row cannot be used.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise LogError(path, "the table of results is not UTF-8 text", found=str(error)) from error
-    except OSError as error:
-        raise LogError(
-            path, "the table of results cannot be read", found=error.strerror or str(error)
-        ) from error
-    rows = csv.reader(text.splitlines())
-    header = [name.strip() for name in next(rows, [])]
+    header, lines = read_lines(path, "the table of results")
     _header(path, header)
     measured, others = _columns(path, header)
     outcomes: list[Outcome] = []
     seen: dict[tuple[str, str, str], int] = {}
-    for number, cells in enumerate(rows, start=2):
-        if not any(cell.strip() for cell in cells):
-            continue
-        if len(cells) != len(header):
-            raise LogError(
-                path, "a row has another number of cells than the header", row=number,
-                found=str(len(cells)), needed=str(len(header)),
-            )  # fmt: skip
+    for number, cells in lines:
         outcome = _outcome(
             _Line(path, number, dict(zip(header, cells, strict=True))), measured, others
         )

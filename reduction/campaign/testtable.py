@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from reduction.campaign.csvlines import read_lines
 from reduction.campaign.faults import faults_of, in_toml, listed
 from reduction.campaign.model import Identifier, TestSection
 from reduction.errors import SettingsError
@@ -72,12 +72,7 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
     SettingsError
         With row and column, if the table or a row cannot be used.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise _in_table(path, "the table of tests is not UTF-8 text", found=str(error)) from error
-    rows = csv.reader(text.splitlines())
-    header = [name.strip() for name in next(rows, [])]
+    header, lines = read_lines(path, "the table of tests", fault=_in_table)
     if "id" not in header or "file" not in header or len(set(header)) != len(header):
         raise _in_table(
             path, "the table of tests has no usable header", row=1, found=", ".join(header),
@@ -93,14 +88,7 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
             )  # fmt: skip
     tests: dict[str, TestSection] = {}
     identifier = TypeAdapter(Identifier)
-    for number, line in enumerate(rows, start=2):
-        if not any(cell.strip() for cell in line):
-            continue
-        if len(line) != len(header):
-            raise _in_table(
-                path, "a row has another number of cells than the header", row=number,
-                found=str(len(line)), needed=str(len(header)),
-            )  # fmt: skip
+    for number, line in lines:
         cells = dict(zip(header, line, strict=True))
         name = cells["id"].strip()
         if name in tests:
