@@ -22,6 +22,7 @@ _LONGEST_FOUND = 60
 _DEEPEST = 12  # more keys below each other than any setting has
 # what stands in the log itself, where a question mark may be one
 _MARKS_OF_A_LOG = {"delimiter", "comment", "quote", "missing", "block_marker"}
+_TABLES = {(*section, name) for section in ((), ("campaign",)) for name in ("tests", "results")}
 _WORDS = {"missing": "is required", "extra_forbidden": "is not a known key"}
 
 
@@ -168,7 +169,7 @@ def _cells(folder: Path, name: str) -> Iterator[tuple[int, str, str]]:
 
 
 def open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
-    """Places that still hold ``?``, in campaign.toml, its table of tests and its marks.
+    """Places that still hold ``?``, in campaign.toml, its tables and its marks.
 
     Parameters
     ----------
@@ -188,9 +189,7 @@ def open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
         if _is_open(value):
             if not (keys[0] == "layouts" and keys[-1] in _MARKS_OF_A_LOG):
                 places.append(".".join(keys))
-        elif isinstance(value, str) and (
-            keys in (("tests",), ("campaign", "tests")) or keys[-2:] == ("strain", "marks")
-        ):
+        elif isinstance(value, str) and (keys in _TABLES or keys[-2:] == ("strain", "marks")):
             files.append(value)
     seen: set[str] = set()
     for name in files:  # grows: a table of tests names marks

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from reduction.archive.products import OF_CAMPAIGN
 from reduction.campaign.experiments import plan_experiment
 from reduction.campaign.faults import in_toml, quantity_of
 from reduction.campaign.marks import read_marks
@@ -20,6 +21,7 @@ from reduction.campaign.model import (
     TestSection,
 )
 from reduction.campaign.numbers import apply_numbers
+from reduction.campaign.outcomes import outcomes_of
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
 from reduction.campaign.specimens import specimen_of
 from reduction.campaign.testtable import merge_tests, read_test_table
@@ -200,8 +202,19 @@ def _pool(path: Path, names: Iterable[str], specimens: Iterable[str]) -> dict[st
     return pooled
 
 
+def _results_file(path: Path, file: CampaignFile) -> str:
+    """Name of the table of results; empty where the campaign has none."""
+    names = {name for name in (file.results, file.campaign.results) if name}
+    if len(names) > 1:
+        raise in_toml(
+            path, "results stands above [campaign] and in it", found=" and ".join(sorted(names)),
+            needed="one table of results",
+        )  # fmt: skip
+    return _inside(path, names.pop()) if names else ""
+
+
 def load_campaign(path: Path) -> Campaign:
-    """Read campaign.toml, its test table and its marks, and check that they fit together.
+    """Read campaign.toml, its tables and its marks, and check that they fit together.
 
     Parameters
     ----------
@@ -228,9 +241,17 @@ def load_campaign(path: Path) -> Campaign:
         tests |= read_test_table(path.parent / _inside(path, table))
     if not isinstance(file.tests, str):
         tests = merge_tests(path, table, tests, file.tests)
-    if not tests:
-        raise in_toml(path, "the campaign has no tests", needed="at least one [tests.NAME]")
+    if not tests and not (file.results or file.campaign.results):
+        raise in_toml(
+            path, "the campaign has no tests", needed="at least one [tests.NAME], or results"
+        )
     plans = {name: _plan(path, name, test, file.defaults, file) for name, test in tests.items()}
+    taken = sorted(set(plans) & set(OF_CAMPAIGN))
+    if taken:
+        raise in_toml(
+            path, f"test '{taken[0]}' has the name of a product of the campaign",
+            needed="another name than " + ", ".join(OF_CAMPAIGN),
+        )  # fmt: skip
     for name, plan in plans.items():
         if plan.part_of is not None and plan.part_of not in plans:
             raise in_toml(
@@ -251,11 +272,12 @@ def load_campaign(path: Path) -> Campaign:
     attributes = {
         key: str(value)
         for key, value in file.campaign.model_dump().items()
-        if key not in ("id", "tests", "synthetic") and value
+        if key not in ("id", "tests", "results", "synthetic") and value
     }
     if file.campaign.synthetic or "synthetic" in file.campaign.source.lower():
         attributes["synthetic"] = "yes"
     specimens = {name: specimen_of(path, name, section) for name, section in file.specimens.items()}
+    results, outcomes = outcomes_of(path, _results_file(path, file), specimens, plans)
     return Campaign(
         path=path,
         id=file.campaign.id,
@@ -268,4 +290,6 @@ def load_campaign(path: Path) -> Campaign:
             name: plan_experiment(path, name, section, tests=plans, specimens=specimens)
             for name, section in file.experiments.items()
         },
+        results=results,
+        outcomes=outcomes,
     )

@@ -73,6 +73,8 @@ class CampaignSection(_Section):
     comment: Text = ""
     tests: Text = ""
     """A CSV with one row a test, beside or instead of ``[tests.*]``."""
+    results: Text = ""
+    """A CSV with one row an outcome of which there is no log."""
 
 
 class SpecimenSection(_Section):
@@ -202,7 +204,9 @@ class CampaignFile(_Section):
     """The whole of campaign.toml."""
 
     campaign: CampaignSection
-    specimens: dict[Identifier, SpecimenSection]
+    results: Text = ""
+    """As in ``[campaign]``."""
+    specimens: dict[Identifier, SpecimenSection] = Field(default_factory=dict)
     layouts: dict[Identifier, Layout] = Field(default_factory=dict)
     defaults: Defaults = Defaults()
     tests: dict[Identifier, TestSection] | Text = Field(default_factory=dict)

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Literal
 
 from reduction.ingest.layout import Layout
+from reduction.outcomes.product import Outcome
+from reduction.provenance import Source
 from reduction.record import Specimen, SpliceMarks
 from reduction.settings import ReductionSettings
 from reduction.surface.levels import FactorLevels
@@ -79,7 +81,11 @@ class ExperimentPlan:
 
 @dataclass(frozen=True)
 class Campaign:
-    """One campaign.toml with everything that it names, resolved."""
+    """One campaign.toml with everything that it names, resolved.
+
+    ``outcomes`` are the rows of the table ``results``, with what the sheets of their
+    specimens say.
+    """
 
     path: Path
     id: str
@@ -89,6 +95,8 @@ class Campaign:
     tests: dict[str, TestPlan]
     marks: dict[str, SpliceMarks]
     experiments: dict[str, ExperimentPlan] = field(default_factory=dict)
+    results: Source | None = None
+    outcomes: tuple[Outcome, ...] = ()
 
     @property
     def folder(self) -> Path:
