@@ -4,24 +4,28 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from reduction import __version__
 from reduction.archive.open import open_archive
+from reduction.archive.surfaces import surfaces_to_dataset
+from reduction.archive.write import write_archive
 from reduction.campaign.plan import Campaign, ExperimentPlan
-from reduction.errors import ArchiveError
+from reduction.errors import ArchiveError, FitError
 from reduction.experiment import ExperimentResult, RunTable
 from reduction.pipeline.experiment import LineOfRuns, fit_experiment
-from reduction.provenance import Source
+from reduction.provenance import Source, Step
 from reduction.record import Floats
 from reduction.surface.levels import FactorLevels
 from reduction.vocabulary import quantity
 
-__all__ = ["fit_experiments"]
+__all__ = ["ExperimentStatus", "fit_experiments", "write_experiments"]
 
 _LINE = ("storage_spring_constant", "loss_spring_constant", "quasi_static_spring_constant")
 _MEASURED = ("frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
@@ -30,8 +34,80 @@ _UNITS = {"temperature": "K", "diameter": "m"}
 _Row = dict[str, Any]
 
 
+@dataclass(frozen=True)
+class ExperimentStatus:
+    """What became of one experiment: ``fitted``, ``fitted_with_notes`` or ``failed``."""
+
+    id: str
+    status: str
+    exit_status: int
+    message: str
+
+
+def write_experiments(
+    campaign: Campaign, folder: Path, *, failed: Collection[str], command: str
+) -> list[ExperimentStatus]:
+    """Fit every experiment of a campaign and write them as one archive.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        With its experiments; nothing is written where it has none.
+    folder : pathlib.Path
+        Of the campaign's archives, of which one is made.
+    failed : collection of str
+        Tests whose archive, where there is one, is of an earlier run and not used.
+    command : str
+        For the product's ``command`` attribute.
+
+    Returns
+    -------
+    statuses : list of ExperimentStatus
+        One an experiment.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive cannot be written.
+    """
+    if not campaign.experiments:
+        return []
+    results, sources = fit_experiments(
+        campaign, lambda run: None if run in failed else folder / f"{run}.nc"
+    )
+    dataset = surfaces_to_dataset(
+        results,
+        campaign_id=campaign.id,
+        attributes=campaign.attributes,
+        sources=sources,
+        steps=[Step("surfaces", _in_one_line(result)) for result in results],
+        settings_json=json.dumps(
+            {name: asdict(plan) for name, plan in campaign.experiments.items()}, sort_keys=True
+        ),
+        version=__version__,
+        command=command,
+    )
+    write_archive(dataset, folder / "surfaces.nc")
+    return [_status(result) for result in results]
+
+
+def _in_one_line(result: ExperimentResult) -> str:
+    done = int(np.isfinite(result.runs.response).any(axis=0).sum())
+    return f"{result.name}: {done} of {len(result.runs.run)} runs of a {result.kind} design"
+
+
+def _status(result: ExperimentResult) -> ExperimentStatus:
+    """A design whose main part the runs do not carry has failed as a fit."""
+    refused = [note for note in result.notes if note.startswith("refused: ")]
+    failed = result.surfaces is None and result.screening is None
+    first = (refused or list(result.notes))[:1]
+    message = f"{_in_one_line(result)}; {'; '.join(first)}" if first else _in_one_line(result)
+    status = "failed" if failed else "fitted_with_notes" if result.notes else "fitted"
+    return ExperimentStatus(result.name, status, FitError.exit_status if failed else 0, message)
+
+
 def fit_experiments(
-    campaign: Campaign, archive_of: Callable[[str], Path]
+    campaign: Campaign, archive_of: Callable[[str], Path | None]
 ) -> tuple[list[ExperimentResult], tuple[Source, ...]]:
     """Fit every experiment of a campaign.
 
@@ -40,7 +116,7 @@ def fit_experiments(
     campaign : Campaign
         With its experiments.
     archive_of : callable
-        Path of a run's archive by the run's id; it need not exist.
+        Path of a run's archive by the run's id, which need not exist; None for a run that failed.
 
     Returns
     -------
@@ -58,7 +134,7 @@ def fit_experiments(
         ]
         for run in plan.runs:
             path = archive_of(run)
-            if path.exists():
+            if path is not None and path.exists():
                 content = path.read_bytes()
                 digest = hashlib.sha256(content).hexdigest()
                 sources[path.name] = Source(path.name, digest, len(content))
@@ -67,18 +143,20 @@ def fit_experiments(
 
 
 def _rows_of_run(
-    campaign: Campaign, plan: ExperimentPlan, run: str, coded: tuple[float, ...], path: Path
+    campaign: Campaign, plan: ExperimentPlan, run: str, coded: tuple[float, ...], path: Path | None
 ) -> list[_Row]:
     """One row a specimen of a run; a run without an archive has one that says so."""
     log = run.partition(".")[0]
     specimens = campaign.tests[log].specimens
     about = {"run": run, "coded": coded}
+    missing = {"remark": "its test failed" if path is None else "its test gave no product"}
     try:
+        if path is None:
+            return [about | missing | {"specimen": name} for name in specimens]
         with open_archive(path) as archive:
             given = [str(name) for name in archive["specimen"].values]
             return [about | _row(plan, archive, given.index(name), name) for name in specimens]
     except ArchiveError:
-        missing = {"remark": "its test gave no product"}
         return [about | missing | {"specimen": name} for name in specimens]
 
 

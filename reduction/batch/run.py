@@ -8,8 +8,10 @@ from pathlib import Path
 
 from reduction import __version__
 from reduction.archive.dataset import to_dataset
+from reduction.archive.products import test_archives
 from reduction.archive.write import write_archive, write_whole
 from reduction.batch.describe import describe, settings_json
+from reduction.batch.experiments import ExperimentStatus, write_experiments
 from reduction.batch.history import history_of, history_remarks
 from reduction.batch.models import fit_strain_models
 from reduction.batch.outcome import note_message, status_row
@@ -37,6 +39,7 @@ class CampaignResult:
     """What a run did: one status a test, and what it wrote."""
 
     tests: tuple[TestStatus, ...]
+    experiments: tuple[ExperimentStatus, ...]
     processed: Path
     report: Path | None
     stray: tuple[str, ...]
@@ -44,7 +47,8 @@ class CampaignResult:
     @property
     def exit_status(self) -> int:
         """The highest seen."""
-        return max((test.exit_status for test in self.tests), default=0)
+        seen = [test.exit_status for test in self.tests]
+        return max([*seen, *(one.exit_status for one in self.experiments)], default=0)
 
 
 def _selected(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
@@ -255,6 +259,10 @@ def run_campaign(
         statuses.append(
             status_row(campaign, survey, status, error=error, message=message, seconds=seconds)
         )
+    now_failed = {status.test for status in statuses if status.status == "failed"}
+    experiments = write_experiments(
+        campaign, folder, failed=now_failed.union(failed), command=command
+    )
     if progress is not None:
         progress("tables", campaign.id)
     ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
@@ -268,8 +276,8 @@ def run_campaign(
         if progress is not None:
             progress("report", campaign.id)
         report = write_report(folder, reports / campaign.id, units=units)
-    stray = sorted(path.name for path in folder.glob("*.nc") if path not in ours)
-    return CampaignResult(tuple(statuses), folder, report, tuple(stray))
+    stray = sorted(path.name for path in test_archives(folder) if path not in ours)
+    return CampaignResult(tuple(statuses), tuple(experiments), folder, report, tuple(stray))
 
 
 def _all_rows(

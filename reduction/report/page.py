@@ -17,6 +17,7 @@ from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
 
 from reduction import __version__
 from reduction.archive.open import open_archive
+from reduction.archive.products import test_archives
 from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
 from reduction.report.designtables import design_tables
@@ -64,7 +65,7 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     ArchiveError
         If the folder holds neither an archive nor a status.csv, or the disk refuses.
     """
-    paths = sorted(processed.glob("*.nc"), key=lambda path: natural_order(path.stem))
+    paths = sorted(test_archives(processed), key=lambda path: natural_order(path.stem))
     statuses = _read_statuses(processed / "status.csv")
     if not paths and not statuses:
         raise ArchiveError(

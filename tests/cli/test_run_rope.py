@@ -1,5 +1,6 @@
 """The synthetic nylon line, from its logs to the three-parameter line of each run."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -114,3 +115,75 @@ def test_the_compliance_checker_finds_nothing(run):
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout
+
+
+@pytest.fixture(scope="module")
+def surfaces(run):
+    with open_archive(run.processed / "surfaces.nc") as archive:
+        yield archive.load()
+
+
+def test_the_experiment_is_fitted(run):
+    assert [(one.id, one.exit_status) for one in run.experiments] == [("nylon", 0)]
+    assert run.experiments[0].message.startswith("nylon: 15 of 15 runs of a box-behnken design")
+
+
+@pytest.mark.parametrize(
+    ("response", "surface", "unit", "tolerance"),
+    [
+        ("apparent_spring_constant", "apparent_spring_constant", LBF, 5e-3),
+        ("hysteresis_energy", "log_hysteresis_energy", LBF, 1e-2),
+        ("dissipation_spring_constant", "dissipation_spring_constant", LBF, 2e-2),
+        ("relaxation_time", "relaxation_time", 1.0, 3e-2),
+    ],
+)
+def test_surfaces_give_back_the_line_at_the_centre_and_the_edges(
+    surfaces, truth, response, surface, unit, tolerance
+):
+    # the quadratic by hand, in the printed order, at the planned levels
+    x, y, z = (truth[f"x_{name}"] for name in ("frequency", "mean_tension", "tension_amplitude"))
+    terms = [1 + 0 * x, x * x, y * y, z * z, x, y, z, x * y, x * z, y * z]
+    coefficient = surfaces[f"{surface}_coefficient"].to_numpy()[0]
+    value = sum(b * term for b, term in zip(coefficient, terms, strict=True))
+    value = np.exp(value) if surface.startswith("log_") else value
+    expected = truth[response] * unit
+    assert len(set(zip(x, y, z, strict=True))) == 13
+    assert value.to_numpy() == pytest.approx(expected.to_numpy(), rel=tolerance)
+
+
+def test_engineering_coefficients_are_the_same_surface(surfaces):
+    coded = surfaces["apparent_spring_constant_coefficient"].to_numpy()[0]
+    engineering = surfaces["apparent_spring_constant_coefficient_engineering"].to_numpy()[0]
+    # half way from the centre to (+, -, +) on each factor
+    point = np.array([0.5, -0.5, 0.5])
+    low, high = (surfaces[f"factor_{end}"].to_numpy()[0] for end in ("low", "high"))
+    level = (low + high) / 2 + point * (high - low) / 2
+
+    def quadratic(b, v):
+        squares, pairs = v**2, np.array([v[0] * v[1], v[0] * v[2], v[1] * v[2]])
+        return b[0] + b[1:4] @ squares + b[4:7] @ v + b[7:] @ pairs
+
+    assert quadratic(engineering, level) == pytest.approx(quadratic(coded, point), rel=1e-9)
+
+
+def test_levels_are_those_reached(surfaces, truth):
+    reached = surfaces["run_level"].to_numpy()[0]
+    planned = truth[["frequency_hz", "mean_tension", "tension_amplitude"]].to_numpy()
+    assert reached == pytest.approx(planned * [1, LBF, LBF], rel=2e-3)
+    assert not np.array_equal(reached, planned * [1, LBF, LBF])
+
+
+def test_a_failed_run_leaves_fourteen_and_says_so(run, tmp_path):
+    folder = tmp_path / "raw"
+    shutil.copytree(RAW, folder)
+    (folder / "R04.csv").write_text("time_s,stroke_in,load_lbf,extensometer_pct\n")
+    shutil.copytree(run.processed, tmp_path / "p" / "nylon-synthetic")
+    again = run_campaign(
+        load_campaign(folder / "campaign.toml"), processed=tmp_path / "p",
+        reports=tmp_path / "r", clock=lambda: 0.0,
+    )  # fmt: skip
+    assert again.exit_status == 3
+    assert again.experiments[0].message.startswith("nylon: 14 of 15 runs")
+    with open_archive(again.processed / "surfaces.nc") as archive:
+        assert "R04: its test failed" in archive["note"].to_numpy().tolist()
+    assert (again.processed / "R04.nc").exists()
