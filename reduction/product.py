@@ -78,7 +78,7 @@ class ReducedTest:
     standard uncertainties one value a specimen; they are NaN where a sample is not usable,
     while ``record`` keeps what was logged.  Parts that the kind of test does not give are
     None (or empty); `notes` are the quality notes a reader must see,
-    `steps` the history lines, `settings_json` every setting that was in force.
+    `stage_lines` the lines of the history, `settings_json` every setting that was in force.
     ``line`` has one entry a cycle and ``line_of_test`` one a specimen, from the means over the
     cycles, with ``quasi_static_standard_uncertainty`` [N] of the K_0 that both used; ``pulls``
     is what a slow pull gave, None for a specimen of which it gave nothing.
@@ -88,7 +88,7 @@ class ReducedTest:
     specimens: tuple[Specimen, ...]
     record: Record | None
     sources: tuple[Source, ...]
-    steps: tuple[Step, ...]
+    stage_lines: tuple[Step, ...]
     settings_json: str
     notes: tuple[str, ...]
     history: History | None = None

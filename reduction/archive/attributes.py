@@ -44,7 +44,7 @@ def global_attributes(test: ReducedTest, *, version: str, command: str) -> dict[
             "raw_metadata": "" if test.record is None else _as_json(test.record.metadata),
             "settings": test.settings_json,
         },
-        steps=test.steps,
+        steps=test.stage_lines,
         version=version,
         command=command,
     )

@@ -29,7 +29,7 @@ from reduction.archive.per_cycle import (
 from reduction.archive.samples import row_account, sample_values
 from reduction.archive.schema import schema_of
 from reduction.archive.specimens import history_values, specimen_values, strain_model_values
-from reduction.archive.steps import stepwise_values
+from reduction.archive.stepwise import stepwise_values
 from reduction.archive.values import Values
 from reduction.product import ReducedTest
 

@@ -9,7 +9,7 @@ import numpy as np
 from reduction.batch.survey import Survey
 from reduction.moduli.slack import slack_crossings
 from reduction.product import History
-from reduction.strain.fit import free_length_strain_of
+from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
 
 __all__ = ["history_of", "history_remarks"]
@@ -23,12 +23,12 @@ def _greatest_strain(survey: Survey, name: str, models: Models) -> float:
     NaN where the test failed, or has no number of it.
     """
     model = models.get((survey.plan.id, name))
-    if survey.steps is not None or (model is not None and model.method == "extensometer"):
+    if survey.step_readings is not None or (model is not None and model.method == "extensometer"):
         return survey.greatest_measured_strain.get(name, float("nan"))
     if model is None or name not in survey.greatest:
         return float("nan")
     position, tension = survey.greatest[name]
-    return float(np.nanmax(free_length_strain_of(model, position=position, tension=tension)))
+    return float(np.nanmax(strain_by_model(model, position=position, tension=tension)))
 
 
 def _set_after_rest(

@@ -22,7 +22,7 @@ from reduction.batch.survey import Survey, as_reduction_error, located_again, su
 from reduction.campaign.plan import Campaign
 from reduction.errors import SettingsError
 from reduction.line.product import SlowPull
-from reduction.pipeline.reduce import reduce_steps, reduce_test
+from reduction.pipeline.reduce import reduce_stepwise_test, reduce_test
 from reduction.product import History, ReducedTest
 from reduction.report.page import write_report
 from reduction.strain.model import StrainModel
@@ -142,9 +142,9 @@ def reduce_survey(
     """
     description = describe(campaign, survey)
     specimens = tuple(campaign.specimens[name] for name in survey.plan.specimens)
-    if survey.steps is not None:
-        return reduce_steps(
-            survey.steps,
+    if survey.step_readings is not None:
+        return reduce_stepwise_test(
+            survey.step_readings,
             description=description,
             specimens=specimens,
             history=history,

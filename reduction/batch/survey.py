@@ -17,12 +17,13 @@ from reduction.campaign.plan import Campaign, StepPlan, TestPlan
 from reduction.errors import DataError, LogError, ReductionError
 from reduction.ingest.datum import length_at_slack
 from reduction.ingest.record_of_test import read_record
-from reduction.ingest.steps import read_step_readings
+from reduction.ingest.stepwise import read_step_readings
 from reduction.moduli.stepwise import greatest_step_strain
 from reduction.pipeline.locate import Located, locate
 from reduction.provenance import Source
 from reduction.record import Floats, Record, SpliceMarks, StepReadings
-from reduction.strain.fit import measure_mark_tension, zero_strain_position
+from reduction.strain.fit import zero_strain_position
+from reduction.strain.marks import measure_mark_tension
 
 __all__ = ["Survey", "as_reduction_error", "located_again", "read_test", "survey_campaign"]
 
@@ -48,7 +49,7 @@ class Survey:
     plan: TestPlan
     sources: tuple[Source, ...] = ()
     located: Located | None = None
-    steps: StepReadings | None = None
+    step_readings: StepReadings | None = None
     n_rows: int = 0
     n_cycles: int = 0
     mark_tension: dict[str, Floats] = field(default_factory=dict)
@@ -141,7 +142,7 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
     files = [(campaign.file(name), campaign.layouts[layout], name) for name, layout in plan.files]
     if plan.kind == "stepwise":
         readings, sources = read_step_readings(files, test_id=plan.id)
-        survey = Survey(plan, sources, steps=readings, n_rows=readings.time.size)
+        survey = Survey(plan, sources, step_readings=readings, n_rows=readings.time.size)
         for name in plan.specimens[:1]:  # weights hang from one specimen
             gauge = campaign.specimens[name].gauge_length
             survey.greatest_tension[name] = float(readings.tension.max())

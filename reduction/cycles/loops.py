@@ -12,11 +12,11 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.blocks import run_blocks
 from reduction.cycles.energy import loop_energy, sums_over_cycles, without_drift
 from reduction.cycles.harmonic import CycleBasis, cycle_basis, fundamental, mean_drift, part_means
 from reduction.cycles.product import Cycles, Loops
 from reduction.record import Bools, Floats, Integers
+from reduction.workers import run_blocks
 
 __all__ = ["close_loops", "reading_noise"]
 

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.blocks import run_blocks
 from reduction.errors import DataError
 from reduction.ingest.constant import find_saturated, find_stuck, find_stuck_position
 from reduction.ingest.quality import (
@@ -22,6 +21,7 @@ from reduction.ingest.quality import (
 from reduction.ingest.stamps import bridge_stamps
 from reduction.record import Bools, Floats, Quality, Record
 from reduction.settings import QualitySettings
+from reduction.workers import run_blocks
 
 __all__ = ["flag_record"]
 

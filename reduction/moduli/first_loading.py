@@ -17,7 +17,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reduction.blocks import run_blocks
 from reduction.moduli.blur import window_blur
 from reduction.moduli.grid import StrainGrid, bins_each_side, round_number
 from reduction.moduli.moments import LocalFits, accumulate_moments, fit_windows
@@ -27,6 +26,7 @@ from reduction.moduli.tangent import pair_specimens
 from reduction.phases.standstill import Standstills
 from reduction.record import Bools, Floats
 from reduction.settings import ModulusSettings
+from reduction.workers import run_blocks
 
 __all__ = ["first_loading_curves"]
 

@@ -12,12 +12,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.blocks import run_blocks
 from reduction.cycles.product import Cycles
 from reduction.moduli.cells import sums_by_cell
 from reduction.moduli.product import CycleIdentity
 from reduction.moduli.tangent import pair_specimens
 from reduction.record import Floats
+from reduction.workers import run_blocks
 
 __all__ = ["check_identity"]
 

@@ -17,7 +17,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.blocks import run_blocks
 from reduction.cycles.product import Loops
 from reduction.errors import DataError
 from reduction.moduli.product import Slips
@@ -26,6 +25,7 @@ from reduction.moduli.stepscan import ramp_of
 from reduction.moduli.stepsize import Step, step_sizes
 from reduction.record import Floats, Integers
 from reduction.settings import SlipSettings
+from reduction.workers import run_blocks
 
 __all__ = ["cycle_tension_level", "find_slips"]
 

@@ -17,7 +17,6 @@ from operator import add
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.blocks import run_blocks
 from reduction.checks import as_positive, as_same_shape
 from reduction.cycles.product import Cycles
 from reduction.errors import DataError
@@ -29,6 +28,7 @@ from reduction.moduli.product import ModulusCurves
 from reduction.moduli.running import RunningStatistics
 from reduction.record import Floats, Integers
 from reduction.settings import ModulusSettings
+from reduction.workers import run_blocks
 
 __all__ = ["tangent_curves"]
 

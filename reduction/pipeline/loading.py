@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from reduction.blocks import run_blocks
 from reduction.errors import DataError, FitError
 from reduction.moduli.elastomer import fit_elastomers
 from reduction.moduli.first_loading import first_loading_curves
@@ -17,6 +16,7 @@ from reduction.pipeline.locate import Located
 from reduction.product import History
 from reduction.record import Floats, Specimen, areas_of
 from reduction.settings import ReductionSettings
+from reduction.workers import run_blocks
 
 __all__ = ["parts_of_first_loading"]
 

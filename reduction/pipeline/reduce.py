@@ -2,7 +2,7 @@
 
 `reduction.pipeline.locate` finds where the test stands still and where it cycles; the
 tension at the splice marks is measured there.  `reduce_test` does the rest once the marks
-of all tests of a specimen have been pooled.  `reduce_steps` is for tests read by a person.
+of all tests of a specimen have been pooled.  `reduce_stepwise_test` is for tests read by a person.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from reduction.blocks import run_blocks
 from reduction.cycles.label import label_phases
 from reduction.errors import DataError
 from reduction.holds.reduce import reduce_holds
@@ -31,11 +30,12 @@ from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
 from reduction.record import Floats, Quality, Record, Specimen, StepReadings
 from reduction.settings import ReductionSettings
-from reduction.strain.evaluate import extrapolated, free_length_strain_of
+from reduction.strain.evaluate import extrapolated, strain_by_model
 from reduction.strain.model import StrainModel
 from reduction.strain.stress import check_constant_volume, nominal_stress
+from reduction.workers import run_blocks
 
-__all__ = ["reduce_steps", "reduce_test", "strain_of_record"]
+__all__ = ["reduce_stepwise_test", "reduce_test", "strain_of_record"]
 
 _BLOCK = 1 << 16  # samples that stay in the cache
 
@@ -139,7 +139,7 @@ def reduce_test(
         specimens=specimens,
         record=_flag(located, models),
         sources=sources,
-        steps=_steps(located, models),
+        stage_lines=_stage_lines(located, models),
         settings_json=settings_json,
         notes=tuple(dict.fromkeys(notes)),
         history=history,
@@ -156,7 +156,7 @@ def reduce_test(
     )
 
 
-def reduce_steps(
+def reduce_stepwise_test(
     readings: StepReadings,
     *,
     description: TestDescription,
@@ -181,7 +181,7 @@ def reduce_steps(
         specimens=specimens,
         record=None,
         sources=sources,
-        steps=(
+        stage_lines=(
             Step("ingest", f"{readings.tension.size} readings"),
             Step("moduli", "gauge length recovered, slopes between readings"),
         ),
@@ -217,7 +217,7 @@ def strain_of_record(
 
     def fill(place: tuple[int, slice]) -> None:
         index, part = place
-        strain[place] = free_length_strain_of(
+        strain[place] = strain_by_model(
             models[index],
             position=position[part],
             tension=tension[place],
@@ -264,10 +264,10 @@ def _no_hold(standstills: Standstills, settings: ReductionSettings) -> str:
     )
 
 
-def _steps(located: Located, models: Sequence[StrainModel]) -> tuple[Step, ...]:
+def _stage_lines(located: Located, models: Sequence[StrainModel]) -> tuple[Step, ...]:
     """One line a stage, with the numbers it found."""
     record, standstills, cycles = located.record, located.standstills, located.cycles
-    steps = [
+    lines = [
         Step("ingest", f"{record.n_rows_read} rows read, {record.n_samples} kept"),
         Step(
             "phases",
@@ -283,10 +283,10 @@ def _steps(located: Located, models: Sequence[StrainModel]) -> tuple[Step, ...]:
     ]
     for model in models:
         numbers = ", ".join(f"{name} {value:.6g}" for name, value in model.coefficients.items())
-        steps.append(Step("strain", f"{model.specimen} by {model.method}: {numbers}"))
+        lines.append(Step("strain", f"{model.specimen} by {model.method}: {numbers}"))
     if cycles is not None:
-        steps.append(
+        lines.append(
             Step("cycles", f"{cycles.n_cycles} by {cycles.counted_by}, band {cycles.band:.4g}")
         )
-        steps.append(Step("moduli", "regression in a moving window on a strain grid, SI"))
-    return tuple(steps)
+        lines.append(Step("moduli", "regression in a moving window on a strain grid, SI"))
+    return tuple(lines)

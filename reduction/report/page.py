@@ -30,7 +30,7 @@ from reduction.report.figures.campaign import (
 )
 from reduction.report.section import Section, make_part, make_section
 from reduction.report.specimentables import specimen_notes, specimen_table
-from reduction.report.steptables import interval_table
+from reduction.report.stepwisetables import interval_table
 from reduction.report.summary import find_faults, summary_sentence, test_table, tiles
 from reduction.report.testtables import segment_table
 from reduction.report.view import Status, TestView, any_synthetic, natural_order

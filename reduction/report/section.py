@@ -12,7 +12,7 @@ from reduction.report.figures.holds import draw_holds
 from reduction.report.figures.loops import draw_loops
 from reduction.report.figures.moduli import draw_cycle_curves, draw_moduli
 from reduction.report.figures.record import draw_record, draw_tension_position
-from reduction.report.figures.steps import draw_steps
+from reduction.report.figures.stepwise import draw_steps
 from reduction.report.figures.trends import draw_trends
 from reduction.report.holdtables import hold_table, prony_table, refusals
 from reduction.report.htmltable import Table
@@ -22,7 +22,7 @@ from reduction.report.specimentables import (
     mark_table,
     slope_sentences,
 )
-from reduction.report.steptables import interval_table, step_table
+from reduction.report.stepwisetables import interval_table, step_table
 from reduction.report.summary import grouped_notes
 from reduction.report.testtables import (
     elastomer_table,

@@ -27,7 +27,7 @@ from reduction.strain.methods import (
 from reduction.strain.model import StrainModel
 from reduction.strain.splice import free_length_strain
 
-__all__ = ["extrapolated", "free_length_strain_of", "strain_sensitivity_of"]
+__all__ = ["extrapolated", "strain_by_model", "strain_sensitivity_of"]
 
 _OF_POSITION: dict[StrainMethod, Callable[..., Floats]] = {
     "marks": marked_line_strain,
@@ -39,7 +39,7 @@ _OF_POSITION: dict[StrainMethod, Callable[..., Floats]] = {
 _MARGIN = 0.01
 
 
-def free_length_strain_of(
+def strain_by_model(
     model: StrainModel,
     *,
     position: ArrayLike,
@@ -81,7 +81,7 @@ def free_length_strain_of(
 
     >>> line = StrainModel("used", "marks", {"free_length_intercept": -0.83512,
     ...     "free_length_slope": 0.90527, "relaxed_free_length": 2.542})
-    >>> print(free_length_strain_of(line, position=[6.629], tension=[480.0]).round(3))
+    >>> print(strain_by_model(line, position=[6.629], tension=[480.0]).round(3))
     [1.032]
     """
     if model.method == "extensometer":
@@ -193,7 +193,7 @@ def strain_sensitivity_of(
         value = model.coefficients[name]
         step = 1e-5 * (abs(value) or 1.0)
         high, low = (
-            free_length_strain_of(
+            strain_by_model(
                 replace(model, coefficients={**model.coefficients, name: value + sign * step}),
                 position=position,
                 tension=tension,

@@ -19,20 +19,12 @@ from reduction.errors import DataError, FitError
 from reduction.phases.standstill import Standstills
 from reduction.record import Specimen, SpliceMarks
 from reduction.settings import StrainMethod, StrainSettings
-from reduction.strain.evaluate import extrapolated, free_length_strain_of
-from reduction.strain.marks import check_marks, measure_mark_tension
+from reduction.strain.marks import check_marks
 from reduction.strain.model import StrainModel
 from reduction.strain.pool import TENSION_SPAN, PooledMarks, fit_to_marks
 from reduction.strain.remarks import remarks_on
 
-# the doors of this room: measure, fit, evaluate
-__all__ = [
-    "extrapolated",
-    "fit_strain_model",
-    "free_length_strain_of",
-    "measure_mark_tension",
-    "zero_strain_position",
-]
+__all__ = ["fit_strain_model", "zero_strain_position"]
 
 
 def zero_strain_position(

@@ -27,7 +27,7 @@ class StrainModel:
     method : StrainMethod
         Which of the six methods.
     coefficients : dict of str to float
-        By full name, SI; what `free_length_strain_of` needs. For
+        By full name, SI; what `strain_by_model` needs. For
         ``tension-driven``: ``relaxed_free_length`` [m], ``relaxed_splice_length``
         [m], ``splice_compliance`` c [N**-n] and ``splice_exponent`` n [1].
     covariance : ndarray, shape (n_coefficients, n_coefficients)

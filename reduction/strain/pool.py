@@ -24,7 +24,7 @@ from reduction.strain.calibration import (
     line_slope,
     relaxed_lengths,
 )
-from reduction.strain.evaluate import free_length_strain_of
+from reduction.strain.evaluate import strain_by_model
 from reduction.strain.law import fit_splice_law
 from reduction.strain.model import StrainModel
 from reduction.strain.splice import free_length_fraction
@@ -199,7 +199,7 @@ def _slope_ratio(model: StrainModel, readings: PooledMarks) -> float:
     position = readings.marks.far_thimble[rows]
     if np.unique(position).size < 2:
         return float("nan")
-    strain = free_length_strain_of(model, position=position, tension=readings.tension[rows])
+    strain = strain_by_model(model, position=position, tension=readings.tension[rows])
     legacy = _fit_constant_fraction(readings).coefficients
     return legacy["free_fraction"] / legacy["relaxed_free_length"] / line_slope(position, strain)
 
@@ -252,9 +252,7 @@ def fit_to_marks(method: StrainMethod, readings: PooledMarks) -> StrainModel:
     rows = np.sort(np.concatenate([np.flatnonzero(slack), stretched]))
     tension = np.where(slack, np.nan_to_num(readings.tension), readings.tension)
     strain = marks.free_length[rows] / model.coefficients["relaxed_free_length"] - 1
-    by_method = free_length_strain_of(
-        model, position=marks.far_thimble[rows], tension=tension[rows]
-    )
+    by_method = strain_by_model(model, position=marks.far_thimble[rows], tension=tension[rows])
     if method == "tension-driven":
         model = replace(
             model, tension_low=0.0, tension_high=float(readings.tension[stretched].max())

@@ -17,7 +17,7 @@ from scipy.stats import linregress
 
 from reduction.record import Bools, Floats, SpliceMarks
 from reduction.strain.calibration import line_slope
-from reduction.strain.evaluate import free_length_strain_of
+from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
 
 __all__ = ["remarks_on"]
@@ -117,8 +117,8 @@ def _on_reading_time(
     position = np.array([float(model.mark_position[is_stretched].max())])
     change = float(
         (
-            free_length_strain_of(at_start, position=position, tension=force)
-            - free_length_strain_of(model, position=position, tension=force)
+            strain_by_model(at_start, position=position, tension=force)
+            - strain_by_model(model, position=position, tension=force)
         )[0]
     )
     end, start = (

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.record import Floats
-from reduction.strain.evaluate import free_length_strain_of, strain_sensitivity_of
+from reduction.strain.evaluate import strain_by_model, strain_sensitivity_of
 from reduction.strain.model import StrainModel
 
 __all__ = ["strain_uncertainty_of"]
@@ -89,7 +89,7 @@ def strain_uncertainty_of(
             continue
         # a step of one standard uncertainty: finite where a law is steep near no tension
         high, low = (
-            free_length_strain_of(
+            strain_by_model(
                 model,
                 position=place + sign * shift_position,
                 tension=load + sign * shift_tension,

@@ -8,7 +8,8 @@ import pytest
 
 from reduction.record import Specimen, SpliceMarks
 from reduction.settings import StrainSettings
-from reduction.strain.fit import fit_strain_model, free_length_strain_of
+from reduction.strain.evaluate import strain_by_model
+from reduction.strain.fit import fit_strain_model
 from reduction.strain.stress import check_constant_volume, constant_volume_diameter
 
 HERE = Path(__file__).parent
@@ -65,7 +66,7 @@ def model_of(tether, method):
 def strain_percent(tether, method):
     marks = marks_of(tether)
     position = marks.far_thimble[~marks.is_slack]
-    return 100 * free_length_strain_of(
+    return 100 * strain_by_model(
         model_of(tether, method), position=position, tension=np.full(3, np.nan)
     )
 

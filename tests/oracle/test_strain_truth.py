@@ -15,12 +15,9 @@ from reduction.campaign.marks import read_marks
 from reduction.phases.standstill import Standstills
 from reduction.record import Specimen
 from reduction.settings import StrainSettings
-from reduction.strain.fit import (
-    extrapolated,
-    fit_strain_model,
-    free_length_strain_of,
-    measure_mark_tension,
-)
+from reduction.strain.evaluate import extrapolated, strain_by_model
+from reduction.strain.fit import fit_strain_model
+from reduction.strain.marks import measure_mark_tension
 
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 FOOT, LBF = 0.3048, 4.4482216152605
@@ -104,7 +101,7 @@ def test_tension_driven_is_the_default_and_gives_true_strain_and_slope(campaign,
     position, tension, expected = truth[test, name]
     fitted = model(campaign, test, name)
     assert fitted.method == "tension-driven"
-    strain = free_length_strain_of(fitted, position=position, tension=tension)
+    strain = strain_by_model(fitted, position=position, tension=tension)
     assert 100 * np.abs(strain - expected).max() < POINTS
     assert all(abs(error) < SLOPE for error in slope_errors(position, strain, expected))
     assert not extrapolated(fitted, position, tension).any()
@@ -132,7 +129,7 @@ def test_a_line_of_position_fails_where_the_rubber_has_relaxed(campaign, truth, 
     """Marks are read on the first pull; in the cycles of T-6 tension is a fifth lower."""
     position, tension, expected = truth["T-6", name]
     fitted = model(campaign, "T-6", name, "marks")
-    strain = free_length_strain_of(fitted, position=position, tension=tension)
+    strain = strain_by_model(fitted, position=position, tension=tension)
     assert 100 * np.abs(strain - expected).max() > 5
 
 
@@ -142,6 +139,6 @@ def test_constant_fraction_reads_t_1_moduli_ten_to_twenty_per_cent_high(
 ):
     position, tension, expected = truth["T-1", name]
     fitted = model(campaign, "T-1", name, "constant-fraction")
-    strain = free_length_strain_of(fitted, position=position, tension=tension)
+    strain = strain_by_model(fitted, position=position, tension=tension)
     for error in slope_errors(position, strain, expected):
         assert low < 1 / (1 + error) - 1 < high

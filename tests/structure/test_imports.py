@@ -14,7 +14,7 @@ LAYER = {
     "units": 0,
     "vocabulary": 0,
     "provenance": 0,
-    "blocks": 0,
+    "workers": 0,
     "record": 1,
     "settings": 1,
     "checks": 1,
@@ -94,7 +94,7 @@ def test_imports_below_the_edge_are_numpy_and_scipy(path):
         "__future__", "collections", "dataclasses", "enum", "functools", "json", "math", "re",
         "typing", "pathlib", "itertools", "operator",
     }  # fmt: skip
-    if room(path) == "blocks":  # threads start in one place
+    if room(path) == "workers":  # threads start in one place
         standard |= {"os", "concurrent"}
     for parts, line in imports(path):
         assert parts[0] in standard | BELOW_THE_EDGE, f"{path}:{line}: {parts[0]}"

@@ -34,7 +34,7 @@ from reduction.strain.model import StrainModel
 
 N_SAMPLES, N_CYCLES, N_BINS, N_SEGMENTS = 60, 4, 5, 3
 SOURCE = Source("T-1.csv", "ab" * 32, 12345)
-STEPS = (Step("ingest", "read 61 rows"), Step("cycles", "4 cycles, band 0.02 m"))
+STAGE_LINES = (Step("ingest", "read 61 rows"), Step("cycles", "4 cycles, band 0.02 m"))
 SYNTHETIC = {
     "title": "Cycle tests of a new and a used tether",
     "institution": "A laboratory",
@@ -292,7 +292,7 @@ def rich_test():
         specimens=specimens,
         record=make_record(rng, ("new", "used")),
         sources=(SOURCE, Source("T-1b.csv", "cd" * 32, 99)),
-        steps=STEPS,
+        stage_lines=STAGE_LINES,
         settings_json='{"cycles": {"band": null}}',
         notes=("=1+1 looks like a formula", "the last cycle is broken"),
         history=History(
@@ -375,7 +375,7 @@ def holds_only_test():
         specimens=(Specimen("new"),),
         record=make_record(rng, ("new",), "hold"),
         sources=(SOURCE,),
-        steps=STEPS,
+        stage_lines=STAGE_LINES,
         settings_json="{}",
         notes=(),
         holds=(make_hold(rng, "new", n_terms=0),),
@@ -401,7 +401,7 @@ def bare_test():
             position_is_length=False,
         ),
         sources=(SOURCE,),
-        steps=STEPS,
+        stage_lines=STAGE_LINES,
         settings_json="{}",
         notes=(),
         slips=Slips((), *[np.empty(0, dtype=int)] * 3, *[np.empty(0)] * 4, np.array([np.nan])),
@@ -417,7 +417,7 @@ def stepwise_test():
         specimens=(Specimen("tether", diameter=(0.0257,), gauge_length=0.1556),),
         record=None,
         sources=(SOURCE,),
-        steps=STEPS,
+        stage_lines=STAGE_LINES,
         settings_json="{}",
         notes=(),
         stepwise=StepwiseResult(

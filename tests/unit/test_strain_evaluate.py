@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError
-from reduction.strain.evaluate import extrapolated, free_length_strain_of, strain_sensitivity_of
+from reduction.strain.evaluate import extrapolated, strain_by_model, strain_sensitivity_of
 from reduction.strain.methods import (
     gauge_length_strain,
     marked_line_strain,
@@ -46,22 +46,22 @@ TENSION_DRIVEN = StrainModel("new", "tension-driven", LAW, tension_low=0.0, tens
 @pytest.mark.parametrize("method", list(OF_POSITION))
 def test_each_method_of_position_is_evaluated_by_its_own_formula(method):
     function, coefficients = OF_POSITION[method]
-    found = free_length_strain_of(
+    found = strain_by_model(
         StrainModel("new", method, coefficients), position=POSITION, tension=TENSION
     )
     np.testing.assert_array_equal(found, function(POSITION, **coefficients))
 
 
 def test_tension_driven_uses_the_tension():
-    found = free_length_strain_of(TENSION_DRIVEN, position=POSITION, tension=TENSION)
+    found = strain_by_model(TENSION_DRIVEN, position=POSITION, tension=TENSION)
     np.testing.assert_array_equal(found, tension_driven_strain(POSITION, TENSION, **LAW))
 
 
 def test_a_block_of_a_log_gives_what_the_whole_log_gives():
     position, tension = np.linspace(4, 9, 1000), np.linspace(10, 900, 1000)
-    whole = free_length_strain_of(TENSION_DRIVEN, position=position, tension=tension)
+    whole = strain_by_model(TENSION_DRIVEN, position=position, tension=tension)
     blocks = [
-        free_length_strain_of(TENSION_DRIVEN, position=p, tension=f)
+        strain_by_model(TENSION_DRIVEN, position=p, tension=f)
         for p, f in zip(np.split(position, 8), np.split(tension, 8), strict=True)
     ]
     np.testing.assert_allclose(np.concatenate(blocks), whole, rtol=1e-14)
@@ -69,7 +69,7 @@ def test_a_block_of_a_log_gives_what_the_whole_log_gives():
 
 def test_the_extensometer_is_believed():
     model = StrainModel("rope", "extensometer")
-    found = free_length_strain_of(
+    found = strain_by_model(
         model, position=POSITION, tension=TENSION, measured_strain=[0.01, 0.02, np.nan]
     )
     np.testing.assert_array_equal(found, [0.01, 0.02, np.nan])
@@ -77,9 +77,7 @@ def test_the_extensometer_is_believed():
 
 def test_an_extensometer_that_is_not_there_is_missed():
     with pytest.raises(DataError, match="to come from an extensometer, and the log has none"):
-        free_length_strain_of(
-            StrainModel("rope", "extensometer"), position=POSITION, tension=TENSION
-        )
+        strain_by_model(StrainModel("rope", "extensometer"), position=POSITION, tension=TENSION)
 
 
 def test_a_position_outside_the_marks_is_extrapolated():

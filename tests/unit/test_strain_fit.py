@@ -7,7 +7,8 @@ from reduction.errors import DataError, FitError
 from reduction.phases.standstill import Standstills
 from reduction.record import Specimen, SpliceMarks
 from reduction.settings import StrainSettings
-from reduction.strain.fit import fit_strain_model, free_length_strain_of, zero_strain_position
+from reduction.strain.evaluate import strain_by_model
+from reduction.strain.fit import fit_strain_model, zero_strain_position
 from reduction.strain.pool import PooledMarks, fit_to_marks
 
 L0, LS = 2.55, 1.18
@@ -207,7 +208,7 @@ def test_the_ratio_of_slopes_is_that_of_the_curves_over_the_own_marks():
     rows &= np.array(model.mark_hold) != "slack"
     position, force = model.mark_position[rows], model.mark_tension[rows]
     slopes = [
-        np.polyfit(position, free_length_strain_of(m, position=position, tension=force), 1)[0]
+        np.polyfit(position, strain_by_model(m, position=position, tension=force), 1)[0]
         for m in (legacy, model)
     ]
     assert model.strain_slope_ratio == pytest.approx(slopes[0] / slopes[1])

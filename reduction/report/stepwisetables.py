@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reduction.report.figures.steps import flagged_steps
+from reduction.report.figures.stepwise import flagged_steps
 from reduction.report.htmltable import Table, make_table, measured, number, words
 from reduction.report.style import shown
 from reduction.report.uncertainty import plus_minus_of_steps

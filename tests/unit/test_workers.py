@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from reduction import blocks
-from reduction.blocks import run_blocks
 from reduction.cycles.product import Cycles
 from reduction.moduli.tangent import tangent_curves
 from reduction.settings import ModulusSettings
+from reduction.workers import run_blocks
 
 
 def test_results_come_in_the_order_of_the_items() -> None:
