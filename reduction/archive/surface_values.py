@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reduction.archive.values import Values, texts
 from reduction.errors import ArchiveError
 from reduction.experiment import ExperimentResult, RunTable
 from reduction.line.single import VERDICTS, SingleTimeCheck
-from reduction.record import Integers
 from reduction.surface.product import (
     FIT_REASONS,
     LACK_OF_FIT_REASONS,
@@ -20,6 +17,7 @@ from reduction.surface.product import (
     ResponseSurfaces,
 )
 from reduction.surface.screening import ScreeningEffects
+from reduction.units import combined_unit
 from reduction.vocabulary import SURFACE_NAMES
 
 __all__ = ["experiment_values"]
@@ -69,7 +67,7 @@ def experiment_values(result: ExperimentResult) -> Values:
     Raises
     ------
     ArchiveError
-        If a response has no name, or a run of the surfaces is not a run of the experiment.
+        If a response has no name, or the surfaces are of other runs.
     """
     fitted = () if result.surfaces is None else result.surfaces.response_names
     strange = sorted({*result.response_names, *fitted} - set(SURFACE_NAMES))
@@ -97,10 +95,10 @@ def experiment_values(result: ExperimentResult) -> Values:
         "plan_column_name": texts([*result.factor_names, *dummies]),
     }
     if result.surfaces is not None:
-        place = _places(result.runs, result.surfaces)
-        values |= _shared_values(result, result.surfaces, place)
+        _require_same_runs(result.runs, result.surfaces)
+        values |= _shared_values(result.surfaces, result.factor_units)
         for index, name in enumerate(result.surfaces.response_names):
-            values |= _surface_values(result.surfaces, index, name, place, len(result.runs.run))
+            values |= _surface_values(result.surfaces, index, name)
     if result.screening is not None:
         values |= _effect_values(result.screening, result.response_names)
     if result.single_time is not None:
@@ -124,32 +122,25 @@ def _run_values(runs: RunTable, response_names: Sequence[str]) -> Values:
     return values
 
 
-def _places(runs: RunTable, surfaces: ResponseSurfaces) -> Integers:
-    """Row of the run table that each run of the surfaces is."""
-    rows = {name: row for row, name in enumerate(runs.names)}
-    strange = [name for name in surfaces.run_names if name not in rows]
-    if strange:
-        raise ArchiveError("a surface has runs that its experiment lacks", found=", ".join(strange))
-    return np.array([rows[name] for name in surfaces.run_names], dtype=np.int64)
+def _require_same_runs(runs: RunTable, surfaces: ResponseSurfaces) -> None:
+    strange = set(surfaces.run_names) ^ set(runs.names)
+    if surfaces.run_names != runs.names:
+        raise ArchiveError(
+            "the runs of the surfaces are not those of the experiment",
+            found=", ".join(sorted(strange)) or "another order",
+            needed="the runs of the experiment in their order, NaN where one is missing",
+        )
 
 
-def _at_runs(array: NDArray[Any], place: Integers, n_runs: int) -> NDArray[Any]:
-    """Put an entry a run of the surfaces at its run of the experiment; NaN elsewhere."""
-    placed = np.full((n_runs, *array.shape[1:]), np.nan)
-    placed[place] = array
-    return placed
-
-
-def _shared_values(result: ExperimentResult, surfaces: ResponseSurfaces, place: Integers) -> Values:
+def _shared_values(surfaces: ResponseSurfaces, factor_units: Sequence[str]) -> Values:
     """What all surfaces of an experiment have in common."""
-    n_runs = len(result.runs.run)
-    cell = np.zeros(n_runs, dtype=np.int32)
-    cell[place] = surfaces.lack_of_fit.cell + 1
     values: Values = {
         "term": texts(surfaces.labels),
         "term_other": texts(surfaces.labels),
         "term_name": texts(surfaces.term_names),
-        "term_unit_engineering": texts(_term_units(surfaces.exponents, result.factor_units)),
+        "term_unit_engineering": texts(
+            [combined_unit("1", factor_units, powers) for powers in surfaces.exponents]
+        ),
         "term_error": texts(surfaces.error_term),
         "term_exponent": surfaces.exponents,
         "direction": np.arange(1, len(surfaces.factor_names) + 1),
@@ -157,46 +148,23 @@ def _shared_values(result: ExperimentResult, surfaces: ResponseSurfaces, place: 
         "anova_error_term": texts(surfaces.anova.error_term),
         "replicate_tolerance": np.array(surfaces.lack_of_fit.tolerance),
         "condition_number": np.array(surfaces.condition_number),
-        "run_coded_level": _at_runs(surfaces.coded, place, n_runs),
-        "run_cell": cell,
+        "run_coded_level": surfaces.coded,
+        "run_cell": surfaces.lack_of_fit.cell + 1,
     }
     if surfaces.blocks is not None:
-        block = np.full(n_runs, "", dtype=texts(surfaces.blocks.names).dtype)
-        block[place] = texts(surfaces.blocks.names)[surfaces.blocks.index]
+        names = texts(surfaces.blocks.names)
         values |= {
-            "block_name": texts(surfaces.blocks.names),
+            "block_name": names,
             "block_treatment": np.array(surfaces.blocks.treatment),
-            "run_block": block,
+            "run_block": names[surfaces.blocks.index],
         }
     return values
 
 
-def _term_units(exponents: Integers, factor_units: Sequence[str]) -> list[str]:
-    """Unit by which that of a response is multiplied: ``Hz-1 N-1``; 1 for the mean."""
-    return [
-        " ".join(
-            _power(part, -int(power))
-            for unit, power in zip(factor_units, row, strict=True)
-            for part in unit.split()
-            if power and part != "1"
-        )
-        or "1"
-        for row in exponents
-    ]
-
-
-def _power(part: str, power: int) -> str:
-    """One factor of a unit raised to a power: ``m-1`` by -2 is ``m2``."""
-    letters = part.rstrip("-0123456789")
-    raised = int(part.removeprefix(letters) or 1) * power
-    return letters if raised == 1 else f"{letters}{raised}"
-
-
-def _surface_values(
-    surfaces: ResponseSurfaces, index: int, name: str, place: Integers, n_runs: int
-) -> Values:
+def _surface_values(surfaces: ResponseSurfaces, index: int, name: str) -> Values:
     """One surface."""
     anova, lack, canonical = surfaces.anova, surfaces.lack_of_fit, surfaces.canonical
+    diagnostics = surfaces.diagnostics
     pattern = surfaces.pattern[index]
     of_response: Values = {
         "coefficient": surfaces.coefficient,
@@ -217,10 +185,16 @@ def _surface_values(
         "r2": surfaces.r2,
         "adjusted_r2": surfaces.adjusted_r2,
         "predicted_r2": surfaces.predicted_r2,
-        "probability_plot_correlation": surfaces.diagnostics.probability_plot_correlation,
+        "probability_plot_correlation": diagnostics.probability_plot_correlation,
         "overall_f": surfaces.overall_f,
         "overall_p_value": surfaces.overall_p_value,
         "printed_f": surfaces.printed_f,
+        "fitted": surfaces.fitted,
+        "residual": surfaces.residual,
+        "leverage": diagnostics.leverage,
+        "cooks_distance": diagnostics.cooks_distance,
+        "studentized_residual": diagnostics.studentized_residual,
+        "deleted_residual": diagnostics.deleted_residual,
         "lack_of_fit_f": lack.f,
         "lack_of_fit_p_value": lack.p_value,
         "anova_degrees_of_freedom": anova.degrees_of_freedom,
@@ -246,17 +220,6 @@ def _surface_values(
             "block_at_boundary": surfaces.blocks.at_boundary,
         }
     values = {f"{name}_{what}": array[index] for what, array in of_response.items()}
-    of_run: Values = {
-        "fitted": surfaces.fitted,
-        "residual": surfaces.residual,
-        "leverage": surfaces.diagnostics.leverage,
-        "cooks_distance": surfaces.diagnostics.cooks_distance,
-        "studentized_residual": surfaces.diagnostics.studentized_residual,
-        "deleted_residual": surfaces.diagnostics.deleted_residual,
-    }
-    values |= {
-        f"{name}_{what}": _at_runs(array[index], place, n_runs) for what, array in of_run.items()
-    }
     return values | {
         f"{name}_covariance_factor": surfaces.covariance_factor[pattern],
         f"{name}_n_runs": np.array(surfaces.is_used[pattern].sum()),

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from reduction.archive.attributes import experiment_attributes
 from reduction.archive.build import build_dataset
@@ -99,25 +101,30 @@ def _values_of(result: ExperimentResult) -> Values:
 
 def _stacked(parts: Sequence[Values]) -> Values:
     """Set experiments side by side; an axis of the file is the longest of its kind."""
-    sizes: dict[str, int] = {"experiment": len(parts)}
+    sizes: dict[str, int] = {}
     for part in parts:
         for name, array in part.items():
             for dim, length in zip(_own_dims(name), array.shape, strict=True):
                 sizes[dim] = max(length, sizes.get(dim, 0))
     values: Values = {}
     for name in dict.fromkeys(name for part in parts for name in part):
-        row, given = SURFACE_SCHEMA[name], [part[name] for part in parts if name in part]
-        if "experiment" not in row.dims:
-            values[name] = max(given, key=len)
-            continue
-        fill = "" if row.is_text else np.nan if row.dtype == "f8" else 0
-        kind = np.result_type(*given) if row.is_text else row.dtype
-        values[name] = np.full([sizes[dim] for dim in row.dims], fill, dtype=kind)
-        for number, part in enumerate(parts):
-            if name in part:
-                corner = tuple(slice(length) for length in part[name].shape)
-                values[name][(number, *corner)] = part[name]
+        if "experiment" in SURFACE_SCHEMA[name].dims:
+            shape = tuple(sizes[dim] for dim in _own_dims(name))
+            values[name] = np.stack([_padded(name, part.get(name), shape) for part in parts])
+        else:
+            values[name] = max((part[name] for part in parts if name in part), key=len)
     return values
+
+
+def _padded(name: str, array: NDArray[Any] | None, shape: tuple[int, ...]) -> NDArray[Any]:
+    """Bring an array to the length of the longest; all of it where there is none."""
+    row = SURFACE_SCHEMA[name]
+    fill = "" if row.is_text else np.nan if row.dtype == "f8" else 0
+    if array is None:
+        return np.full(shape, fill, dtype=row.dtype)
+    padded: NDArray[Any] = np.full(shape, fill, dtype=array.dtype if row.is_text else row.dtype)
+    padded[tuple(slice(length) for length in array.shape)] = array
+    return padded
 
 
 def _own_dims(name: str) -> tuple[str, ...]:
