@@ -1,8 +1,11 @@
-"""The way of the data on one page: located record, strain, cycles, moduli, holds.
+"""The way of the data in one test: from a located record to strain, cycles, moduli, holds.
 
-`reduction.pipeline.locate` finds where the test stands still and where it cycles; the
-tension at the splice marks is measured there.  `reduce_test` does the rest once the marks
-of all tests of a specimen have been pooled.  `reduce_stepwise_test` is for tests read by a person.
+Before it, for every test of a campaign: `reduction.pipeline.locate` finds where the crosshead
+stands still and where it cycles, `reduction.batch.survey` measures the tension at the splice
+marks there, and `reduction.batch.models` pools the marks of a specimen into strain models.
+`reduce_test` does the rest; what the cycles give is in `reduction.pipeline.cyclic`, what the
+first rise gives in `reduction.pipeline.loading`.  `reduce_stepwise_test` is for tests read by
+a person.
 """
 
 from __future__ import annotations
