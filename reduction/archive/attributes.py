@@ -15,12 +15,13 @@ from reduction.errors import ArchiveError
 from reduction.product import ReducedTest
 from reduction.provenance import Source, Step
 
-__all__ = ["CONVENTIONS", "experiment_attributes", "global_attributes"]
+__all__ = ["CONVENTIONS", "experiment_attributes", "global_attributes", "outcome_attributes"]
 
 CONVENTIONS = "CF-1.11 ACDD-1.3"
 _SOFTWARE = "mooring-reduction"
 _KEYWORDS = "mooring, tension test, elastic modulus, hysteresis"
 _KEYWORDS_OF_EXPERIMENTS = "mooring, designed experiment, response surface, spring constant"
+_KEYWORDS_OF_OUTCOMES = "mooring, tensile strength, fatigue, abrasion, exposure"
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -70,6 +71,33 @@ def experiment_attributes(
             "id": f"{campaign_id}/surfaces",
             "campaign": campaign_id,
             **_raw_files(sources),
+            "settings": settings_json,
+        },
+        steps=steps,
+        version=version,
+        command=command,
+    )
+
+
+def outcome_attributes(
+    *,
+    campaign_id: str,
+    attributes: Mapping[str, str],
+    source: Source,
+    steps: Sequence[Step],
+    settings_json: str,
+    version: str,
+    command: str,
+) -> dict[str, str]:
+    """Return the global attributes of an archive of outcomes, in the same order."""
+    return _complete(
+        attributes,
+        {
+            "summary": "Strength, strain at failure and life of lines, without logs.",
+            "keywords": _KEYWORDS_OF_OUTCOMES,
+            "id": f"{campaign_id}/outcomes",
+            "campaign": campaign_id,
+            **_raw_files([source]),
             "settings": settings_json,
         },
         steps=steps,

@@ -6,7 +6,7 @@ is checked in the tests by an outside program.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ import netCDF4
 import numpy as np
 
 from reduction.archive.attributes import CONVENTIONS
+from reduction.archive.outcomes import OUTCOME_SCHEMA
 from reduction.archive.schema import SCHEMA_VERSION, schema_of
 from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.variable import Variable
@@ -57,10 +58,7 @@ def _global_findings(file: netCDF4.Dataset) -> Iterator[str]:
 
 
 def _variable_findings(file: netCDF4.Dataset) -> Iterator[str]:
-    is_of_experiments = "experiment" in file.dimensions
-    schema = (
-        SURFACE_SCHEMA if is_of_experiments else schema_of(is_stepwise="step" in file.dimensions)
-    )
+    schema = _schema_of_file(file.dimensions)
     for name, variable in file.variables.items():
         if name not in schema:
             yield f"{name} is not in the schema"
@@ -77,6 +75,15 @@ def _variable_findings(file: netCDF4.Dataset) -> Iterator[str]:
             yield f"{name} has no units"
         if not row.is_bounds and not getattr(variable, "long_name", ""):
             yield f"{name} has no long_name"
+
+
+def _schema_of_file(dimensions: Container[str]) -> Mapping[str, Variable]:
+    """What a file may hold, by the dimension that its kind alone has."""
+    if "experiment" in dimensions:
+        return SURFACE_SCHEMA
+    if "outcome" in dimensions:
+        return OUTCOME_SCHEMA
+    return schema_of(is_stepwise="step" in dimensions)
 
 
 def _type_findings(name: str, variable: netCDF4.Variable[Any], row: Variable) -> Iterator[str]:
