@@ -36,7 +36,7 @@ _Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class ExperimentStatus:
-    """What became of one experiment: ``fitted``, ``fitted_with_notes`` or ``failed``."""
+    """What became of one experiment: fitted, fitted_with_notes, failed, or no_work."""
 
     id: str
     status: str
@@ -45,7 +45,7 @@ class ExperimentStatus:
 
 
 def write_experiments(
-    campaign: Campaign, folder: Path, *, failed: Collection[str], command: str
+    campaign: Campaign, folder: Path, *, failed: Collection[str], is_partial: bool, command: str
 ) -> list[ExperimentStatus]:
     """Fit every experiment of a campaign and write them as one archive.
 
@@ -57,6 +57,8 @@ def write_experiments(
         Of the campaign's archives, of which one is made.
     failed : collection of str
         Tests whose archive, where there is one, is of an earlier run and not used.
+    is_partial : bool
+        Whether some tests were not asked for: then nothing is fitted while runs wait.
     command : str
         For the product's ``command`` attribute.
 
@@ -72,6 +74,15 @@ def write_experiments(
     """
     if not campaign.experiments:
         return []
+    waiting = {
+        name: [run for run in plan.runs if not (folder / f"{run}.nc").exists()]
+        for name, plan in campaign.experiments.items()
+    }
+    if is_partial and any(waiting.values()):
+        return [
+            ExperimentStatus(name, "no_work", 0, f"not fitted: {len(runs)} of its runs wait")
+            for name, runs in waiting.items()
+        ]
     results, sources = fit_experiments(
         campaign, lambda run: None if run in failed else folder / f"{run}.nc"
     )

@@ -261,7 +261,7 @@ def run_campaign(
         )
     now_failed = {status.test for status in statuses if status.status == "failed"}
     experiments = write_experiments(
-        campaign, folder, failed=now_failed.union(failed), command=command
+        campaign, folder, failed=now_failed.union(failed), is_partial=bool(tests), command=command
     )
     if progress is not None:
         progress("tables", campaign.id)

@@ -3,6 +3,7 @@
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -187,3 +188,32 @@ def test_a_failed_run_leaves_fourteen_and_says_so(run, tmp_path):
     with open_archive(again.processed / "surfaces.nc") as archive:
         assert "R04: its test failed" in archive["note"].to_numpy().tolist()
     assert (again.processed / "R04.nc").exists()
+
+
+def test_without_a_slow_pull_k_1_and_tau_are_refused_and_the_rest_stands(tmp_path):
+    # three runs and no pull: a design that carries no surface
+    whole = load_campaign(RAW / "campaign.toml")
+    kept = ("R01", "R02", "R03")
+    plan = whole.experiments["nylon"]
+    bare = replace(plan, quasi_static={}, runs={name: plan.runs[name] for name in kept})
+    tests = {name: whole.tests[name] for name in kept}
+    few = replace(whole, tests=tests, experiments={"nylon": bare})
+    again = run_campaign(few, processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0)
+    with open_archive(again.processed / "R01.nc") as archive:
+        assert archive["test_line_refusal"].to_numpy().tolist() == [1]
+        notes = archive["note"].to_numpy().tolist()
+        assert np.isfinite(archive["test_apparent_spring_constant"].to_numpy()).all()
+    assert any("no slow pull" in note for note in notes)
+    assert again.exit_status == 5
+    assert "refused: response surfaces" in again.experiments[0].message
+
+
+def test_an_experiment_waits_for_runs_that_were_not_asked_for(tmp_path):
+    campaign = load_campaign(RAW / "campaign.toml")
+    part = run_campaign(
+        campaign, processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0,
+        tests=["R01", "Q01"],
+    )  # fmt: skip
+    assert part.exit_status == 0
+    assert part.experiments[0].message == "not fitted: 14 of its runs wait"
+    assert not (part.processed / "surfaces.nc").exists()
