@@ -5,6 +5,7 @@ Heavy packages are imported inside the commands, so that ``--help`` answers at o
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -29,6 +30,19 @@ app = typer.Typer(
 Json = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, SI.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Nothing but errors.")]
 Units = Annotated[str, typer.Option("--units", help="What is shown: si or us (psi, lbf, ft).")]
+
+
+class DesignName(StrEnum):
+    """Designs that the command line knows."""
+
+    BOX_BEHNKEN = "box-behnken"
+    PLACKETT_BURMAN = "plackett-burman"
+
+
+SpecPath = Annotated[Path, typer.Argument(metavar="SPEC.toml", show_default=False, callback=here)]
+OptionalSpecPath = Annotated[
+    Path | None, typer.Argument(metavar="[SPEC.toml]", show_default=False, callback=here)
+]
 CampaignPath = Annotated[
     Path, typer.Argument(metavar="CAMPAIGN.toml", show_default=False, callback=here)
 ]
@@ -118,6 +132,37 @@ def run(
             force=force,
             outcome=outcome,
         )
+
+
+@app.command()
+def experiment(
+    kind: Annotated[DesignName, typer.Argument(help="Design.", show_default=False)],
+    spec: SpecPath,
+    out: Annotated[Path | None, typer.Option(help="Write the run sheet as a CSV too.")] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Plan an experiment: run sheet, cautions, expected precision."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.experiments import plan_runs
+
+        plan_runs(kind.value, spec, out=out, outcome=outcome)
+
+
+@app.command()
+def surface(
+    runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", show_default=False, callback=here)],
+    spec: OptionalSpecPath = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Fit response surfaces, or effects of a screening, to a table of runs from anywhere."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.surfaces import fit_runs
+
+        fit_runs(runs, spec, outcome=outcome)
 
 
 @app.command()

@@ -14,6 +14,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 import typer
+from rich.console import Console
+from rich.table import Table
 
 from reduction.errors import ReductionError, SettingsError
 
@@ -36,6 +38,12 @@ class Outcome:
         """One line of text on standard output, unless JSON or nothing was asked for."""
         if not (self.json or self.quiet):
             typer.echo(text)
+
+    def show(self, table: Table) -> None:
+        """A table on standard output, where text is said; 160 columns where no terminal is."""
+        if not (self.json or self.quiet):
+            width = None if sys.stdout.isatty() else 160
+            Console(width=width, highlight=False).print(table)
 
     def answer(self, document: object) -> None:
         """The JSON object of ``--json``; the only thing on standard output then."""

@@ -45,12 +45,6 @@ def _progress(outcome: Outcome, n_steps: int) -> Iterator[ProgressCall]:
         yield lambda stage, name: bar.update(task, description=f"{stage} {name}", advance=1)
 
 
-def _show(outcome: Outcome, table: Table) -> None:
-    if not (outcome.json or outcome.quiet):
-        width = None if sys.stdout.isatty() else 160
-        Console(width=width, highlight=False).print(table)
-
-
 def _status_table(tests: Sequence[TestStatus]) -> Table:
     rows = []
     for test in tests:
@@ -107,7 +101,7 @@ def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> N
     campaign = load_campaign(path)
     with _progress(outcome, len(campaign.tests)) as progress:
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
-    _show(outcome, _status_table(statuses))
+    outcome.show(_status_table(statuses))
     for test in statuses:
         for channel, masks in test.found.get("flags", {}).items():
             listed = ", ".join(f"{name} {count}" for name, count in masks.items())
@@ -116,7 +110,7 @@ def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> N
             outcome.say(f"  {test.test}: {note}")
     lines = _model_lines(models, statuses, units)
     if lines.row_count:  # weights hung by hand, and logs that failed, have no strain model
-        _show(outcome, lines)
+        outcome.show(lines)
     outcome.answer({"campaign": campaign.id, "tests": [test.document() for test in statuses]})
     _report_failures(outcome, statuses)
 
@@ -146,7 +140,7 @@ def run_campaign(
             units=cast("UnitSystem", outcome.units),
             progress=progress,
         )
-    _show(outcome, _status_table(result.tests))
+    outcome.show(_status_table(result.tests))
     for name in result.stray:
         outcome.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
     outcome.say(f"products: {result.processed}")

@@ -99,7 +99,7 @@ def _over(
 ) -> list[Caution]:
     found = []
     if load_limit is not None:
-        runs = _numbers(sheet, sheet.peak_tension > load_limit)
+        runs = _numbers(sheet, sheet.peak_tension > load_limit * (1 + NEAR_ZERO))
         if runs:
             found.append(
                 Caution(
@@ -111,7 +111,7 @@ def _over(
                 )
             )
     if peak_share_limit is not None:
-        runs = _numbers(sheet, sheet.peak_share > peak_share_limit)
+        runs = _numbers(sheet, sheet.peak_share > peak_share_limit * (1 + NEAR_ZERO))
         if runs:
             found.append(
                 Caution(

@@ -1,0 +1,52 @@
+"""Numbers as a command says them: null for what is not known, short text for a table."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rich.markup import escape
+from rich.table import Table
+
+from reduction.units import UnitSystem, combined_unit, display_unit
+
+__all__ = ["Shown", "plain", "short", "table_of"]
+
+
+class Shown:
+    """Units of a response and of its factors, as they are shown."""
+
+    def __init__(self, response: str, factors: tuple[str, ...], system: UnitSystem) -> None:
+        self.unit, self.scale = display_unit(response, system)
+        self._factors = [display_unit(unit, system) for unit in factors]
+
+    def of_term(self, powers: tuple[int, ...]) -> tuple[str, float]:
+        """Unit of an engineering coefficient and what it is multiplied with."""
+        units = [unit for unit, _ in self._factors]
+        scales = [scale for _, scale in self._factors]
+        scale = math.prod(one**power for one, power in zip(scales, powers, strict=True))
+        return combined_unit(self.unit, units, powers), self.scale / scale
+
+
+def plain(values: ArrayLike) -> Any:
+    """Numbers for JSON, nested as they are; None where there is no finite one."""
+    array = np.asarray(values)
+    if array.ndim:
+        return [plain(entry) for entry in array]
+    number = array.item()
+    return None if isinstance(number, float) and not math.isfinite(number) else number
+
+
+def short(value: float, digits: int = 5) -> str:
+    """A number for a table; a dash where there is none."""
+    return f"{value:.{digits}g}" if math.isfinite(value) else "-"
+
+
+def table_of(*headings: str, texts: int = 1, title: str | None = None) -> Table:
+    """An empty table whose first columns are text and whose others are numbers."""
+    table = Table(box=None, pad_edge=False, title=title, title_justify="left", title_style="bold")
+    for number, heading in enumerate(headings):
+        table.add_column(escape(heading), justify="left" if number < texts else "right")
+    return table
