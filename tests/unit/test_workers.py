@@ -7,7 +7,7 @@ import os
 import numpy as np
 import pytest
 
-from reduction import blocks
+from reduction import workers
 from reduction.cycles.product import Cycles
 from reduction.moduli.tangent import tangent_curves
 from reduction.settings import ModulusSettings
@@ -26,7 +26,7 @@ def test_no_items_give_no_results() -> None:
 def test_the_error_of_the_first_item_that_fails_is_raised(
     n_processors: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(blocks, "_n_processors", lambda: n_processors)
+    monkeypatch.setattr(workers, "_n_processors", lambda: n_processors)
     with pytest.raises(KeyError, match="2"):
         run_blocks({0: 0, 1: 1}.__getitem__, [0, 1, 2, 3])
 
@@ -64,7 +64,7 @@ def test_the_moduli_have_the_same_bytes_on_any_number_of_processors(
     )
     found = []
     for n_processors in (1, 3):
-        monkeypatch.setattr(blocks, "_n_processors", lambda count=n_processors: count)
+        monkeypatch.setattr(workers, "_n_processors", lambda count=n_processors: count)
         curves = tangent_curves(
             strain[None], tension[None], area=[1e-4], cycles=cycles, settings=ModulusSettings()
         )
