@@ -1,4 +1,4 @@
-"""Which tables there are, and which variables of an archive each one lays out in rows."""
+"""Which tables of tests there are, and which variables of an archive each one lays out in rows."""
 
 from __future__ import annotations
 
@@ -312,7 +312,7 @@ TABLES = (
         ),
         ("clock",),
         _with_its_one_specimen,
-        is_stepwise=True,
+        product="stepwise test",
     ),
     Table(
         "stepwise_moduli",
@@ -320,7 +320,7 @@ TABLES = (
         ("specimen", "interval_branch", "interval_strain", "interval_modulus"),
         ("interval_modulus",),
         _with_its_one_specimen,
-        is_stepwise=True,
+        product="stepwise test",
     ),
     Table(
         "specimens",

@@ -36,7 +36,7 @@ def table_rows(archive: xr.Dataset, table: Table) -> list[list[Cell]]:
     dataset = table.prepare(archive)
     known = np.any([_is_known(_laid_out(dataset, name, table.dims)) for name in needed], axis=0)
     global_cells = {
-        TEST.name: archive.attrs["test"],
+        TEST.name: archive.attrs.get("test", ""),
         SYNTHETIC.name: archive.attrs.get("synthetic", "no"),
     }
     columns: list[list[Cell]] = []

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 import xarray as xr
 
 from reduction.archive.schema import schema_of
+from reduction.archive.surface_schema import SURFACE_SCHEMA, rows_of_response
 from reduction.archive.variable import Variable, count, label, measured, stated
 from reduction.tables.column import Column, uncertainty_of
 
-__all__ = ["SYNTHETIC", "TEST", "Table"]
+__all__ = ["SYNTHETIC", "TEST", "Product", "Table"]
+
+Product = Literal["test", "stepwise test", "experiments"]
 
 TEST = Column("test", label("test")[0])
 SYNTHETIC = Column("synthetic", label("synthetic")[0])
@@ -24,6 +28,20 @@ _OWN = {
         *stated("strain_bin_low", ("strain_bin",), "bound"),
         *stated("strain_bin_high", ("strain_bin",), "bound"),
     ]
+}
+_OF_RESPONSES = {
+    row.name: row
+    for row in [
+        *label("response"),
+        *label("unit"),
+        *label("coefficient_engineering_unit"),
+        *rows_of_response("response", is_transformed=False),
+    ]
+}
+_SCHEMAS: dict[Product, dict[str, Variable]] = {
+    "test": schema_of(is_stepwise=False) | _OWN,
+    "stepwise test": schema_of(is_stepwise=True) | _OWN,
+    "experiments": SURFACE_SCHEMA | _OF_RESPONSES,
 }
 
 
@@ -48,8 +66,8 @@ class Table:
         A row is written where one of these is known.
     prepare : callable
         What has to be done to the archive first.
-    is_stepwise : bool
-        True where the names are those of a stepwise test.
+    product : str
+        Whose names they are. Of experiments a row names the experiment, else the test.
     """
 
     name: str
@@ -57,13 +75,13 @@ class Table:
     variables: tuple[str, ...]
     needs: tuple[str, ...]
     prepare: Callable[[xr.Dataset], xr.Dataset] = _as_it_is
-    is_stepwise: bool = False
+    product: Product = "test"
 
     @property
     def columns(self) -> list[Column]:
         """Every column, the test first and the word on synthetic data last."""
-        schema = schema_of(is_stepwise=self.is_stepwise) | _OWN
-        columns = [TEST]
+        schema = _SCHEMAS[self.product]
+        columns = [] if self.product == "experiments" else [TEST]
         for item in (*(dim for dim in self.dims if dim in schema), *self.variables):
             name, _, source = item.partition("=")
             column = _column(name, schema[source or name])

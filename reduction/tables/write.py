@@ -13,6 +13,8 @@ from reduction.archive.write import write_whole
 from reduction.tables.column import Cell, Column, csv_text
 from reduction.tables.definitions import TABLES
 from reduction.tables.envelope import ENVELOPE_COLUMNS, Curve, curves_of, envelope_rows
+from reduction.tables.experiments import EXPERIMENT_TABLES
+from reduction.tables.responses import by_response
 from reduction.tables.rows import table_rows
 from reduction.tables.static_dynamic import (
     STATIC_DYNAMIC_COLUMNS,
@@ -30,7 +32,9 @@ _ABOUT = tuple(
 )
 
 
-def write_tables(archives: Sequence[Path], folder: Path) -> list[Path]:
+def write_tables(
+    archives: Sequence[Path], folder: Path, *, surfaces: Path | None = None
+) -> list[Path]:
     """Write every table that the archives fill, and columns.csv, which explains them.
 
     Parameters
@@ -40,6 +44,8 @@ def write_tables(archives: Sequence[Path], folder: Path) -> list[Path]:
         the specimens' history, then of their names.
     folder : pathlib.Path
         Where the tables go.
+    surfaces : pathlib.Path, optional
+        Archive of the campaign's experiments, where it has any.
 
     Returns
     -------
@@ -52,10 +58,10 @@ def write_tables(archives: Sequence[Path], folder: Path) -> list[Path]:
     ArchiveError
         If an archive cannot be opened or a table cannot be written.
     """
-    columns = {table.name: tuple(table.columns) for table in TABLES}
+    columns = {table.name: tuple(table.columns) for table in (*TABLES, *EXPERIMENT_TABLES)}
     columns["envelope"] = ENVELOPE_COLUMNS
     columns["static_dynamic"] = STATIC_DYNAMIC_COLUMNS
-    rows = _all_rows(archives)
+    rows = _all_rows(archives) | _experiment_rows(surfaces)
     filled = [name for name in columns if rows[name]]
     rows["columns"] = [
         [f"{name}.csv", *column.description]
@@ -99,3 +105,11 @@ def _all_rows(archives: Sequence[Path]) -> dict[str, list[list[Cell]]]:
         "envelope": envelope_rows(curves),
         "static_dynamic": static_dynamic_rows(slopes, curves),
     }
+
+
+def _experiment_rows(surfaces: Path | None) -> dict[str, list[list[Cell]]]:
+    if surfaces is None:
+        return {table.name: [] for table in EXPERIMENT_TABLES}
+    with open_archive(surfaces) as archive:
+        dataset = by_response(archive)
+        return {table.name: table_rows(dataset, table) for table in EXPERIMENT_TABLES}

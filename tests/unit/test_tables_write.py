@@ -5,15 +5,19 @@ import shutil
 from dataclasses import replace
 
 import pytest
+from experiments import ABOUT, screening_experiment, surface_experiment
 
 from reduction.archive.schema import SCHEMA
+from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.archive.variable import SUFFIXES
+from reduction.archive.write import write_archive
 from reduction.errors import ArchiveError
 from reduction.tables.definitions import TABLES
 from reduction.tables.envelope import ENVELOPE_COLUMNS
+from reduction.tables.experiments import EXPERIMENT_TABLES
 from reduction.tables.static_dynamic import STATIC_DYNAMIC_COLUMNS
 from reduction.tables.write import write_tables
-from reduction.vocabulary import QUANTITIES
+from reduction.vocabulary import QUANTITIES, RESPONSES
 
 
 def read(path):
@@ -22,10 +26,23 @@ def read(path):
 
 
 @pytest.fixture(scope="session")
-def tables(archives, tmp_path_factory):
+def surfaces(tmp_path_factory):
+    """Archive of experiments of each kind."""
+    path = tmp_path_factory.mktemp("surfaces") / "surfaces.nc"
+    results = [
+        surface_experiment(),
+        surface_experiment("two lines", names=RESPONSES[:2], specimens=("a", "b"), missing=(3,)),
+        screening_experiment(),
+    ]
+    write_archive(surfaces_to_dataset(results, **ABOUT), path)
+    return path
+
+
+@pytest.fixture(scope="session")
+def tables(archives, surfaces, tmp_path_factory):
     """Tables of one archive of each kind, to be read."""
     folder = tmp_path_factory.mktemp("tables")
-    write_tables(archives, folder)
+    write_tables(archives, folder, surfaces=surfaces)
     return folder
 
 
@@ -36,7 +53,8 @@ def folder(tables, tmp_path):
 
 
 def test_a_campaign_with_everything_fills_every_table(tables):
-    names = {table.name for table in TABLES} | {"envelope", "static_dynamic", "columns"}
+    names = {table.name for table in (*TABLES, *EXPERIMENT_TABLES)}
+    names |= {"envelope", "static_dynamic", "columns"}
     assert {path.stem for path in tables.iterdir()} == names
 
 
@@ -80,7 +98,7 @@ def test_every_column_of_every_table_is_explained(tables):
 
 def test_every_column_is_a_quantity_of_the_vocabulary():
     for columns in [
-        *(table.columns for table in TABLES), ENVELOPE_COLUMNS, STATIC_DYNAMIC_COLUMNS,
+        *(table.columns for table in (*TABLES, *EXPERIMENT_TABLES)), ENVELOPE_COLUMNS, STATIC_DYNAMIC_COLUMNS,
     ]:  # fmt: skip
         for column in columns:
             suffix = next((one for one in SUFFIXES if column.name.endswith(one)), "")
@@ -123,8 +141,8 @@ def test_tests_stand_in_the_order_of_their_history(bare_test, write, tmp_path):
     assert [row["test"] for row in rows] == ["T-9", "T-3", "T-2", "T-10"]
 
 
-def test_the_order_of_the_archives_changes_no_byte(archives, tables, tmp_path):
-    write_tables(archives[::-1], tmp_path / "again")
+def test_the_order_of_the_archives_changes_no_byte(archives, surfaces, tables, tmp_path):
+    write_tables(archives[::-1], tmp_path / "again", surfaces=surfaces)
     first, again = (
         {path.name: path.read_bytes() for path in folder.iterdir()}
         for folder in (tables, tmp_path / "again")
@@ -136,11 +154,11 @@ def test_the_order_of_the_archives_changes_no_byte(archives, tables, tmp_path):
 def test_a_table_without_rows_is_not_written_and_a_stale_one_is_removed(
     folder, holds_only_test, write
 ):
-    (folder / "surfaces.csv").write_text("not ours")
+    (folder / "notebook.csv").write_text("not ours")
     write_tables([write(holds_only_test)], folder)
     assert {path.name for path in folder.iterdir()} == {
-        "columns.csv", "notes.csv", "relaxation.csv", "relaxation_times.csv", "rows.csv",
-        "specimens.csv", "surfaces.csv",
+        "columns.csv", "notebook.csv", "notes.csv", "relaxation.csv", "relaxation_times.csv",
+        "rows.csv", "specimens.csv",
     }  # fmt: skip
 
 
