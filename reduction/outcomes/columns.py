@@ -1,4 +1,4 @@
-"""Columns of the tables of strength, of fatigue and of life against load.
+"""Columns of the tables of strength, of exposure, of fatigue and of life against load.
 
 References
 ----------
@@ -9,7 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["FATIGUE_COLUMNS", "LOAD_LIFE_COLUMNS", "STRENGTH_COLUMNS", "OutcomeColumn"]
+__all__ = [
+    "EXPOSURE_COLUMNS",
+    "FATIGUE_COLUMNS",
+    "LOAD_LIFE_COLUMNS",
+    "STRENGTH_COLUMNS",
+    "OutcomeColumn",
+]
 
 
 @dataclass(frozen=True)
@@ -36,13 +42,16 @@ def _measured(name: str, unit: str, long_name: str) -> tuple[OutcomeColumn, Outc
     )  # fmt: skip
 
 
-_GROUP = (
+_LINE = (
     OutcomeColumn("line", "", "line, in the laboratory's words", "is a label"),
     OutcomeColumn("material", "", "material", "is a label"),
     OutcomeColumn("construction", "", "construction", "is a label"),
     OutcomeColumn("diameter", "m", "nominal diameter", "is stated"),
+)
+_GROUP = (
+    *_LINE,
     OutcomeColumn("condition", "", "condition of the line", "is a label"),
-    OutcomeColumn("exposure", "year", "time in the field", "is stated"),
+    OutcomeColumn("exposure", "year", "time in the field, in years of 365.25 days", "is stated"),
 )
 
 
@@ -89,6 +98,28 @@ STRENGTH_COLUMNS: tuple[OutcomeColumn, ...] = (
     *_of_strength("strain_at_failure", "1", "strain at failure"),
 )
 """Columns of ``tables/strength.csv``, one row a group."""
+
+EXPOSURE_COLUMNS: tuple[OutcomeColumn, ...] = (
+    *_LINE,
+    *_measured("strength_when_new", "N", "tensile strength of the fitted line at no exposure"),
+    *_measured("strength_slope", "N year-1", "change of tensile strength by time in the field"),
+    OutcomeColumn(
+        "share_lost_per_year", "year-1", "share of the strength at no exposure lost in a year",
+        "has an interval",
+    ),
+    OutcomeColumn("share_lost_per_year_low", "year-1", "lower end, 95 %", "is a bound"),
+    OutcomeColumn("share_lost_per_year_high", "year-1", "upper end, 95 %", "is a bound"),
+    OutcomeColumn("strength_scatter", "N", "deviation of one break from the line", "is a scatter"),
+    OutcomeColumn("degrees_of_freedom", "count", "of that deviation", "is a count"),
+    OutcomeColumn("lack_of_fit_p_value", "1", "a line against means by exposure", "is a statistic"),
+    OutcomeColumn("exposure_low", "year", "shortest exposure of the fit", "is a bound"),
+    OutcomeColumn("exposure_high", "year", "longest exposure of the fit", "is a bound"),
+    OutcomeColumn("break_count", "count", "breaks in the fit", "is a count"),
+    OutcomeColumn("lower_bound_count", "count", "lower bounds, not in the fit", "is a count"),
+    OutcomeColumn("unused_count", "count", "tests without an exposure or a value", "is a count"),
+    OutcomeColumn("exposure_reason", "", "why there is no line", "is a word"),
+)  # fmt: skip
+"""Columns of ``tables/exposure.csv``, one row a line broken at several exposures."""
 
 FATIGUE_COLUMNS: tuple[OutcomeColumn, ...] = (
     OutcomeColumn("quantity", "", "cycles_to_failure or abrasion_cycles", "is a label"),

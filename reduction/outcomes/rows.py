@@ -1,54 +1,28 @@
-"""Rows of the tables of strength, of fatigue and of life against load, in SI.
+"""Rows of the tables of strength and of strength against exposure, in SI.
 
 References
 ----------
-.. [1] CG-D-39-80, Tables 10, 20 and 21, Figure 19.
+.. [1] CG-D-39-80, Tables 10 and 21, Figure 15.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import exp, isfinite, nan
 
 import numpy as np
 
-from reduction.errors import FitError
-from reduction.outcomes.columns import (
-    FATIGUE_COLUMNS,
-    LOAD_LIFE_COLUMNS,
-    STRENGTH_COLUMNS,
-    OutcomeColumn,
-)
+from reduction.outcomes.columns import EXPOSURE_COLUMNS, STRENGTH_COLUMNS
 from reduction.outcomes.compare import one_way, ratio_of_means
-from reduction.outcomes.fatigue import fit_load_life, load_levels
+from reduction.outcomes.exposure import share_lost_per_year
 from reduction.outcomes.groups import Group, Grouped, group_outcomes, reference_of
-from reduction.outcomes.life import fit_life
-from reduction.outcomes.life_product import LifeDistribution
 from reduction.outcomes.product import REASONS, Outcome, OutcomeQuantity
+from reduction.outcomes.row import Row, empty_row, labels_of
+from reduction.outcomes.series import exposure_series
 from reduction.outcomes.strength import EXCLUDED, VALUE, censored_mean, group_statistics
-from reduction.record import Integers
 
-__all__ = ["Row", "fatigue_rows", "load_life_rows", "strength_rows"]
+__all__ = ["exposure_rows", "strength_rows"]
 
-Row = dict[str, float | int | str]
-
-
-def _empty(columns: Iterable[OutcomeColumn]) -> Row:
-    return {
-        column.name: "" if column.unit == "" else 0 if column.unit == "count" else nan
-        for column in columns
-    }
-
-
-def _labels(group: Group) -> Row:
-    return {
-        "line": group.line,
-        "material": group.material,
-        "construction": group.construction,
-        "diameter": nan if group.diameter is None else group.diameter,
-        "condition": group.condition,
-        "exposure": nan if group.exposure is None else group.exposure,
-    }
+_OF_LINE = ("line", "material", "construction", "diameter")
 
 
 def _strength_of(grouped: Grouped, reference_condition: str) -> dict[Group, Row]:
@@ -132,44 +106,24 @@ def strength_rows(outcomes: Iterable[Outcome], *, reference_condition: str = "ne
     for quantity in quantities:
         grouped = group_outcomes(listed, quantity)
         for group, numbers in _strength_of(grouped, reference_condition).items():
-            row = rows.setdefault(group, _empty(STRENGTH_COLUMNS) | _labels(group))
+            row = rows.setdefault(group, empty_row(STRENGTH_COLUMNS) | labels_of(group))
             row["reference_condition"] = reference_condition
             row.update({quantity + name: number for name, number in numbers.items()})
     return list(rows.values())
 
 
-def _levels_of(grouped: Grouped, place: int) -> list[Integers]:
-    """Rows of a group by level of peak load, rising; those without a load last."""
-    rows = np.flatnonzero(grouped.group == place)
-    ratio = np.array([grouped.outcomes[row].peak_load_ratio for row in rows])
-    force = np.array([grouped.outcomes[row].peak_load for row in rows])
-    has_ratio = ~np.isnan(ratio)
-    has_force = ~np.isnan(force) & ~has_ratio
-    parts = []
-    for has, load in ((has_ratio, ratio), (has_force, force / np.nanmax(force, initial=0.0))):
-        if has.any():
-            level = load_levels(load[has])
-            parts += [rows[has][level == number] for number in range(int(level.max()) + 1)]
-    rest = rows[~has_ratio & ~has_force]
-    return [*parts, rest] if rest.size else parts
-
-
-def fatigue_rows(
-    outcomes: Iterable[Outcome], *, distribution: LifeDistribution = "weibull"
-) -> list[Row]:
-    """Rows of the table of cycles to failure and of abrasion, one a group and level of load.
+def exposure_rows(outcomes: Iterable[Outcome]) -> list[Row]:
+    """Rows of the table of strength against time in the field, one a line.
 
     Parameters
     ----------
     outcomes : iterable of Outcome
-        Rows of every quantity.
-    distribution : str
-        Law of the lives: ``weibull`` or ``lognormal``.
+        Rows of every quantity; breaks without an exposure are left out and counted.
 
     Returns
     -------
     rows : list of dict
-        By the names of `FATIGUE_COLUMNS`, by quantity and group, peak load rising.
+        By the names of `EXPOSURE_COLUMNS`; where no line can be fitted, a reason.
 
     Raises
     ------
@@ -178,127 +132,44 @@ def fatigue_rows(
 
     Examples
     --------
-    >>> rows = fatigue_rows([Outcome("abrasion_cycles", cycles) for cycles in (7e3, 8e3, 9e3)])
-    >>> print(rows[0]["failed_count"], rows[0]["mean_cycles"])
-    3 8000.0
+    >>> breaks = {0.0: [6400, 6600], 2.0: [5200, 5400], 4.0: [4000, 4200]}
+    >>> rows = exposure_rows([Outcome("tensile_strength", strength, exposure=years)
+    ...     for years, values in breaks.items() for strength in values])
+    >>> print(round(rows[0]["share_lost_per_year"], 3))
+    0.092
     """
-    listed = tuple(outcomes)
-    quantities: tuple[OutcomeQuantity, ...] = ("cycles_to_failure", "abrasion_cycles")
     table: list[Row] = []
-    for quantity in quantities:
-        grouped = group_outcomes(listed, quantity)
-        for place, group in enumerate(grouped.groups):
-            for part in _levels_of(grouped, place):
-                row = _empty(FATIGUE_COLUMNS) | _labels(group)
-                row |= _fatigue_of(grouped, part, distribution)
-                row["quantity"] = quantity
-                table.append(row)
-    return table
-
-
-def _fatigue_of(grouped: Grouped, part: Integers, distribution: LifeDistribution) -> Row:
-    loads = [grouped.outcomes[row] for row in part]
-    statistics = group_statistics(
-        grouped.value[part], np.zeros(part.size, dtype=np.intp), grouped.use[part], n_groups=1
-    )
-    row: Row = {
-        "peak_load": float(np.mean([one.peak_load for one in loads])),
-        "peak_load_ratio": float(np.mean([one.peak_load_ratio for one in loads])),
-        "minimum_load_ratio": float(np.mean([one.minimum_load_ratio for one in loads])),
-        "failed_count": int(statistics.n[0]),
-        "suspended_count": int(statistics.n_lower_bound[0]),
-        "excluded_count": int(statistics.n_excluded[0]),
-        "mean_cycles": float(statistics.mean[0]),
-        "mean_cycles_standard_uncertainty": float(statistics.mean_standard_uncertainty[0]),
-        "cycles_standard_deviation": float(statistics.standard_deviation[0]),
-        "cycles_relative_variability": float(statistics.relative_variability[0]),
-        "life_distribution": distribution,
-    }
-    used = part[grouped.use[part] != EXCLUDED]
-    if not used.size:
-        return row | {"life_reason": "no valid test"}
-    lives = grouped.value[used]
-    fit = fit_life(lives, grouped.use[used] != VALUE, distribution=distribution)
-    return row | {
-        "least_cycles": float(lives.min()),
-        "most_cycles": float(lives.max()),
-        "median_life": fit.life,
-        "median_life_standard_uncertainty": fit.life_standard_uncertainty,
-        "median_life_low": fit.low,
-        # a table has no infinity; the reason says that there is a lower bound alone
-        "median_life_high": fit.high if isfinite(fit.high) else nan,
-        "log_life_scale": fit.log_scale,
-        "log_life_scale_standard_uncertainty": fit.log_scale_uncertainty,
-        "life_reason": REASONS[fit.reason],
-    }
-
-
-def load_life_rows(
-    outcomes: Iterable[Outcome], *, distribution: LifeDistribution = "lognormal"
-) -> list[Row]:
-    """Rows of the table of life against peak load, one a group tested at two loads or more.
-
-    Parameters
-    ----------
-    outcomes : iterable of Outcome
-        Rows of every quantity; a cycle test without a peak load is left out.
-    distribution : str
-        Law of the lives: ``lognormal`` or ``weibull``.
-
-    Returns
-    -------
-    rows : list of dict
-        By the names of `LOAD_LIFE_COLUMNS`; where no line can be fitted, a reason.
-
-    Raises
-    ------
-    DataError
-        If a value cannot be.
-
-    Examples
-    --------
-    >>> cycles = {0.4: [2.2e5, 2.7e5], 0.5: [5.8e4, 7.1e4], 0.7: [7.6e3, 9.4e3]}
-    >>> rows = load_life_rows([Outcome("cycles_to_failure", life, peak_load_ratio=load)
-    ...     for load, lives in cycles.items() for life in lives])
-    >>> print(round(rows[0]["life_exponent"], 1))
-    6.0
-    """
-    grouped = group_outcomes(outcomes, "cycles_to_failure")
-    load = np.array([row.peak_load_ratio for row in grouped.outcomes])
-    usable = ~np.isnan(load) & (grouped.use != EXCLUDED)
-    table: list[Row] = []
-    for place, group in enumerate(grouped.groups):
-        here = usable & (grouped.group == place)
-        if not here.any() or not load_levels(load[here]).any():
-            continue  # one load: its row of the table of fatigue says all
-        suspended = grouped.use[here] != VALUE
-        row = _empty(LOAD_LIFE_COLUMNS) | _labels(group)
+    for series in exposure_series(outcomes):
+        row = empty_row(EXPOSURE_COLUMNS) | {
+            name: label for name, label in labels_of(series.group).items() if name in _OF_LINE
+        }
         row |= {
-            "failed_count": int((~suspended).sum()),
-            "suspended_count": int(suspended.sum()),
-            "unused_count": int(((grouped.group == place) & ~usable).sum()),
-            "peak_load_ratio_low": float(load[here].min()),
-            "peak_load_ratio_high": float(load[here].max()),
-            "life_distribution": distribution,
+            "break_count": int((~series.is_lower_bound).sum()),
+            "lower_bound_count": int(series.is_lower_bound.sum()),
+            "unused_count": series.n_unused,
+            "exposure_reason": series.reason,
         }
         table.append(row)
-        try:
-            fit = fit_load_life(
-                load[here], grouped.value[here], suspended, distribution=distribution
-            )
-        except FitError as error:
-            row["life_reason"] = error.problem
+        if series.fit is None:
             continue
+        fit = series.fit
         spread = np.sqrt(np.diag(fit.covariance))
-        life = exp(fit.log_life)
         row |= {
-            "reference_load_ratio": fit.reference_load_ratio,
-            "life_at_reference": life,
-            "life_at_reference_standard_uncertainty": life * float(spread[0]),
-            "life_exponent": fit.exponent,
-            "life_exponent_standard_uncertainty": float(spread[1]),
-            "log_life_scale": fit.log_scale,
-            "log_life_scale_standard_uncertainty": float(spread[2]),
+            "strength_when_new": fit.intercept,
+            "strength_when_new_standard_uncertainty": float(spread[0]),
+            "strength_slope": fit.slope,
+            "strength_slope_standard_uncertainty": float(spread[1]),
+            "strength_scatter": fit.residual_standard_deviation,
+            "degrees_of_freedom": fit.degrees_of_freedom,
             "lack_of_fit_p_value": fit.lack_of_fit_p_value,
+            "exposure_low": fit.exposure_low,
+            "exposure_high": fit.exposure_high,
         }
+        if fit.intercept > 0:
+            share, low, high = share_lost_per_year(fit)
+            row |= {
+                "share_lost_per_year": share,
+                "share_lost_per_year_low": low,
+                "share_lost_per_year_high": high,
+            }
     return table

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from reduction.campaign.results import read_results
 from reduction.outcomes.compare import one_way_of_values, ratio_of_means
 from reduction.outcomes.life import fit_life
+from reduction.outcomes.life_rows import fatigue_rows
 from reduction.outcomes.product import Outcome
-from reduction.outcomes.rows import fatigue_rows, strength_rows
+from reduction.outcomes.rows import strength_rows
 
 positive = st.floats(1e-2, 1e6)
 spread_lives = st.lists(

@@ -4,9 +4,15 @@ import math
 
 import pytest
 
-from reduction.outcomes.columns import FATIGUE_COLUMNS, LOAD_LIFE_COLUMNS, STRENGTH_COLUMNS
+from reduction.outcomes.columns import (
+    EXPOSURE_COLUMNS,
+    FATIGUE_COLUMNS,
+    LOAD_LIFE_COLUMNS,
+    STRENGTH_COLUMNS,
+)
+from reduction.outcomes.life_rows import fatigue_rows, load_life_rows
 from reduction.outcomes.product import Outcome
-from reduction.outcomes.rows import fatigue_rows, load_life_rows, strength_rows
+from reduction.outcomes.rows import exposure_rows, strength_rows
 
 BREAKS = [
     *[Outcome("tensile_strength", v, condition="new") for v in (28e3, 29e3, 30e3)],
@@ -23,16 +29,23 @@ CYCLES = [
     Outcome("cycles_to_failure", 8e4),
     *[Outcome("abrasion_cycles", v, material="nylon") for v in (12e3, 13e3)],
 ]
+# 6500 - 600 a year, and 100 about it
+EXPOSED = [
+    Outcome("tensile_strength", 6500 - 600 * years + about, line="PD", exposure=years)
+    for years in (0.0, 2.0, 4.0)
+    for about in (-100.0, 100.0)
+]
 
 
 @pytest.mark.parametrize(
     ("rows", "columns"),
     [
+        (exposure_rows(EXPOSED), EXPOSURE_COLUMNS),
         (strength_rows(BREAKS), STRENGTH_COLUMNS),
         (fatigue_rows(CYCLES), FATIGUE_COLUMNS),
         (load_life_rows(CYCLES), LOAD_LIFE_COLUMNS),
     ],
-    ids=["strength", "fatigue", "load-life"],
+    ids=["exposure", "strength", "fatigue", "load-life"],
 )
 def test_a_row_has_every_column_and_each_its_kind(rows, columns):
     names = [column.name for column in columns]
@@ -109,3 +122,30 @@ def test_where_no_line_can_be_fitted_the_row_says_why():
     (row,) = load_life_rows(CYCLES[3:9])
     assert math.isnan(row["life_exponent"])
     assert row["life_reason"] == "the slope of life against load needs failures at two loads"
+
+
+def test_strength_against_exposure_is_a_row_for_a_line_at_several_exposures():
+    (row,) = exposure_rows(EXPOSED)
+    assert row["strength_when_new"] == pytest.approx(6500)
+    assert row["strength_slope"] == pytest.approx(-600)
+    assert row["share_lost_per_year"] == pytest.approx(600 / 6500)
+    assert row["share_lost_per_year_low"] < 600 / 6500 < row["share_lost_per_year_high"]
+    # six residuals of 100, four degrees of freedom
+    assert row["strength_scatter"] == pytest.approx(math.sqrt(6e4 / 4))
+    assert (row["degrees_of_freedom"], row["break_count"]) == (4, 6)
+    assert (row["exposure_low"], row["exposure_high"]) == (0.0, 4.0)
+    assert exposure_rows(EXPOSED[:2]) == []
+
+
+def test_an_exposure_line_that_cannot_be_fitted_says_why():
+    (row,) = exposure_rows([EXPOSED[0], EXPOSED[2]])
+    assert math.isnan(row["strength_slope"]) and row["degrees_of_freedom"] == 0
+    assert row["exposure_reason"] == "two exposures with one break each leave no scatter"
+
+
+def test_a_line_that_has_lost_all_when_new_has_no_share():
+    (row,) = exposure_rows(
+        [Outcome("tensile_strength", strength, exposure=years) for years, strength in
+         ((5.0, 10.0), (5.0, 20.0), (6.0, 3000.0))]
+    )  # fmt: skip
+    assert row["strength_when_new"] < 0 and math.isnan(row["share_lost_per_year"])
