@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 from reduction.record import Quality
+from reduction.tables.outcomes import OUTCOME_TABLES, GroupColumn
 from reduction.vocabulary import (
     BRANCH_VALUES,
     PHASE_VALUES,
@@ -65,6 +66,26 @@ def _quantity(one: Quantity) -> str:
     return _row(f"`{one.name}`", unit, one.long_name, _symbol(one.symbol))
 
 
+_OUTCOMES = """\
+A row of `tables/strength.csv`, `exposure.csv`, `fatigue.csv` and `load_life.csv` is a group of
+outcomes; a column that two of them have may mean what belongs to its own row."""
+
+
+def _outcome_lines() -> list[str]:
+    """One row a column and meaning, with the tables that have it."""
+    found: dict[tuple[str, str, str], list[str]] = {}
+    for table, columns in OUTCOME_TABLES.items():
+        for one in columns:
+            if isinstance(one, GroupColumn) and one.column.no_uncertainty != "is an uncertainty":
+                name, unit, meaning, _ = map(str, one.description)
+                key = (name.partition(" [")[0], unit or "text", meaning)
+                found.setdefault(key, []).append(f"{table}.csv")
+    return [
+        _row(f"`{name}`", unit, meaning, ", ".join(tables))
+        for (name, unit, meaning), tables in sorted(found.items())
+    ]
+
+
 _HEADER, _RULE = _row("name", "unit", "what", "symbol in the source"), "|---|---|---|---|"
 
 
@@ -83,6 +104,8 @@ def glossary() -> str:
     ]
     lines += ["", "## Quantities of a response", "", _RESPONSES, "", _HEADER, _RULE]
     lines += [_quantity(one) for one in RESPONSE_PATTERNS]
+    lines += ["", "## Columns of the tables of outcomes", "", _OUTCOMES, ""]
+    lines += [_row("name", "unit", "what", "table"), _RULE, *_outcome_lines()]
     return _HEAD + "\n".join(lines) + "\n"
 
 

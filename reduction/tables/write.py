@@ -14,6 +14,7 @@ from reduction.tables.column import Cell, Column, csv_text
 from reduction.tables.definitions import TABLES
 from reduction.tables.envelope import ENVELOPE_COLUMNS, Curve, curves_of, envelope_rows
 from reduction.tables.experiments import EXPERIMENT_TABLES
+from reduction.tables.outcomes import OUTCOME_TABLES, GroupColumn, outcome_table_rows
 from reduction.tables.responses import by_response
 from reduction.tables.rows import table_rows
 from reduction.tables.static_dynamic import (
@@ -33,7 +34,11 @@ _ABOUT = tuple(
 
 
 def write_tables(
-    archives: Sequence[Path], folder: Path, *, surfaces: Path | None = None
+    archives: Sequence[Path],
+    folder: Path,
+    *,
+    surfaces: Path | None = None,
+    outcomes: Path | None = None,
 ) -> list[Path]:
     """Write every table that the archives fill, and columns.csv, which explains them.
 
@@ -46,6 +51,8 @@ def write_tables(
         Where the tables go.
     surfaces : pathlib.Path, optional
         Archive of the campaign's experiments, where it has any.
+    outcomes : pathlib.Path, optional
+        Archive of the campaign's outcomes without a log, where it has any.
 
     Returns
     -------
@@ -58,10 +65,12 @@ def write_tables(
     ArchiveError
         If an archive cannot be opened or a table cannot be written.
     """
-    columns = {table.name: tuple(table.columns) for table in (*TABLES, *EXPERIMENT_TABLES)}
-    columns["envelope"] = ENVELOPE_COLUMNS
-    columns["static_dynamic"] = STATIC_DYNAMIC_COLUMNS
-    rows = _all_rows(archives) | _experiment_rows(surfaces)
+    columns: dict[str, Sequence[Column | GroupColumn]] = {
+        table.name: table.columns for table in (*TABLES, *EXPERIMENT_TABLES)
+    }
+    columns |= {"envelope": ENVELOPE_COLUMNS, "static_dynamic": STATIC_DYNAMIC_COLUMNS}
+    columns |= OUTCOME_TABLES
+    rows = _all_rows(archives) | _experiment_rows(surfaces) | _outcome_rows(outcomes)
     filled = [name for name in columns if rows[name]]
     rows["columns"] = [
         [f"{name}.csv", *column.description]
@@ -113,3 +122,10 @@ def _experiment_rows(surfaces: Path | None) -> dict[str, list[list[Cell]]]:
     with open_archive(surfaces) as archive:
         dataset = by_response(archive)
         return {table.name: table_rows(dataset, table) for table in EXPERIMENT_TABLES}
+
+
+def _outcome_rows(outcomes: Path | None) -> dict[str, list[list[Cell]]]:
+    if outcomes is None:
+        return {name: [] for name in OUTCOME_TABLES}
+    with open_archive(outcomes) as archive:
+        return outcome_table_rows(archive)
