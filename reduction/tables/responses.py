@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from reduction.units import combined_unit
 from reduction.vocabulary import QUANTITIES, RESPONSE_PATTERNS, SURFACE_NAMES
 
 __all__ = ["by_response"]
@@ -53,7 +54,11 @@ def by_response(archive: xr.Dataset) -> xr.Dataset:
     dataset = archive.assign(stacked)
     if "term_unit_engineering" in archive:
         of_term = archive["term_unit_engineering"].values
-        full = [[[_product(unit, str(own)) for own in row] for unit in units] for row in of_term]
+        # the unit of a term stands there as what is multiplied, not as what is divided by
+        full = [
+            [[combined_unit(unit, [str(own)], [-1]) for own in row] for unit in units]
+            for row in of_term
+        ]
         dims = ("experiment", "response", "term")
         dataset["coefficient_engineering_unit"] = (dims, np.array(full, dtype=np.str_))
     dataset["run_is_there"] = (("experiment", "run"), _marked(archive["run_name"].values != ""))
@@ -82,10 +87,6 @@ def _stacked(archive: xr.Dataset, names: Sequence[str], what: str) -> xr.Variabl
     rows = [given[name].values if name in given else missing for name in names]
     experiment, *rest = first.dims
     return xr.Variable((experiment, "response", *rest), np.stack(rows, axis=1))
-
-
-def _product(unit: str, other: str) -> str:
-    return " ".join(one for one in (unit, other) if one not in ("1", "")) or "1"
 
 
 def _marked(present: NDArray[Any]) -> NDArray[Any]:

@@ -46,9 +46,16 @@ def test_a_coefficient_has_its_term_and_its_units_in_its_row(dataset):
     assert {row["unit"] for row in rows} == {"J m-1"}
     assert [row["coefficient_engineering_unit"] for row in rows] == [
         "J m-1", "J m-1 Hz-2", "J m-1 N-2", "J m-1 N-2", "J m-1 Hz-1", "J m-1 N-1", "J m-1 N-1",
-        "J m-1 Hz-1 N-1", "J m-1 Hz-1 N-1", "J m-1 N-1 N-1",
+        "J m-1 Hz-1 N-1", "J m-1 Hz-1 N-1", "J m-1 N-2",
     ]  # fmt: skip
     assert {row["synthetic"] for row in rows} == {"yes"}
+
+
+def test_units_of_a_response_and_of_its_factors_are_one_unit(dataset):
+    rows = [row for row in rows_of(dataset, "surfaces") if row["experiment"] == "half-inch"]
+    assert [row["coefficient_engineering_unit"] for row in rows[5:10]] == [
+        "1", "1", "Hz-1", "Hz-1", "N-1",
+    ]  # fmt: skip
 
 
 def test_a_transformed_response_has_no_unit(dataset):
