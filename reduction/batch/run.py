@@ -16,6 +16,7 @@ from reduction.batch.history import history_of, history_remarks
 from reduction.batch.models import fit_strain_models
 from reduction.batch.outcome import note_message, status_row
 from reduction.batch.pulls import fit_pulls, pull_conditions, pulls_of
+from reduction.batch.results import write_outcomes
 from reduction.batch.standing import failed_beside, standing_product
 from reduction.batch.status import Status, TestStatus, read_status, status_csv
 from reduction.batch.survey import Survey, as_reduction_error, located_again, survey_campaign
@@ -43,6 +44,7 @@ class CampaignResult:
     processed: Path
     report: Path | None
     stray: tuple[str, ...]
+    tables: tuple[Path, ...] = ()
 
     @property
     def exit_status(self) -> int:
@@ -263,21 +265,26 @@ def run_campaign(
     experiments = write_experiments(
         campaign, folder, failed=now_failed.union(failed), is_partial=bool(tests), command=command
     )
+    outcomes = write_outcomes(campaign, folder, command=command)
     if progress is not None:
         progress("tables", campaign.id)
     ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
     archives = [path for path in ours if path.exists()]
-    report = None
+    report, tables = None, []
     rows = _all_rows(folder / "status.csv", surveys, statuses)
     if statuses:
         write_whole(folder / "status.csv", status_csv(rows))
-    if archives:
-        write_tables(archives, folder / "tables")
+    if archives or outcomes is not None:
+        tables = write_tables(archives, folder / "tables", outcomes=outcomes)
         if progress is not None:
             progress("report", campaign.id)
         report = write_report(folder, reports / campaign.id, units=units)
     stray = sorted(path.name for path in test_archives(folder) if path not in ours)
-    return CampaignResult(tuple(statuses), tuple(experiments), folder, report, tuple(stray))
+    if outcomes is None and (folder / "outcomes.nc").exists():
+        stray.append("outcomes.nc")
+    return CampaignResult(
+        tuple(statuses), tuple(experiments), folder, report, tuple(stray), tuple(tables)
+    )
 
 
 def _all_rows(
