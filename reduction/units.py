@@ -7,6 +7,7 @@ by definition for the pound-force, the inch and the foot.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
 from tokenize import TokenError
@@ -60,7 +61,7 @@ _NO_UNIT = (
 )  # fmt: skip
 # no unit of a test house is longer, and a tower of powers would never end
 _LONGEST, _MOST_POWERS = 40, 4
-_UNIT_AND_POWER = re.compile(r"([^\s\d-]+)(-?\d+)?")
+_UNIT_AND_POWER = re.compile(r"([^\s\d/-]+)(-?\d+)?")
 # a dimension that shares its units with another one stands behind it
 _AS_FORCE_FIRST: tuple[Dimension, ...] = (
     "force", "number", *(name for name in DIMENSIONS if name not in ("force", "number")),
@@ -223,13 +224,20 @@ def combined_unit(unit: str, others: Sequence[str], powers: Sequence[int]) -> st
     --------
     >>> combined_unit("N", ["Hz", "m s-1"], [2, 1])
     'N Hz-2 m-1 s'
+    >>> combined_unit("N", ["Hz", "N"], [0, 2])
+    'N-1'
     """
-    parts = [] if unit in ("1", "") else [unit]
-    for other, power in zip(others, powers, strict=True):
-        if power and other != "1":
-            for name, own in _UNIT_AND_POWER.findall(other):
-                total = -power * int(own or 1)
-                parts.append(name if total == 1 else f"{name}{total}")
+    # a unit that is no product of powers stands as it is
+    is_product = re.fullmatch(rf"({_UNIT_AND_POWER.pattern}\s*)+", unit) and "(" not in unit
+    total: Counter[str] = Counter()
+    factors = [(unit, 1)] if is_product else []
+    factors += [(other, -power) for other, power in zip(others, powers, strict=True)]
+    for one, times in factors:
+        for name, own in _UNIT_AND_POWER.findall("" if one == "1" else one):
+            total[name] += times * int(own or 1)
+    parts = [name if power == 1 else f"{name}{power}" for name, power in total.items() if power]
+    if not is_product and unit not in ("1", ""):
+        parts.insert(0, f"({unit})" if "/" in unit and parts else unit)
     return " ".join(parts) or "1"
 
 

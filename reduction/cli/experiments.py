@@ -154,10 +154,11 @@ def _show_sheet(
         if unit == "1"
         else (name, *display_unit(unit, system), values)
         for name, (values, unit) in _loads(sheet).items()
+        if name != "minimum_share"  # the room of a terminal; it is in the file
     ]
     # names stand below each other's words: seven factors fit beside each other
     headings = [f"{name.replace('_', chr(10))}\n[{unit}]" for name, unit, _, _ in columns]
-    table = table_of("order", "run", "coded", *headings, texts=3)
+    table = table_of("order", "run", "coded", *headings, texts=0)
     for place, run in enumerate(sheet.run):
         coded = " ".join(f"{level:+.0f}" if level else " 0" for level in sheet.coded[place])
         numbers = (short(scale * values[place]) for _, _, scale, values in columns)

@@ -12,14 +12,25 @@ from rich.table import Table
 
 from reduction.units import UnitSystem, combined_unit, display_unit
 
-__all__ = ["Shown", "plain", "short", "table_of"]
+__all__ = ["Shown", "fitted_unit", "plain", "short", "table_of"]
+
+
+def fitted_unit(unit: str, transform: str) -> str:
+    """Unit of the coefficients of a response; empty where none is stated."""
+    names = {"none": unit, "log": f"ln({unit})"}
+    return names.get(transform, f"Box-Cox({unit})") if unit else ""
 
 
 class Shown:
     """Units of a response and of its factors, as they are shown."""
 
-    def __init__(self, response: str, factors: tuple[str, ...], system: UnitSystem) -> None:
-        self.unit, self.scale = display_unit(response, system)
+    def __init__(
+        self, response: str, transform: str, factors: tuple[str, ...], system: UnitSystem
+    ) -> None:
+        # a logarithm has no unit that could be changed
+        self.unit, self.scale = display_unit(
+            fitted_unit(response, transform), system if transform == "none" else "si"
+        )
         self._factors = [display_unit(unit, system) for unit in factors]
 
     def of_term(self, powers: tuple[int, ...]) -> tuple[str, float]:
@@ -48,5 +59,9 @@ def table_of(*headings: str, texts: int = 1, title: str | None = None) -> Table:
     """An empty table whose first columns are text and whose others are numbers."""
     table = Table(box=None, pad_edge=False, title=title, title_justify="left", title_style="bold")
     for number, heading in enumerate(headings):
-        table.add_column(escape(heading), justify="left" if number < texts else "right")
+        # where there is little room names are broken, and numbers never
+        if number < texts:
+            table.add_column(escape(heading), overflow="fold")
+        else:
+            table.add_column(escape(heading), justify="right", no_wrap=True)
     return table

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from reduction.campaign.runtable import RunSeries
-from reduction.cli.numbers import plain
+from reduction.cli.numbers import fitted_unit, plain
 from reduction.surface.confounding import alias_matrix
 from reduction.surface.drift import Drift
 from reduction.surface.product import (
@@ -21,13 +21,6 @@ from reduction.surface.screening import ScreeningEffects
 from reduction.units import combined_unit
 
 __all__ = ["effects_document", "frame", "surface_document"]
-
-
-def _fitted_unit(unit: str, transform: str) -> str | None:
-    """Unit of the coefficients; None where none is stated."""
-    if not unit:
-        return None
-    return {"none": unit, "log": f"ln({unit})"}.get(transform, f"Box-Cox of {unit}")
 
 
 def frame(runs: RunSeries, notes: tuple[str, ...]) -> dict[str, Any]:
@@ -50,7 +43,7 @@ def surface_document(
 ) -> dict[str, Any]:
     """One response: every number of its surface."""
     anova, lack, canonical = surfaces.anova, surfaces.lack_of_fit, surfaces.canonical
-    fitted_unit = _fitted_unit(runs.response_units[index], surfaces.transform[index])
+    unit = fitted_unit(runs.response_units[index], surfaces.transform[index])
     lines = zip(
         anova.source, anova.degrees_of_freedom[index], anova.sum_of_squares[index],
         anova.mean_square[index], anova.f[index], anova.p_value[index], anova.error_term,
@@ -63,7 +56,7 @@ def surface_document(
         "transform": surfaces.transform[index],
         "transform_exponent": plain(surfaces.transform_exponent[index]),
         "transform_exponent_interval": plain(surfaces.transform_exponent_interval[index]),
-        "coefficient_unit": fitted_unit,
+        "coefficient_unit": unit or None,
         "labels": list(surfaces.labels),
         "terms": list(surfaces.term_names),
         "coefficient": plain(surfaces.coefficient[index]),
@@ -113,8 +106,7 @@ def surface_document(
             "coefficient": plain(surfaces.coefficient_engineering[index]),
             "standard_error": plain(surfaces.coefficient_engineering_standard_uncertainty[index]),
             "unit": [
-                None if fitted_unit is None
-                else combined_unit(fitted_unit, runs.factor_units, powers.tolist())
+                combined_unit(unit, runs.factor_units, powers.tolist()) if unit else None
                 for powers in surfaces.exponents
             ],
         },

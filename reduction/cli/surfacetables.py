@@ -30,51 +30,62 @@ def show_surfaces(
 ) -> None:
     """Each surface: its terms, its analysis of variance, its stationary point."""
     for index, name in enumerate(surfaces.response_names):
-        scale = surfaces.transform[index]
-        # another scale has no unit that could be changed
-        shown = Shown(
-            runs.response_units[index], runs.factor_units, system if scale == "none" else "si"
-        )
-        unit = f" [{shown.unit}]" if shown.unit else ""
-        of = {"none": "", "log": "ln of "}.get(
-            scale, f"Box-Cox transform ({surfaces.transform_exponent[index]:.3g}) of "
-        )
-        outcome.say(f"{of}{name}{unit}")
+        transform = surfaces.transform[index]
+        shown = Shown(runs.response_units[index], transform, runs.factor_units, system)
+        power = f", Box-Cox exponent {surfaces.transform_exponent[index]:.3g}"
+        unit = f" [{shown.unit}]" if shown.unit else f" ({transform})" * (transform != "none")
+        outcome.say(f"{name}{unit}{power if transform == 'box-cox' else ''}")
         if surfaces.reason[index] in (1, 2):
             outcome.say(f"  {FIT_REASONS[int(surfaces.reason[index])]}")
             continue
-        _show_terms(surfaces, index, shown, outcome)
+        _show_terms(surfaces, index, shown.scale, outcome)
         outcome.say(
             f"r2 {short(surfaces.r2[index])}, adjusted {short(surfaces.adjusted_r2[index])}, "
             f"predicted {short(surfaces.predicted_r2[index])}; "
-            f"sigma {short(shown.scale * surfaces.sigma[index])} with "
-            f"{surfaces.degrees_of_freedom[index]} degrees of freedom; "
             f"F {short(surfaces.overall_f[index])}, p {short(surfaces.overall_p_value[index], 3)}"
         )
+        outcome.say(
+            f"sigma {short(shown.scale * surfaces.sigma[index])} with "
+            f"{surfaces.degrees_of_freedom[index]} degrees of freedom"
+        )
         _show_anova(surfaces, index, shown.scale, outcome)
-        _say_stationary(surfaces, index, shown, runs, outcome, system)
+        _show_stationary(surfaces, index, shown, runs, outcome, system)
+        _show_equation(surfaces, index, shown, outcome)
         outcome.say("")
     for note in notes:
         outcome.say(f"note: {note}")
 
 
-def _show_terms(surfaces: ResponseSurfaces, index: int, shown: Shown, outcome: Outcome) -> None:
-    # coded factors without units of their own have one equation
-    has_units = not np.array_equal(surfaces.coefficient, surfaces.coefficient_engineering)
-    in_units = ("in units", "unit") if has_units else ()
-    table = table_of("", "term", "coefficient", "standard error", "t", "p", *in_units, texts=2)
+def _show_terms(surfaces: ResponseSurfaces, index: int, scale: float, outcome: Outcome) -> None:
+    table = table_of("", "term", "coefficient", "standard error", "t", "p", texts=2)
     rows = zip(
         surfaces.labels, surfaces.term_names, surfaces.coefficient[index],
         surfaces.coefficient_standard_uncertainty[index], surfaces.t[index],
-        surfaces.p_value[index], surfaces.coefficient_engineering[index], surfaces.exponents,
-        strict=True,
+        surfaces.p_value[index], strict=True,
     )  # fmt: skip
-    for label, term, coefficient, error, t, p, engineering, powers in rows:
+    for label, term, coefficient, error, t, p in rows:
+        table.add_row(
+            label, escape(term), short(scale * coefficient), short(scale * error), short(t, 4),
+            short(p, 3),
+        )  # fmt: skip
+    outcome.show(table)
+
+
+def _show_equation(surfaces: ResponseSurfaces, index: int, shown: Shown, outcome: Outcome) -> None:
+    """The equation in the units of the factors, where they have any."""
+    engineering = surfaces.coefficient_engineering[index]
+    if np.array_equal(surfaces.coefficient[index], engineering):
+        return
+    errors = surfaces.coefficient_engineering_standard_uncertainty[index]
+    table = table_of("", "in units", "coefficient", "standard error", "unit", texts=2)
+    rows = zip(
+        surfaces.labels, surfaces.term_names, engineering, errors, surfaces.exponents, strict=True
+    )
+    for label, term, coefficient, error, powers in rows:
         unit, scale = shown.of_term(tuple(powers.tolist()))
         table.add_row(
-            label, escape(term), short(shown.scale * coefficient), short(shown.scale * error),
-            short(t, 4), short(p, 3),
-            *((short(scale * engineering), escape(unit)) if has_units else ()),
+            label, escape(term), short(scale * coefficient, 8), short(scale * error),
+            escape(unit),
         )  # fmt: skip
     outcome.show(table)
 
@@ -97,7 +108,7 @@ def _show_anova(surfaces: ResponseSurfaces, index: int, scale: float, outcome: O
         outcome.say(f"no test of lack of fit: {reason}")
 
 
-def _say_stationary(
+def _show_stationary(
     surfaces: ResponseSurfaces,
     index: int,
     shown: Shown,
@@ -110,21 +121,20 @@ def _say_stationary(
     if reason:
         outcome.say(f"no stationary point: {reason}")
         return
-    places = []
+    inside = "among" if canonical.is_inside[index] else "outside"
+    eigenvalues = ", ".join(short(shown.scale * value) for value in canonical.eigenvalue[index])
+    outcome.say(
+        f"{STATIONARY_KINDS[int(canonical.kind[index])]} {inside} the levels, value "
+        f"{short(shown.scale * canonical.stationary_value[index])}; eigenvalues {eigenvalues}"
+    )
+    table = table_of("stationary point", "coded", "in units", "unit")
     for name, unit, coded, engineering in zip(
         runs.factor_names, runs.factor_units, canonical.stationary_point[index],
         canonical.stationary_point_engineering[index], strict=True,
     ):  # fmt: skip
         text, scale = display_unit(unit, system)
-        own = f" = {short(scale * engineering)} {text}" if unit != "1" else ""
-        places.append(f"{name} {short(coded, 4)}{own}")
-    inside = "among" if canonical.is_inside[index] else "outside"
-    eigenvalues = ", ".join(short(shown.scale * value) for value in canonical.eigenvalue[index])
-    outcome.say(
-        f"{STATIONARY_KINDS[int(canonical.kind[index])]} {inside} the levels, value "
-        f"{short(shown.scale * canonical.stationary_value[index])}: {', '.join(places)}"
-    )
-    outcome.say(f"eigenvalues {eigenvalues}")
+        table.add_row(escape(name), short(coded), short(scale * engineering), escape(text))
+    outcome.show(table)
 
 
 def show_effects(

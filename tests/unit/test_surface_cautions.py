@@ -72,6 +72,12 @@ def test_runs_above_a_share_of_the_strength_are_named():
     assert "share-over-limit" not in found(sheet(), peak_share_limit=0.5)
 
 
+def test_a_load_at_its_limit_is_not_above_it():
+    # the peak of run 12, 30 + 12 %, is 0.42000000000000004 of the strength
+    assert sheet().peak_share.max() == pytest.approx(0.42)
+    assert "share-over-limit" not in found(sheet(), peak_share_limit=0.42)
+
+
 def test_a_share_that_is_not_known_is_said():
     factors = (
         FREQUENCY,

@@ -3,7 +3,13 @@
 import pytest
 
 from reduction.errors import SettingsError
-from reduction.units import display_unit, parse_quantity, scale_to_si
+from reduction.units import (
+    combined_unit,
+    display_unit,
+    parse_quantity,
+    scale_of_unit,
+    scale_to_si,
+)
 
 POUND_FORCE = 0.45359237 * 9.80665
 
@@ -97,3 +103,43 @@ def test_unknown_unit_system_is_refused():
 def test_a_text_that_is_no_unit_expression_is_refused(unit):
     with pytest.raises(SettingsError, match="unit"):
         scale_to_si(unit, "force")
+
+
+@pytest.mark.parametrize(
+    ("unit", "si_unit", "factor", "offset"),
+    [
+        ("lbf", "N", 4.4482216152605, 0.0),
+        ("lb", "N", 4.4482216152605, 0.0),
+        ("J m-1", "N", 1.0, 0.0),
+        ("lbf ft / ft", "N", 4.4482216152605, 0.0),
+        ("cP", "kg m-1 s-1", 1e-3, 0.0),
+        ("degC", "K", 1.0, 273.15),
+        ("%", "1", 0.01, 0.0),
+        ("in2", "m2", 0.0254**2, 0.0),
+    ],
+)
+def test_a_unit_finds_its_own_dimension(unit, si_unit, factor, offset):
+    found = scale_of_unit(unit)
+    assert found[0] == si_unit
+    assert found[1:] == pytest.approx((factor, offset), rel=1e-12)
+
+
+def test_a_unit_that_nobody_knows_has_no_dimension():
+    with pytest.raises(SettingsError, match="unit 'furlongs_x' is not known") as refused:
+        scale_of_unit("furlongs_x")
+    assert "Without a unit the numbers stay" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("unit", "others", "powers", "combined"),
+    [
+        ("N", ["Hz", "N"], [1, 2], "N-1 Hz-1"),
+        ("N", ["N"], [1], "1"),
+        ("", ["m s-1"], [2], "m-2 s2"),
+        ("J m-1", ["m"], [2], "J m-3"),
+        ("ln(N)", ["N", "1"], [1, 2], "ln(N) N-1"),
+        ("ft lbf / ft", ["lbf"], [1], "(ft lbf / ft) lbf-1"),
+    ],
+)
+def test_units_of_a_coefficient_are_multiplied_out(unit, others, powers, combined):
+    assert combined_unit(unit, others, powers) == combined
