@@ -275,13 +275,22 @@ def run_campaign(
     if statuses:
         write_whole(folder / "status.csv", status_csv(rows))
     if archives or outcomes is not None:
-        tables = write_tables(archives, folder / "tables", outcomes=outcomes)
+        surfaces = folder / "surfaces.nc" if campaign.experiments else None
+        if surfaces is not None and not surfaces.exists():
+            surfaces = None  # its runs wait
+        tables = write_tables(archives, folder / "tables", surfaces=surfaces, outcomes=outcomes)
         if progress is not None:
             progress("report", campaign.id)
         report = write_report(folder, reports / campaign.id, units=units)
     stray = sorted(path.name for path in test_archives(folder) if path not in ours)
-    if outcomes is None and (folder / "outcomes.nc").exists():
-        stray.append("outcomes.nc")
+    stray += [
+        path.name
+        for path, is_ours in (
+            (folder / "outcomes.nc", outcomes is not None),
+            (folder / "surfaces.nc", bool(campaign.experiments)),
+        )
+        if path.exists() and not is_ours
+    ]
     return CampaignResult(
         tuple(statuses), tuple(experiments), folder, report, tuple(stray), tuple(tables)
     )

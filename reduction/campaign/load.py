@@ -277,7 +277,7 @@ def load_campaign(path: Path) -> Campaign:
     if file.campaign.synthetic or "synthetic" in file.campaign.source.lower():
         attributes["synthetic"] = "yes"
     specimens = {name: specimen_of(path, name, section) for name, section in file.specimens.items()}
-    results, outcomes = outcomes_of(path, _results_file(path, file), specimens, plans)
+    results, outcomes = outcomes_of(path, _results_file(path, file), specimens)
     return Campaign(
         path=path,
         id=file.campaign.id,

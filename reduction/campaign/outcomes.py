@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
-from reduction.campaign.faults import in_toml
 from reduction.campaign.results import read_results
 from reduction.errors import LogError
 from reduction.ingest.source import hash_source, unchanged
@@ -16,11 +15,9 @@ from reduction.record import Specimen
 
 __all__ = ["outcomes_of"]
 
-_PRODUCT = "outcomes"
-
 
 def outcomes_of(
-    path: Path, name: str, specimens: Mapping[str, Specimen], tests: Collection[str]
+    path: Path, name: str, specimens: Mapping[str, Specimen]
 ) -> tuple[Source | None, tuple[Outcome, ...]]:
     """Read the table of results of a campaign.
 
@@ -32,8 +29,6 @@ def outcomes_of(
         The table, in its folder; empty where there is none.
     specimens : mapping of str to Specimen
         Sheets, for what a row leaves open.
-    tests : collection of str
-        Names of products of tests, with which that of the results may not collide.
 
     Returns
     -------
@@ -44,18 +39,11 @@ def outcomes_of(
 
     Raises
     ------
-    SettingsError
-        If a test has the name of the product.
     LogError
         If the table cannot be used, or a row names an unknown specimen.
     """
     if not name:
         return None, ()
-    if _PRODUCT in tests:
-        raise in_toml(
-            path, f"a test has the name '{_PRODUCT}', which the product of the results has",
-            needed="another name of the test",
-        )  # fmt: skip
     table = path.parent / name
     with unchanged(table):
         source = hash_source(table, name)
