@@ -74,6 +74,8 @@ def _registry() -> pint.UnitRegistry[float]:
     registry: pint.UnitRegistry[float] = pint.UnitRegistry(cache_folder=None)
     registry.define("kip = 1000 * lbf")
     registry.define("tonne_force = 1000 * kgf = tf")
+    registry.define("rev = revolution = cyc")
+    registry.define("cpm = cycle / minute")
     return registry
 
 
@@ -138,6 +140,11 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
         # pound is a mass in pint; a test house that writes lb for a load means lbf
         text = "lbf" if dimension == "force" and unit.strip() in ("lb", "lbs") else _pint_text(unit)
         target_unit = registry.Unit(_PINT_SI.get(target, target))
+        # turns and radians a second are frequencies too; pint has them 2 pi and 1 times a hertz
+        if dimension == "frequency" and "radian" in dict(
+            registry.Quantity(1.0, text).to_root_units().unit_items()
+        ):
+            target_unit = registry.Unit("turn/s")
         zero = registry.Quantity(0.0, text).to(target_unit).magnitude
         one = registry.Quantity(1.0, text).to(target_unit).magnitude
     except pint.DimensionalityError as error:

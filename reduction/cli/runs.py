@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, cast
 
@@ -15,6 +16,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from reduction.batch.experiments import ExperimentStatus
 from reduction.batch.run import check_campaign as check_tests
 from reduction.batch.run import run_campaign as run_tests
 from reduction.batch.status import TestStatus
@@ -72,11 +74,24 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
     return table
 
 
-def _report_failures(outcome: Outcome, tests: Sequence[TestStatus]) -> None:
-    for test in tests:
-        if test.exit_status:
-            outcome.error(test.message)
-            outcome.raise_status(test.exit_status)
+def _report_failures(
+    outcome: Outcome, tests: Sequence[TestStatus], experiments: Sequence[ExperimentStatus] = ()
+) -> None:
+    ended = [(test.exit_status, test.message) for test in tests]
+    ended += [(one.exit_status, one.message) for one in experiments]
+    for exit_status, message in ended:
+        if exit_status:
+            outcome.error(message)
+            outcome.raise_status(exit_status)
+
+
+def _experiment_table(experiments: Sequence[ExperimentStatus]) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for heading in ("experiment", "status", "message"):
+        table.add_column(heading)
+    for one in experiments:
+        table.add_row(one.id, one.status, escape(one.message))
+    return table
 
 
 def _model_lines(
@@ -141,19 +156,22 @@ def run_campaign(
             progress=progress,
         )
     outcome.show(_status_table(result.tests))
+    if result.experiments:
+        outcome.show(_experiment_table(result.experiments))
     for name in result.stray:
         outcome.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
     outcome.say(f"products: {result.processed}")
     document: dict[str, Any] = {
         "campaign": campaign.id,
         "tests": [test.document() for test in result.tests],
+        "experiments": [asdict(one) for one in result.experiments],
         "processed": str(result.processed),
         "report": None if result.report is None else str(result.report),
     }
     if result.report is not None:
         outcome.say(f"report:   {result.report}")
     outcome.answer(document)
-    _report_failures(outcome, result.tests)
+    _report_failures(outcome, result.tests, result.experiments)
 
 
 def report_again(processed: Path, *, reports: Path, outcome: Outcome) -> None:

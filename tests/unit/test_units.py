@@ -143,3 +143,15 @@ def test_a_unit_that_nobody_knows_has_no_dimension():
 )
 def test_units_of_a_coefficient_are_multiplied_out(unit, others, powers, combined):
     assert combined_unit(unit, others, powers) == combined
+
+
+@pytest.mark.parametrize(
+    ("unit", "hertz"),
+    [
+        ("rpm", 1 / 60), ("cpm", 1 / 60), ("cycles/min", 1 / 60), ("rev/min", 1 / 60),
+        ("cyc/s", 1.0), ("cycle/s", 1.0), ("1/min", 1 / 60), ("kHz", 1000.0),
+        ("rad/s", 0.15915494309189535), ("deg/s", 1 / 360),
+    ],
+)  # fmt: skip
+def test_a_turn_is_one_cycle_in_every_way_of_writing_a_frequency(unit, hertz):
+    assert scale_to_si(unit, "frequency") == pytest.approx((hertz, 0.0))
