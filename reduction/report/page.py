@@ -28,10 +28,19 @@ from reduction.report.figures.campaign import (
     draw_ratios,
     draw_static_dynamic,
 )
+from reduction.report.outcomesection import make_outcome_section
+from reduction.report.outcomeview import OutcomeView, view_outcomes
 from reduction.report.section import Section, make_part, make_section
 from reduction.report.specimentables import specimen_notes, specimen_table
 from reduction.report.stepwisetables import interval_table
-from reduction.report.summary import find_faults, summary_sentence, test_table, tiles
+from reduction.report.summary import (
+    Finding,
+    Tile,
+    find_faults,
+    summary_sentence,
+    test_table,
+    tiles,
+)
 from reduction.report.testtables import segment_table
 from reduction.report.view import Status, TestView, any_synthetic, natural_order
 from reduction.units import UnitSystem
@@ -67,7 +76,8 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     """
     paths = sorted(test_archives(processed), key=lambda path: natural_order(path.stem))
     statuses = _read_statuses(processed / "status.csv")
-    if not paths and not statuses:
+    of_outcomes = processed / "outcomes.nc"
+    if not paths and not statuses and not of_outcomes.is_file():
         raise ArchiveError(
             "there is nothing to report on",
             found=f"no archive and no status.csv in {processed}",
@@ -91,9 +101,16 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     by_id = {view.id: view for view in tests}
     order = sorted(range(len(tests)), key=lambda place: _place(tests[place], by_id, starts))
     tests = [tests[place] for place in order]
-    html = _render(
-        tests, [sections[place] for place in order], statuses, unreadable, units, processed.name
-    )
+    ordered = [sections[place] for place in order]
+    outcomes = None
+    if of_outcomes.is_file():
+        try:
+            with open_archive(of_outcomes) as data:
+                outcomes = view_outcomes(data, units)
+            ordered.insert(0, make_outcome_section(outcomes))
+        except ArchiveError as error:
+            unreadable[of_outcomes.name] = str(error)
+    html = _render(tests, outcomes, ordered, statuses, unreadable, units, processed.name)
     page = out / "index.html"
     write_whole(page, html)
     return page
@@ -101,6 +118,7 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
 
 def _render(
     tests: Sequence[TestView],
+    outcomes: OutcomeView | None,
     sections: Sequence[Section],
     statuses: Sequence[Status],
     unreadable: dict[str, str],
@@ -121,15 +139,16 @@ def _render(
         make_part("Static against dynamic", draw_static_dynamic(tests)),
     ]
     intervals = [interval_table(view) for view in tests]
-    first = tests[0] if tests else None
+    first = tests[0] if tests else outcomes
     return template.render(
         title=(first.attribute("title") if first else "") or f"Campaign {folder}",
         campaign=first.attribute("campaign") if first else folder,
-        summary=summary_sentence(tests),
+        summary=summary_sentence(tests) or ("" if outcomes is None else f"{outcomes.summary}."),
         institution=first.attribute("institution").rstrip(".") if first else "",
         references=first.attribute("references") if first else "",
-        synthetic=any_synthetic(tests),
-        tiles=tiles(tests, statuses, faults),
+        synthetic=any_synthetic(tests) or (outcomes is not None and outcomes.is_synthetic),
+        has_tests=bool(tests or statuses),
+        tiles=_tiles(tests, outcomes, statuses, faults),
         specimens=specimen_table(tests, units),
         specimen_notes=specimen_notes(tests),
         tests=test_table(tests, statuses),
@@ -145,6 +164,23 @@ def _render(
         script=(room / "static" / "page.js").read_text("utf-8"),
         plotly=get_plotlyjs(),
     )
+
+
+def _tiles(
+    tests: Sequence[TestView],
+    outcomes: OutcomeView | None,
+    statuses: Sequence[Status],
+    faults: Sequence[Finding],
+) -> list[Tile]:
+    """Numbers at the top; those of tests only where there are tests."""
+    found = tiles(tests, statuses, faults)
+    if not (tests or statuses):
+        found = [one for one in found if one.target == "wrong"]
+    if outcomes is None:
+        return found
+    size = len(outcomes.outcomes)
+    noun = "outcome" if size == 1 else "outcomes"
+    return [Tile(f"{size:,}", f"{noun} without a log", "outcomes"), *found]
 
 
 def _read_statuses(path: Path) -> list[Status]:

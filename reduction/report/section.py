@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from reduction.report.figure import Figure
 from reduction.report.figures.elastomers import draw_mooney
@@ -35,7 +36,7 @@ from reduction.report.testtables import (
 )
 from reduction.report.view import TestView
 
-__all__ = ["Part", "Section", "make_part", "make_section"]
+__all__ = ["Part", "Section", "make_part", "make_section", "provenance_of"]
 
 _LINES = ("raw_file", "raw_file_sha256", "raw_file_bytes")
 _LONG = ("settings", "raw_metadata", "history")
@@ -103,22 +104,32 @@ def make_section(view: TestView) -> Section:
         make_part("First loading", draw_mooney(view), [stress_table(view), elastomer_table(view)]),
         make_part("History of the specimens", (), [history_table(view)]),
     ]  # fmt: skip
-    known = {*_LINES, *_LONG, "test", "title", "id"}
-    about = [
-        (name, " ".join(str(value).splitlines()))
-        for name, value in view.data.attrs.items()
-        if name not in known
-    ]
-    lines = [(name, view.attribute(name)) for name in _LINES]
-    documents = [(name, _readable(view.attribute(name))) for name in _LONG]
+    provenance, documents = provenance_of(view.data.attrs)
     return Section(
         key=view.key,
         title=view.id,
         subtitle=f"{view.kind}; specimens: {', '.join(view.specimens)}",
         parts=tuple(part for part in parts if part.figures or part.tables or part.sentences),
         notes=tuple(grouped_notes(view)),
-        provenance=tuple((name, text) for name, text in (*lines, *about) if text),
-        documents=tuple((name, text) for name, text in documents if text),
+        provenance=provenance,
+        documents=documents,
+    )
+
+
+def provenance_of(
+    attributes: Mapping[Any, Any],
+) -> tuple[tuple[tuple[str, str], ...], tuple[tuple[str, str], ...]]:
+    """Return the lines that say where numbers come from, and the long documents."""
+    given = {str(name): str(value) for name, value in attributes.items()}
+    known = {*_LINES, *_LONG, "test", "title", "id"}
+    lines = [(name, given.get(name, "")) for name in _LINES]
+    lines += [
+        (name, " ".join(text.splitlines())) for name, text in given.items() if name not in known
+    ]
+    documents = [(name, _readable(given.get(name, ""))) for name in _LONG]
+    return (
+        tuple((name, text) for name, text in lines if text),
+        tuple((name, text) for name, text in documents if text),
     )
 
 

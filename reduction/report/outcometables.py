@@ -1,0 +1,295 @@
+"""Tables of outcomes without a log: strength, exposure, life, and lines that go slack."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import isfinite
+
+from reduction.outcomes.groups import Group
+from reduction.outcomes.life_product import SnapLevels
+from reduction.outcomes.life_rows import fatigue_rows, load_life_rows
+from reduction.outcomes.row import Row
+from reduction.outcomes.rows import exposure_rows, strength_rows
+from reduction.outcomes.series import load_series
+from reduction.outcomes.snap import summarise_snap_loading
+from reduction.report.htmltable import (
+    NOT_GIVEN,
+    Cell,
+    Table,
+    count,
+    make_table,
+    measured,
+    number,
+    number_text,
+    words,
+)
+from reduction.report.outcomeview import OutcomeView, group_names
+from reduction.report.style import Shown, shown
+from reduction.report.uncertainty import plus_minus
+
+__all__ = [
+    "exposure_table",
+    "fatigue_table",
+    "load_life_table",
+    "snap_sentences",
+    "snap_table",
+    "strength_table",
+]
+
+_PERCENT = Shown("%", 100.0)
+_NUMBER = Shown("1", 1.0)
+_SCATTER = plus_minus("scatter between the tests of a group", left_out="calibration of the machine")
+_FIT = plus_minus("scatter of the tests about the fit", left_out="calibration of the machine")
+_BOUNDS = "Intervals hold 95 %, two-sided."
+_SNAP = "Upper bound of the share that fails by then, where all survived; one-sided, 95 %."
+
+_Column = tuple[str, Callable[[Row], Cell]]
+
+
+def _table(
+    caption: str,
+    rows: Sequence[Row],
+    columns: Sequence[_Column],
+    view: OutcomeView,
+    *notes: str,
+    reason: str,
+) -> Table | None:
+    """Lay out rows by group; a column in which nothing stands is left out.
+
+    What is missing, and why, stands below: the words of column ``reason``.
+    """
+    if not rows:
+        return None
+    names = group_names([_group(row) for row in rows], view.units)
+    cells = [[words(name), *(cell(row) for _, cell in columns)] for name, row in zip(
+        names, rows, strict=True
+    )]  # fmt: skip
+    filled = [
+        place
+        for place in range(len(columns) + 1)
+        if any(row[place].text != NOT_GIVEN for row in cells)
+    ]
+    headings = ["group", *(heading for heading, _ in columns)]
+    return make_table(
+        caption, [headings[place] for place in filled],
+        [[row[place] for place in filled] for row in cells], synthetic=view.is_synthetic,
+        remarks=[*notes, *_missing(names, rows, reason)], is_tall=len(rows) > 12,
+    )  # fmt: skip
+
+
+def _missing(names: Sequence[str], rows: Sequence[Row], reason: str) -> list[str]:
+    told: dict[str, list[str]] = {}
+    for name, row in zip(names, rows, strict=True):
+        load = _real(row, "peak_load_ratio")
+        place = f" at {_PERCENT.factor * load:.3g} %" if load == load else ""
+        if row[reason]:
+            told.setdefault(str(row[reason]), []).append(f"{name}{place}")
+    return [f"{'; '.join(groups)}: {text}." for text, groups in told.items()]
+
+
+def _group(row: Row) -> Group:
+    diameter, exposure = _real(row, "diameter"), _real(row, "exposure")
+    return Group(
+        str(row["line"]), str(row["material"]), str(row["construction"]),
+        diameter if diameter == diameter else None,
+        str(row.get("condition", "")), exposure if exposure == exposure else None,
+    )  # fmt: skip
+
+
+def _real(row: Row, name: str) -> float:
+    return float(row.get(name, "nan"))
+
+
+def _known(name: str, unit: Shown) -> Callable[[Row], Cell]:
+    return lambda row: measured(_real(row, name), _real(row, f"{name}_standard_uncertainty"), unit)
+
+
+def _plain(name: str, unit: Shown, digits: int = 3) -> Callable[[Row], Cell]:
+    return lambda row: number(_real(row, name), unit, digits=digits)
+
+
+def _count(name: str) -> Callable[[Row], Cell]:
+    return lambda row: count(_real(row, name))
+
+
+def _some(name: str) -> Callable[[Row], Cell]:
+    """A count that is worth a column only where something was counted."""
+    return lambda row: count(_real(row, name)) if row[name] else words("")
+
+
+def _interval(low: str, high: str, unit: Shown, digits: int = 3) -> Callable[[Row], Cell]:
+    def cell(row: Row) -> Cell:
+        ends = [_real(row, name) for name in (low, high)]
+        if not any(isfinite(end) for end in ends):
+            return words("")
+        text = " to ".join(number_text(end * unit.factor, digits) for end in ends)
+        return Cell(text, " ".join(repr(end) for end in ends), is_number=True)
+
+    return cell
+
+
+def strength_table(view: OutcomeView, name: str) -> Table | None:
+    """Return a quantity of the table of strength by group: mean, scatter, change, bounds."""
+    is_force = name == "tensile_strength"
+    unit = shown("tension" if is_force else "strain", view.units)
+    what = "tensile strength" if is_force else "strain at failure"
+    rows = [
+        row
+        for row in strength_rows(view.outcomes)
+        if any(row[f"{name}_{use}count"] for use in ("", "lower_bound_", "excluded_"))
+    ]
+    columns: list[_Column] = [
+        ("tests", _count(f"{name}_count")),
+        (unit.label(f"mean {what}"), _known(name, unit)),
+        (unit.label("deviation"), _plain(f"{name}_standard_deviation", unit)),
+        ("deviation over mean [%]", _plain(f"{name}_relative_variability", _PERCENT)),
+        (
+            unit.label("least to greatest"),
+            _interval(f"{name}_minimum", f"{name}_maximum", unit, 4),
+        ),
+        ("change against new [%]", _known(f"{name}_change", _PERCENT)),
+        (
+            "interval of the change [%]",
+            _interval(f"{name}_change_low", f"{name}_change_high", _PERCENT),
+        ),
+        ("p of no change [1]", _plain(f"{name}_p_value", _NUMBER, 2)),
+        ("lower bounds", _some(f"{name}_lower_bound_count")),
+        (unit.label("mean with the bounds"), _plain(f"{name}_with_lower_bounds", unit, 4)),
+        (
+            unit.label("its interval"),
+            _interval(f"{name}_with_lower_bounds_low", f"{name}_with_lower_bounds_high", unit, 4),
+        ),
+        ("not used", _some(f"{name}_excluded_count")),
+    ]
+    return _table(
+        f"{what.capitalize()} by group: mean of the valid tests; a break in the termination is a"
+        " lower bound and stands apart. Change: against the group of the same line whose"
+        " condition is new.",
+        rows, columns, view, _SCATTER, _BOUNDS, reason=f"{name}_reason",
+    )  # fmt: skip
+
+
+def exposure_table(view: OutcomeView) -> Table | None:
+    """Return the straight line of strength over years in the field, one row a line."""
+    unit = shown("tension", view.units)
+    columns: list[_Column] = [
+        ("breaks", _count("break_count")),
+        ("years", _interval("exposure_low", "exposure_high", _NUMBER)),
+        (unit.label("strength when new"), _known("strength_when_new", unit)),
+        (f"change a year [{unit.unit}/year]", _known("strength_slope", unit)),
+        ("lost a year [% of new]", _plain("share_lost_per_year", _PERCENT)),
+        (
+            "its interval [% of new]",
+            _interval("share_lost_per_year_low", "share_lost_per_year_high", _PERCENT),
+        ),
+        (unit.label("deviation of a break"), _plain("strength_scatter", unit)),
+        ("p of a straight line [1]", _plain("lack_of_fit_p_value", _NUMBER, 2)),
+        ("lower bounds", _some("lower_bound_count")),
+        ("not used", _some("unused_count")),
+    ]
+    return _table(
+        "Strength against time in the field: a straight line through the breaks of each line.",
+        exposure_rows(view.outcomes), columns, view, _FIT, _BOUNDS, reason="exposure_reason",
+    )  # fmt: skip
+
+
+def fatigue_table(view: OutcomeView, quantity: str) -> Table | None:
+    """Return cycles to failure or of abrasion by group and peak load."""
+    force = shown("tension", view.units)
+    rows = [row for row in fatigue_rows(view.outcomes) if row["quantity"] == quantity]
+    columns: list[_Column] = [
+        ("peak load [% of rated break strength]", _plain("peak_load_ratio", _PERCENT)),
+        (force.label("peak load"), _plain("peak_load", force, 4)),
+        ("least load [% of rated break strength]", _plain("minimum_load_ratio", _PERCENT)),
+        ("failed", _count("failed_count")),
+        ("stopped", _some("suspended_count")),
+        ("mean of the failed [1]", _known("mean_cycles", _NUMBER)),
+        ("shortest to longest [1]", _interval("least_cycles", "most_cycles", _NUMBER, 4)),
+        ("median life [1]", _plain("median_life", _NUMBER)),
+        ("its interval [1]", _interval("median_life_low", "median_life_high", _NUMBER)),
+        ("not used", _some("excluded_count")),
+    ]
+    what = "Cycles to failure" if quantity == "cycles_to_failure" else "Cycles of abrasion"
+    return _table(
+        f"{what} by group and peak load. The mean is of the failed alone; the median life (Weibull)"
+        " takes tests that were stopped as lower bounds.",
+        rows, columns, view, _SCATTER, _BOUNDS, reason="life_reason",
+    )  # fmt: skip
+
+
+def load_life_table(view: OutcomeView) -> Table | None:
+    """Return the line of life against peak load, one row a group tested at several loads."""
+    columns: list[_Column] = [
+        ("peak loads [%]", _interval("peak_load_ratio_low", "peak_load_ratio_high", _PERCENT)),
+        ("failed", _count("failed_count")),
+        ("stopped", _some("suspended_count")),
+        ("exponent m [1]", _known("life_exponent", _NUMBER)),
+        ("at a peak load of [%]", _plain("reference_load_ratio", _PERCENT)),
+        ("median life there [1]", _known("life_at_reference", _NUMBER)),
+        ("scatter of ln cycles [1]", _known("log_life_scale", _NUMBER)),
+        ("p of a straight line [1]", _plain("lack_of_fit_p_value", _NUMBER, 2)),
+        ("not used", _some("unused_count")),
+    ]
+    return _table(
+        "Life against peak load: ln N = a - m ln S, lives lognormal with one scatter, tests that"
+        " were stopped as lower bounds. Loads over the rated break strength.",
+        load_life_rows(view.outcomes), columns, view, _FIT, reason="life_reason",
+    )  # fmt: skip
+
+
+def _snaps(view: OutcomeView) -> list[tuple[str, SnapLevels]]:
+    """Levels of each group whose line goes slack in its cycles, with its name."""
+    found = [one for one in load_series(view.outcomes) if (one.minimum_load_ratio <= 0).any()]
+    names = group_names([one.group for one in found], view.units)
+    return [
+        (
+            name,
+            summarise_snap_loading(
+                one.peak_load_ratio, one.minimum_load_ratio, one.cycles, one.is_suspended
+            ),
+        )
+        for name, one in zip(names, found, strict=True)
+    ]
+
+
+def snap_table(view: OutcomeView) -> Table | None:
+    """Return what each level of peak load did to lines that go slack."""
+    rows = [
+        [
+            words(name),
+            number(levels.peak_load_ratio[place], _PERCENT, digits=3),
+            count(float(levels.n_failed[place])),
+            count(float(levels.n_suspended[place])),
+            number(levels.mean_cycles[place], digits=4),
+            number(levels.least_cycles[place], digits=4),
+            number(levels.most_cycles[place], digits=4),
+            number(levels.failed_share_high[place], _PERCENT, digits=2),
+        ]
+        for name, levels in _snaps(view)
+        for place in range(levels.peak_load_ratio.size)
+    ]
+    if not rows:
+        return None
+    return make_table(
+        "Lines that go slack in each cycle, by level of peak load.",
+        (
+            "group", "peak load [% of rated break strength]", "failed", "stopped",
+            "mean of the failed [1]", "shortest [1]", "longest [1]", "share failing, at most [%]",
+        ),
+        rows, synthetic=view.is_synthetic, remarks=[_SNAP],
+    )  # fmt: skip
+
+
+def snap_sentences(view: OutcomeView) -> list[str]:
+    """Return between which loads failures begin, and what speaks against a sharp load."""
+    sentences = []
+    for name, levels in _snaps(view):
+        low, high = (_PERCENT.factor * end for end in (levels.threshold_low, levels.threshold_high))
+        known = [f"no failure up to {low:.3g} %"] if low == low else []
+        known += [f"the first at {high:.3g} %"] if high == high else []
+        sentences.append(
+            f"{name}: {', '.join(known)} of the rated break strength, of lines that go slack in"
+            " each cycle. These are loads of the tests, and no safe load."
+        )
+        sentences += [f"{name}: {note}." for note in levels.notes]
+    return sentences
