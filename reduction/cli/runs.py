@@ -17,6 +17,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from reduction.batch.experiments import ExperimentStatus
+from reduction.batch.results import results_found
 from reduction.batch.run import check_campaign as check_tests
 from reduction.batch.run import run_campaign as run_tests
 from reduction.batch.status import TestStatus
@@ -110,13 +111,28 @@ def _model_lines(
     return table
 
 
+def _say_results(outcome: Outcome, results: dict[str, Any] | None) -> None:
+    """How many outcomes without a log there are, and what each is."""
+    if results is None:
+        return
+    outcome.say(f"{results['file']}: {results['outcomes']} outcomes")
+    for quantity, uses in results["quantities"].items():
+        listed = [
+            f"{count} {use.replace('_', ' ')}{'' if count == 1 or use == 'excluded' else 's'}"
+            for use, count in uses.items()
+            if count
+        ]
+        outcome.say(f"  {quantity}: {', '.join(listed)}")
+
+
 def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> None:
     """Read and validate everything, print what was found, write nothing."""
     units = cast("UnitSystem", outcome.units)
     campaign = load_campaign(path)
     with _progress(outcome, len(campaign.tests)) as progress:
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
-    outcome.show(_status_table(statuses))
+    if statuses or not campaign.outcomes:
+        outcome.show(_status_table(statuses))
     for test in statuses:
         for channel, masks in test.found.get("flags", {}).items():
             listed = ", ".join(f"{name} {count}" for name, count in masks.items())
@@ -126,7 +142,15 @@ def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> N
     lines = _model_lines(models, statuses, units)
     if lines.row_count:  # weights hung by hand, and logs that failed, have no strain model
         outcome.show(lines)
-    outcome.answer({"campaign": campaign.id, "tests": [test.document() for test in statuses]})
+    results = results_found(campaign)
+    _say_results(outcome, results)
+    outcome.answer(
+        {
+            "campaign": campaign.id,
+            "tests": [test.document() for test in statuses],
+            "results": results,
+        }
+    )
     _report_failures(outcome, statuses)
 
 
@@ -155,17 +179,23 @@ def run_campaign(
             units=cast("UnitSystem", outcome.units),
             progress=progress,
         )
-    outcome.show(_status_table(result.tests))
+    if result.tests or not campaign.outcomes:
+        outcome.show(_status_table(result.tests))
+    _say_results(outcome, results_found(campaign))
     if result.experiments:
         outcome.show(_experiment_table(result.experiments))
     for name in result.stray:
         outcome.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
     outcome.say(f"products: {result.processed}")
+    if result.tables:
+        outcome.say(f"tables:   {', '.join(path.name for path in result.tables)}")
     document: dict[str, Any] = {
         "campaign": campaign.id,
         "tests": [test.document() for test in result.tests],
         "experiments": [asdict(one) for one in result.experiments],
+        "results": results_found(campaign),
         "processed": str(result.processed),
+        "tables": [str(path) for path in result.tables],
         "report": None if result.report is None else str(result.report),
     }
     if result.report is not None:
