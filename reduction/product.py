@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from reduction.cycles.product import Cycles, Loops
 from reduction.holds.product import HoldResult, hold_numbers
 from reduction.line.product import LineParameters, SlowPull
+from reduction.line.step import RopeStep
 from reduction.moduli.product import (
     AmplitudeSummary,
     CycleIdentity,
@@ -39,6 +40,7 @@ class TestDescription:
     ``attributes`` holds campaign-level attributes (title, institution, source,
     references, license, and ``synthetic = "yes"`` where the data are synthetic) and
     test-level ones (machine, load_cell, calibration_due, medium, temperature, ...).
+    ``failed`` is whether the specimens broke, in its word; None where it says nothing.
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -50,6 +52,7 @@ class TestDescription:
     waveform: str
     order: int | None
     attributes: dict[str, str]
+    failed: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -81,7 +84,8 @@ class ReducedTest:
     `stage_lines` the lines of the history, `settings_json` every setting that was in force.
     ``line`` has one entry a cycle and ``line_of_test`` one a specimen, from the means over the
     cycles, with ``quasi_static_standard_uncertainty`` [N] of the K_0 that both used; ``pulls``
-    is what a slow pull gave, None for a specimen of which it gave nothing.
+    is what a slow pull gave, None for a specimen of which it gave nothing; ``rope_step`` is
+    what the test gave as a step of a rope laboratory's programme.
     """
 
     description: TestDescription
@@ -123,6 +127,7 @@ class ReducedTest:
     quasi_static_standard_uncertainty: Floats | None = None
     line_notes: tuple[str, ...] = ()
     pulls: tuple[SlowPull | None, ...] = ()
+    rope_step: RopeStep | None = None
 
     def all_notes(self) -> tuple[tuple[str, str], ...]:
         """Every note as (stage, text), most serious first, none twice.
@@ -154,6 +159,8 @@ class ReducedTest:
             if product is not None:
                 yield from ((stage, text) for text in product.notes)
         yield from (("line", text) for text in self.line_notes)
+        if self.rope_step is not None:
+            yield from ((self.rope_step.name, text) for text in self.rope_step.notes)
         for ratio in self.ratios:
             yield from (("comparison", text) for text in ratio.notes)
         for fit in self.elastomers:

@@ -17,6 +17,7 @@ __all__ = [
     "PhaseSettings",
     "QualitySettings",
     "ReductionSettings",
+    "RopeSettings",
     "SlipSettings",
     "StrainMethod",
     "StrainSettings",
@@ -128,6 +129,18 @@ class SlipSettings:
 
 
 @dataclass(frozen=True)
+class RopeSettings:
+    """What the steps of a rope programme are read at."""
+
+    last_cycles: int = 10
+    """Cycles at the end of a step over which its dynamic stiffness is taken. [1]"""
+    reference_time: float = 600.0
+    """Time after loading at which the static stiffness between two holds stands. [s]"""
+    failure_share: float = 0.5
+    """A peak below this share of the median peak, to the end, is a failure. [1]"""
+
+
+@dataclass(frozen=True)
 class ReductionSettings:
     """All settings of one test."""
 
@@ -138,3 +151,4 @@ class ReductionSettings:
     modulus: ModulusSettings = field(default_factory=ModulusSettings)
     holds: HoldSettings = field(default_factory=HoldSettings)
     slip: SlipSettings = field(default_factory=SlipSettings)
+    rope: RopeSettings = field(default_factory=RopeSettings)

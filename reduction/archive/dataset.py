@@ -26,6 +26,7 @@ from reduction.archive.per_cycle import (
     slip_values,
     trend_values,
 )
+from reduction.archive.programme import rope_values
 from reduction.archive.samples import row_account, sample_values
 from reduction.archive.schema import schema_of
 from reduction.archive.specimens import history_values, specimen_values, strain_model_values
@@ -93,6 +94,8 @@ def _all_values(test: ReducedTest) -> Values:
         values |= line_values(test.line, test.line_of_test, test.quasi_static_standard_uncertainty)
     if any(test.pulls):
         values |= pull_values(test.pulls, test.specimens)
+    if test.rope_step is not None:
+        values |= rope_values(test.rope_step, test.specimens)
     if test.trend is not None:
         values |= trend_values(test.trend)
     if test.slips is not None:

@@ -24,6 +24,8 @@ dimension                      one entry for
 ``tension_grid``               each tension at which a slow pull is given
 ``pull_term``                  each power of tension in its load-strain cubic
 ``break_share``                each share of the break strength at which its strain is given
+``held_pair``                  each hold after a lower one (``held_pair_specimen``, ...)
+``held_pair_point``            each point of its stiffness against time
 ``slip``                       each step of a splice (``slip_specimen``, ...)
 ``hold``                       each hold and specimen (``hold_specimen``, ...)
 ``hold_time``, ``prony_term``  each stated time after the ramp; each term of a Prony series
@@ -55,6 +57,7 @@ from __future__ import annotations
 from itertools import chain
 
 from reduction.archive.line import LINE_ROWS
+from reduction.archive.programme import ROPE_ROWS
 from reduction.archive.variable import Variable, count, flag, label, mask, measured, stated
 from reduction.record import Quality
 from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES
@@ -270,6 +273,7 @@ _ROWS = chain(
     ),
     stated("peak_tension_change", _S, SEE_PER_DECADE),
     LINE_ROWS,
+    ROPE_ROWS,
     # curves
     stated("strain_window", (), SETTING),
     measured("tangent_modulus", _B, "_count", "_minimum", "_maximum", "_scatter"),

@@ -24,6 +24,8 @@ def describe(campaign: Campaign, survey: Survey) -> TestDescription:
     attributes = campaign.attributes | plan.attributes
     if plan.part_of is not None:
         attributes["part_of"] = plan.part_of
+    if plan.failed is not None:
+        attributes["failed"] = "yes" if plan.failed else "no"
     if plan.target_strain:
         attributes["target_strain"] = " to ".join(f"{value:g}" for value in plan.target_strain)
     return TestDescription(
@@ -34,6 +36,7 @@ def describe(campaign: Campaign, survey: Survey) -> TestDescription:
         waveform=plan.waveform,
         order=plan.order,
         attributes=attributes,
+        failed=plan.failed,
     )
 
 

@@ -115,6 +115,7 @@ def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
         settings=replace(plan.settings, cycles=cycles),
         attributes=plan.attributes | note,
         step_place=place,
+        failed=step.failed,
         steps=(),
     )
 

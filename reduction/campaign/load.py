@@ -162,12 +162,14 @@ def _plan(
         settings=settings,
         part_of=test.part_of,
         log=name,
+        failed=test.failed,
         steps=tuple(
             StepPlan(
                 name=step.name,
                 kind=step.kind or kind,
                 expected_cycles=step.n_cycles,
                 target_strain=step.target_strain,
+                failed=step.failed,
                 note=step.note,
                 **_range(path, name, step),
             )

@@ -29,7 +29,15 @@ __all__ = [
 ]
 
 TestKind = Literal[
-    "cyclic", "fatigue", "relaxation", "creep", "stepwise", "quasi-static", "tensile", "snap"
+    "cyclic",
+    "fatigue",
+    "snap",
+    "bedding-in",
+    "relaxation",
+    "creep",
+    "quasi-static",
+    "tensile",
+    "stepwise",
 ]
 # a name becomes a file name, so it may hold nothing that a path or a shell reads
 Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_\-]{0,99}$")]
@@ -149,6 +157,8 @@ class StepSection(_Section):
     kind: TestKind | None = None
     target_strain: tuple[float, ...] = ()
     n_cycles: int | None = Field(default=None, ge=1)
+    failed: bool | None = None
+    """As of a test."""
     note: Text = ""
 
 
@@ -169,6 +179,8 @@ class TestSection(_Kept):
     """Time at rest before this test."""
     target_strain: tuple[float, ...] = ()
     n_cycles: int | None = Field(default=None, ge=1)
+    failed: bool | None = None
+    """Whether the specimens broke in this test, in the laboratory's word; else the log decides."""
     steps: tuple[StepSection, ...] = ()
 
     @field_validator("file", mode="before")

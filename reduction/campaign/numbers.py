@@ -27,6 +27,7 @@ _DIMENSION: dict[tuple[str, str], Dimension] = {
     ("modulus", "strain_bin_width"): "strain",
     ("modulus", "window"): "strain",
     ("modulus", "stress_at_strain"): "strain",
+    ("rope", "reference_time"): "time",
 }
 # least and greatest value that a stage can work with; SI
 _LIMITS: dict[tuple[str, str], tuple[float, float]] = {
@@ -49,6 +50,9 @@ _LIMITS: dict[tuple[str, str], tuple[float, float]] = {
     ("holds", "maximum_terms"): (1, 5),
     ("slip", "minimum_cycles"): (20, math.inf),
     ("slip", "false_alarm"): (1e-9, 0.5),
+    ("rope", "last_cycles"): (1, math.inf),
+    ("rope", "reference_time"): (1e-3, math.inf),
+    ("rope", "failure_share"): (0.01, 0.99),
 }
 # set elsewhere in campaign.toml, under their own names
 _ELSEWHERE = {("strain", "method"), ("cycles", "control"), ("cycles", "waveform"),

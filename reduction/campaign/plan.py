@@ -26,6 +26,7 @@ class StepPlan:
     cycle_range: tuple[int, int] | None
     expected_cycles: int | None
     target_strain: tuple[float, ...] = ()
+    failed: bool | None = None
     note: str = ""
 
     def product(self, test: str) -> str:
@@ -57,6 +58,8 @@ class TestPlan:
     """Id of the test whose log this is: another than ``id`` for a step of a log."""
     step_place: int = 0
     """Place of a step in its log, from 1; 0 for a test without steps."""
+    failed: bool | None = None
+    """Whether the specimens broke, where the laboratory says so."""
     steps: tuple[StepPlan, ...] = ()
 
 

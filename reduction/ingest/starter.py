@@ -154,7 +154,8 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
         "",
         _SPECIMENS,
         "[defaults]",
-        'kind = "cyclic"  # fatigue, relaxation, creep, stepwise, quasi-static, tensile, snap',
+        'kind = "cyclic"  # bedding-in, fatigue, snap, relaxation, creep, quasi-static, tensile,',
+        "# stepwise",
         'control = "position"  # or load',
     ]
     if marks:

@@ -58,6 +58,7 @@ def cycles_to_failure(
     rated_break_strength: ArrayLike,
     failed: ArrayLike | None = None,
     cycle_number: ArrayLike | None = None,
+    parted_in: ArrayLike | None = None,
     failure_share: float = 0.5,
 ) -> CyclesToFailure:
     """Cycles that a rope lasted, by the fall of its peak or by the laboratory's word.
@@ -72,6 +73,9 @@ def cycles_to_failure(
         Whether it broke, as the laboratory says; left out, the peaks alone decide. [1]
     cycle_number : array_like of int, shape (n_cycles,), optional
         Of each row, where a machine logs some cycles only or an earlier log began. [1]
+    parted_in : array_like of int, shape (n_specimens,), optional
+        Index of the cycle in which the record shows that it parted, the number of cycles
+        where it did after the last; -1 where the record shows nothing. [1]
     failure_share : float, optional
         A peak below this share of the median peak before it is a failure. [1]
 
@@ -90,7 +94,8 @@ def cycles_to_failure(
     Notes
     -----
     A rope that parts within a cycle leaves that cycle incomplete, so the last whole cycle
-    looks sound: the loops alone cannot tell it from a run-out, and the text says so.
+    looks sound: the loops alone cannot tell it from a run-out, and the text says so.  A cycle
+    in which it parted is not one that it lasted, whatever its peak; ``parted_in`` says so.
     Source of the record: [1]_, sec. 5, cycles against the peak as a share of the strength.
 
     Examples
@@ -109,15 +114,18 @@ def cycles_to_failure(
     strength = one_a_specimen(rated_break_strength, n_specimens)
     number = np.arange(1, n_cycles + 1) if cycle_number is None else np.asarray(cycle_number)
     stated = None if failed is None else np.asarray(failed, dtype=bool)
+    seen = np.full(n_specimens, -1) if parted_in is None else np.asarray(parted_in)
     if (
         n_cycles == 0
         or number.shape != (n_cycles,)
+        or seen.shape != (n_specimens,)
         or (stated is not None and stated.shape != (n_specimens,))
+        or (seen == 0).any()
     ):
         raise DataError(
             "cycles to failure: the arrays do not fit the loops",
             found=f"{n_cycles} cycles, numbers {number.shape}",
-            needed="one number a cycle and one word a specimen",
+            needed="one number a cycle, one word a specimen, and a cycle before the failure",
         )
     lasted, parted = np.zeros(n_specimens, dtype=np.int64), np.zeros(n_specimens, dtype=bool)
     levels = np.full((2, n_specimens), np.nan)
@@ -129,12 +137,17 @@ def cycles_to_failure(
         sound = known[peak[known] >= limit]
         fell = bool(sound.size and known[-1] > sound[-1])
         last = int(sound[-1]) if fell else n_cycles - 1
-        parted[row] = fell if stated is None else stated[row]
+        shown = seen[row] > 0
+        if shown:
+            last = min(last, int(seen[row]) - 1)
+        parted[row] = fell or shown if stated is None else stated[row]
         lasted[row] = number[last]
         levels[:, row] = mean_of_rows(
             np.stack([peak[: last + 1], loops.valley_tension[row, : last + 1]])
         )
-        if fell:
+        if shown:
+            how.append("slack at a position at which it was taut")
+        elif fell:
             how.append(f"the peak falls below {failure_share:.0%} of its median and stays there")
         elif stated is None:
             how.append("every whole cycle is sound: a run-out, or a failure after the last one")

@@ -20,7 +20,7 @@ from reduction.errors import DataError
 from reduction.line.strength import one_a_specimen
 from reduction.record import Bools, Floats, freeze_arrays
 
-__all__ = ["TensilePull", "parted_after", "tensile_pull"]
+__all__ = ["TensilePull", "parting_sample", "tensile_pull"]
 
 # a machine that goes back by more than this share of its travel has unloaded the line
 _GIVEN_BACK = 0.05
@@ -63,10 +63,10 @@ class TensilePull:
         freeze_arrays(self)
 
 
-def parted_after(
+def parting_sample(
     position: ArrayLike, tension: ArrayLike, *, last: int, least_position: float, tension_low: float
-) -> bool:
-    """Whether a line is slack after a sample at a position at which it was taut before.
+) -> int:
+    """First sample at which a line is slack at a position at which it was taut before.
 
     Parameters
     ----------
@@ -83,8 +83,8 @@ def parted_after(
 
     Returns
     -------
-    parted : bool
-        True where three readings say so.
+    sample : int
+        -1 where fewer than three readings say so. [1]
 
     Raises
     ------
@@ -100,15 +100,16 @@ def parted_after(
     --------
     >>> position = [1.0, 1.1, 1.2, 1.3, 1.3, 1.3, 1.3]
     >>> tension = [10.0, 50.0, 90.0, 0.0, 0.0, 0.0, 0.0]
-    >>> parted_after(position, tension, last=2, least_position=1.1, tension_low=25.0)
-    True
-    >>> parted_after(position[:3] + [1.0] * 4, tension, last=2, least_position=1.1, tension_low=25)
-    False
+    >>> parting_sample(position, tension, last=2, least_position=1.1, tension_low=25.0)
+    3
+    >>> back = [1.0, 1.1, 1.2, 1.0, 1.0, 1.0, 1.0]
+    >>> parting_sample(back, tension, last=2, least_position=1.1, tension_low=25.0)
+    -1
     """
     place, load = as_same_shape(position=position, tension=tension)
     place, load = place[last + 1 :], load[last + 1 :]
-    found = np.count_nonzero((place >= least_position) & (load < tension_low))
-    return int(found) >= _FEWEST_SAMPLES
+    found = np.flatnonzero((place >= least_position) & (load < tension_low))
+    return last + 1 + int(found[0]) if found.size >= _FEWEST_SAMPLES else -1
 
 
 def tensile_pull(
@@ -183,10 +184,11 @@ def tensile_pull(
         noise = reading_noise(load[: peak + 1])
         numbers[:, row] = load[peak], noise, *_strain_there(load, stretch, peak, noise)
         begin, reached = np.nanmin(place[: peak + 1]), np.nanmax(place[: peak + 1])
-        fell[row] = parted_after(
+        parting = parting_sample(
             place, load, last=peak, least_position=reached - _GIVEN_BACK * (reached - begin),
             tension_low=_FALLEN * load[peak],
         )  # fmt: skip
+        fell[row] = parting > 0
         if broke is not None:
             how.append("as stated")
         elif fell[row]:

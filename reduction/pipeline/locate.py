@@ -17,7 +17,7 @@ from reduction.settings import ReductionSettings
 
 __all__ = ["HELD", "PULLED", "Located", "locate", "usable"]
 
-CYCLIC = ("cyclic", "fatigue")
+CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")
 PULLED = ("quasi-static", "tensile")
 HELD = ("relaxation", "creep")
 _REPEATS = Quality.SATURATED | Quality.STUCK

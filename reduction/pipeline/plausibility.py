@@ -29,6 +29,7 @@ def plausibility_notes(
     cycles: Cycles | None,
     loops: Loops | None,
     curves: ModulusCurves | None,
+    is_snap: bool = False,
 ) -> tuple[str, ...]:
     """Name what is hardly so: sign, unit of position, slack in cycles, waveform.
 
@@ -48,6 +49,8 @@ def plausibility_notes(
         Likewise.
     curves : ModulusCurves or None
         Likewise.
+    is_snap : bool, optional
+        Whether each cycle is to go slack, so that one that does is no fault.
 
     Returns
     -------
@@ -65,8 +68,9 @@ def plausibility_notes(
         return tuple(notes)
     for index, name in enumerate(specimens):
         slopes = None if curves is None else curves.tangent_modulus[index]
+        slack = _taut if is_snap else _slack
         # of a channel of the wrong sign a valley says nothing about slack
-        notes += _sign(name, loops.mean_tension[index], slopes) or _slack(
+        notes += _sign(name, loops.mean_tension[index], slopes) or slack(
             name, loops.valley_tension[index], slack_tension
         )
     return (*notes, *_waveform(cycles, waveform))
@@ -95,6 +99,17 @@ def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[str]
     return [
         f"{name}: slack within {slack} of {valley_tension.size} cycles (tension at or below "
         f"{slack_tension:.4g} N): amplitudes and energies of these include the slack part"
+    ]
+
+
+def _taut(name: str, valley_tension: Floats, slack_tension: float) -> list[str]:
+    """Snap loads that are none: cycles in which the line stays taut."""
+    taut = int(np.count_nonzero(valley_tension > slack_tension))
+    if not taut:
+        return []
+    return [
+        f"{name}: {taut} of {valley_tension.size} cycles are no snap loads: "
+        f"tension stays above {slack_tension:.4g} N, so the line does not go slack in them"
     ]
 
 

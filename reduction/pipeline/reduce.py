@@ -27,6 +27,7 @@ from reduction.pipeline.cyclic import parts_of_cycles
 from reduction.pipeline.loading import parts_of_first_loading
 from reduction.pipeline.locate import HELD, PULLED, Located
 from reduction.pipeline.plausibility import plausibility_notes
+from reduction.pipeline.programme import rope_step
 from reduction.pipeline.rope import PullConditions, parts_of_line, pull_specimens
 from reduction.pipeline.spread import strain_spread
 from reduction.product import History, ReducedTest, TestDescription
@@ -132,7 +133,7 @@ def reduce_test(
     notes += plausibility_notes(
         strain, specimens=record.specimens, slack_tension=standstills.slack_tension,
         waveform=settings.cycles.waveform, cycles=cycles, loops=parts.get("loops"),
-        curves=parts.get("curves"),
+        curves=parts.get("curves"), is_snap=description.kind == "snap",
     )  # fmt: skip
     notes += [
         f"{name}: {text}" for name, text in zip(record.specimens, remarks, strict=True) if text
@@ -155,6 +156,17 @@ def reduce_test(
         holds=holds,
         slack_strain_at_unloading=slack,
         slack_strain_at_unloading_standard_uncertainty=slack_uncertainty,
+        rope_step=rope_step(
+            located,
+            strain,
+            tension,
+            kind=description.kind,
+            specimens=specimens,
+            loops=parts.get("loops"),
+            holds=holds,
+            failed=description.failed,
+            settings=settings.rope,
+        ),
         **parts,
     )
 

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.schema import COEFFICIENTS, SCHEMA
+from reduction.tables.programme import ROPE_TABLES
 from reduction.tables.table import Table
 from reduction.vocabulary import BRANCH_NAMES
 
@@ -211,6 +212,7 @@ TABLES = (
         ("strain_at_break_share",),
         ("strain_at_break_share",),
     ),
+    *ROPE_TABLES,
     Table(
         "slips",
         ("slip",),

@@ -154,7 +154,6 @@ def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(reduced, 
             "C.csv: the file cannot be read; found No such file",
         ),
         (('"pin-to-pin"', '"displacement"'), 2, "displacement"),
-        (("[tests.A]", '[tests.A]\nkind = "snap"'), 4, "does not reduce"),
     ],
 )
 def test_settings_that_cannot_be_used_end_with_their_status(

@@ -70,7 +70,7 @@ def test_parts_of_a_campaign_are_valid():
                 for group in fields(changed)
                 if getattr(changed, group.name) != getattr(ReductionSettings(), group.name)
             )
-    assert seen == {"cycles", "modulus", "holds"}
+    assert seen == {"cycles", "modulus", "holds", "rope"}
 
 
 @pytest.mark.parametrize("part", re.split(r"^## ", LAYOUTS, flags=re.M), ids=lambda part: part[:9])

@@ -12,8 +12,14 @@ from reduction.archive.dataset import to_dataset
 from reduction.archive.write import write_archive
 from reduction.cycles.product import Cycles, Loops
 from reduction.holds.product import HoldResult
+from reduction.line.failure import CyclesToFailure
+from reduction.line.held import HeldPair
 from reduction.line.product import LineParameters
+from reduction.line.programme import BeddingIn, DynamicStiffness
 from reduction.line.pull import fit_pull
+from reduction.line.static import CreepOfHold, static_stiffness
+from reduction.line.step import RopeStep
+from reduction.line.tensile import TensilePull
 from reduction.moduli.product import (
     AmplitudeSummary,
     CycleIdentity,
@@ -349,6 +355,7 @@ def rich_test():
         quasi_static_standard_uncertainty=np.array([10.0, 20.0]),
         line_notes=("new: no slow pull",),
         pulls=(make_pull(np.random.default_rng(3)), None),
+        rope_step=make_rope_step(np.random.default_rng(4)),
         trend=PeakTrend(**{item.name: array(rng, 2) for item in fields(PeakTrend)}),
         slips=make_slips(rng),
         ratios=(make_ratio(rng), make_ratio(rng)),
@@ -363,6 +370,40 @@ def rich_test():
         stress_at_strain_levels=(1.0, 0.5),
         slack_strain_at_unloading=np.array([0.02, np.nan]),
         slack_strain_at_unloading_standard_uncertainty=np.array([0.001, np.nan]),
+    )
+
+
+def make_rope_step(rng):
+    """Every part at once, which no test gives."""
+    arrays = {BeddingIn: (2,), DynamicStiffness: (2, 1), TensilePull: (2,), CyclesToFailure: (2,)}
+    parts = {
+        kind: {item.name: array(rng, *shape) for item in fields(kind)}
+        for kind, shape in arrays.items()
+    }
+    parts[DynamicStiffness] |= {
+        "level": np.array([0]), "n_cycles": np.array([[10], [9]]), "notes": (),
+    }  # fmt: skip
+    parts[CyclesToFailure] |= {
+        "cycles": np.array([60, 4000]), "failed": np.array([True, False]), "how": ("fell", "sound"),
+    }  # fmt: skip
+    parts[TensilePull] |= {"is_break": np.array([True, False]), "how": ("fell", "stopped")}
+    found = static_stiffness(
+        np.arange(1.0, 2000.0), np.full(1999, 300.0), 0.1 + 0.001 * np.log10(np.arange(1.0, 2000.0)),
+        low_tension=100.0, low_strain=0.05, reference_time=100.0,
+    )  # fmt: skip
+    creep = ("new", "used", "new")
+    return RopeStep(
+        "every step",
+        bedding_in=BeddingIn(**(parts[BeddingIn] | {"n_cycles": 20})),
+        dynamic=DynamicStiffness(**parts[DynamicStiffness]),
+        held=(
+            HeldPair("new", 1, 2, 100.0, 300.0, found),
+            HeldPair("used", 1, 2, 100.0, 300.0, None, "the upper hold is too short"),
+        ),
+        creep=tuple(CreepOfHold(name, 0.001, 1e-5, 300.0, 0.3, 0.003, 600.0) for name in creep),
+        lasted=CyclesToFailure(**parts[CyclesToFailure]),
+        tensile=TensilePull(**parts[TensilePull]),
+        notes=("new: the dynamic stiffness has not settled",),
     )
 
 

@@ -65,4 +65,4 @@ def test_a_load_that_repeats_one_value_in_a_hold_of_it_is_no_fault():
 
 def test_a_kind_that_is_not_reduced_is_refused():
     with pytest.raises(DataError, match="of a kind that this version does not reduce"):
-        locate(record(), kind="snap", settings=ReductionSettings())
+        locate(record(), kind="stepwise", settings=ReductionSettings())

@@ -1,0 +1,274 @@
+"""What a step of a rope laboratory's programme gives, by the kind of its test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from reduction.cycles.product import Cycles, Loops
+from reduction.holds.product import HoldResult
+from reduction.line.failure import CyclesToFailure, cycles_to_failure
+from reduction.line.held import HeldPair, held_pairs
+from reduction.line.programme import (
+    BeddingIn,
+    DynamicStiffness,
+    dynamic_stiffness,
+    summarise_bedding_in,
+)
+from reduction.line.static import CreepOfHold, creep_of_hold
+from reduction.line.step import RopeStep
+from reduction.line.tensile import TensilePull, parting_sample, tensile_pull
+from reduction.pipeline.locate import Located
+from reduction.record import Floats, Integers, Specimen
+from reduction.settings import RopeSettings
+
+__all__ = ["rope_step"]
+
+_NAMES = {
+    "bedding-in": "bedding-in",
+    "cyclic": "dynamic stiffness",
+    "quasi-static": "quasi-static stiffness",
+    "creep": "creep",
+    "fatigue": "cycles to failure",
+    "snap": "cycles to failure under snap loads",
+    "tensile": "tensile strength",
+}
+# asked for by name, and so of any specimen; the others are a programme with a rope alone
+_OF_ALL = ("bedding-in", "fatigue", "snap", "tensile")
+# a drift over the cycles that count is told where it passes this share of the stiffness
+_DRIFT_NOTED = 0.01
+_SIGNIFICANT = 3.0
+# a first valley this far from the others, over the range, makes its cycle another one
+_UNEQUAL_VALLEY = 0.05
+# upper part of the stroke, in which a line that is sound is taut
+_TOP = 0.25
+
+
+def rope_step(
+    located: Located,
+    strain: Floats,
+    tension: Floats,
+    *,
+    kind: str,
+    specimens: tuple[Specimen, ...],
+    loops: Loops | None,
+    holds: tuple[HoldResult, ...],
+    failed: bool | None,
+    settings: RopeSettings,
+) -> RopeStep | None:
+    """Reduce one test as a step of a programme; None where its kind, or a tether, has none.
+
+    Parameters
+    ----------
+    located : Located
+        From `reduction.pipeline.locate`.
+    strain, tension : ndarray, shape (n_specimens, n_samples)
+        NaN where not usable. [1], [N]
+    kind : str
+        Of the test: it says which step it is.
+    specimens : tuple of Specimen, length n_specimens
+        In the order of the rows.
+    loops : Loops or None
+        Of the cycles, where there are some.
+    holds : tuple of HoldResult
+        Of the test.
+    failed : bool or None
+        Whether the specimens broke, in the laboratory's word.
+    settings : RopeSettings
+        Which cycles and which time count.
+
+    Returns
+    -------
+    step : RopeStep or None
+        With notes.
+
+    Raises
+    ------
+    DataError
+        If a rated break strength is not positive.
+    """
+    is_rope = any(not specimen.is_rubber for specimen in specimens)
+    if kind not in _NAMES or not (is_rope or kind in _OF_ALL):
+        return None
+    strength = np.array(
+        [
+            np.nan if one.rated_break_strength is None else one.rated_break_strength
+            for one in specimens
+        ]
+    )
+    names = located.record.specimens
+    step = RopeStep(_NAMES[kind])
+    if kind in ("creep", "quasi-static"):
+        step = replace(step, creep=_creep(holds, names, strength))
+    notes: list[str] = []
+    if kind in ("cyclic", "bedding-in") and loops is not None:
+        dynamic = dynamic_stiffness(
+            loops, last_cycles=settings.last_cycles, rated_break_strength=strength
+        )
+        bedding = _bedding_in(loops, strength) if kind == "bedding-in" else None
+        notes += _of_cycles(dynamic, names, settings)
+        if kind == "bedding-in":
+            notes += _of_first_cycle(loops, names)
+        step = replace(step, bedding_in=bedding, dynamic=dynamic)
+    if kind in ("fatigue", "snap") and loops is not None:
+        lasted = _lasted(located, tension, loops, strength, failed, settings)
+        notes += [f"{name}: {how}" for name, how in zip(names, lasted.how, strict=True)]
+        step = replace(step, lasted=lasted)
+    if kind == "quasi-static":
+        pairs = held_pairs(
+            located.record.time, located.position, tension, strain, located.standstills,
+            specimens=names, rated_break_strength=strength,
+            reference_time=settings.reference_time,
+        )  # fmt: skip
+        notes += _of_pairs(pairs)
+        step = replace(step, held=pairs)
+    if kind == "tensile":
+        pull = tensile_pull(
+            located.position, tension, strain, rated_break_strength=strength, broke=failed
+        )
+        notes += _of_pull(pull, names)
+        step = replace(step, tensile=pull)
+    if step == RopeStep(step.name):
+        return None
+    if np.isnan(strength).any():
+        notes += [
+            f"{name}: no rated break strength is stated: nothing is divided by it"
+            for name, one in zip(names, strength, strict=True)
+            if np.isnan(one)
+        ]
+    return replace(step, notes=tuple(notes))
+
+
+def _creep(
+    holds: tuple[HoldResult, ...], names: Sequence[str], strength: Floats
+) -> tuple[CreepOfHold, ...]:
+    """Every hold where the machine kept the tension; all holds of a test are of one kind."""
+    if any(hold.kind != "creep" for hold in holds):
+        return ()
+    of_name = dict(zip(names, strength.tolist(), strict=True))
+    return tuple(creep_of_hold(hold, rated_break_strength=of_name[hold.specimen]) for hold in holds)
+
+
+def _bedding_in(loops: Loops, strength: Floats) -> BeddingIn | None:
+    if loops.frequency.shape[1] < 2:
+        return None
+    return summarise_bedding_in(loops, rated_break_strength=strength)
+
+
+def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[str]:
+    """Bedding-in that begins elsewhere than its cycles do."""
+    if loops.frequency.shape[1] < 2:
+        return ["refused: bedding-in: one cycle alone; two are needed"]
+    notes = []
+    for name, valley, amplitude in zip(
+        names, loops.valley_tension, loops.tension_amplitude, strict=True
+    ):
+        usual = float(np.nanmedian(valley))
+        if abs(valley[0] - usual) > _UNEQUAL_VALLEY * 2 * float(np.nanmedian(amplitude)):
+            notes.append(
+                f"{name}: the first cycle begins at {valley[0]:.4g} N, others at {usual:.4g} N: "
+                "its stiffness and the permanent strain hold that part of the rise too"
+            )
+    return notes
+
+
+def _of_cycles(
+    dynamic: DynamicStiffness, names: Sequence[str], settings: RopeSettings
+) -> list[str]:
+    """Too few cycles, and a stiffness that has not settled."""
+    notes = []
+    for row, name in enumerate(names):
+        used = int(dynamic.n_cycles[row, 0])
+        if used < settings.last_cycles:
+            notes.append(
+                f"{name}: dynamic stiffness from {used} cycles; rope.last_cycles asks for "
+                f"{settings.last_cycles}"
+            )
+        drift = float(dynamic.drift_per_cycle[row, 0])
+        spread = float(dynamic.drift_per_cycle_standard_uncertainty[row, 0])
+        share = drift * (used - 1) / float(dynamic.dynamic_stiffness[row, 0])
+        if abs(drift) > _SIGNIFICANT * spread and abs(share) > _DRIFT_NOTED:
+            notes.append(
+                f"{name}: the dynamic stiffness has not settled: it changes by {share:+.1%} over "
+                f"its last {used} cycles"
+            )
+    return notes
+
+
+def _lasted(
+    located: Located,
+    tension: Floats,
+    loops: Loops,
+    strength: Floats,
+    failed: bool | None,
+    settings: RopeSettings,
+) -> CyclesToFailure:
+    """Cycles by the machine's own count where it has one, until the record shows a failure."""
+    cycles, counter = located.cycles, located.record.cycle_counter
+    number = parted_in = None
+    if cycles is not None:
+        if cycles.counted_by == "machine counter" and counter is not None:
+            number = counter[cycles.first]
+        parted_in = _parted_in(located, tension, cycles, loops, settings.failure_share)
+    return cycles_to_failure(
+        loops,
+        rated_break_strength=strength,
+        failed=None if failed is None else np.full(strength.size, failed),
+        cycle_number=number,
+        parted_in=parted_in,
+        failure_share=settings.failure_share,
+    )
+
+
+def _parted_in(
+    located: Located, tension: Floats, cycles: Cycles, loops: Loops, failure_share: float
+) -> Integers:
+    """Cycle within or after which each specimen is slack where it was taut; -1 where it is not."""
+    found = np.full(len(tension), -1)
+    for row, peak in enumerate(loops.peak_tension):
+        sound = np.flatnonzero(peak >= failure_share * np.nanmedian(peak))
+        if not sound.size:
+            continue
+        # a cycle in which it parted may look whole by its peak: the one before it is sound
+        sure = max(int(sound[-1]) - 1, 0)
+        begin, last = int(cycles.first[sure]), int(cycles.last[sure])
+        place, load = located.position[begin : last + 1], tension[row, begin : last + 1]
+        least = np.nanmax(place) - _TOP * np.ptp(place[np.isfinite(place)])
+        slack, lowest = located.standstills.slack_tension, np.nanmin(load[place >= least])
+        if not lowest > slack:
+            continue
+        # as logged: a channel that repeats its zero after a failure is flagged, not wrong
+        sample = parting_sample(
+            located.record.crosshead_position, located.record.tension[row], last=last,
+            least_position=float(least), tension_low=failure_share * float(lowest),
+        )  # fmt: skip
+        if sample > 0:
+            taut = np.flatnonzero(located.record.tension[row, :sample] > slack)
+            found[row] = max(int(np.searchsorted(cycles.last, taut[-1])), 1)
+    return found
+
+
+def _of_pairs(pairs: Sequence[HeldPair]) -> list[str]:
+    notes = []
+    for pair in pairs:
+        where = f"{pair.specimen}: holds {pair.low_hold} and {pair.high_hold}"
+        if pair.stiffness is None:
+            notes.append(f"{where}: refused: static stiffness: {pair.reason}")
+        else:
+            notes += [f"{where}: {note}" for note in pair.stiffness.notes]
+    return notes
+
+
+def _of_pull(pull: TensilePull, names: Sequence[str]) -> list[str]:
+    notes = []
+    for row, name in enumerate(names):
+        if not pull.is_break[row]:
+            notes.append(
+                f"{name}: refused: tensile strength: {pull.how[row]}: the line holds "
+                f"{pull.peak_tension[row]:.4g} N or more"
+            )
+        elif np.isnan(pull.strain_at_peak[row]):
+            notes.append(f"{name}: refused: strain at failure: no strain is known at the peak")
+    return notes
