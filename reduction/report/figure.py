@@ -44,10 +44,11 @@ class Figure:
     def label(self) -> str:
         """What a screen reader says."""
         names = [trace["name"] for trace in self.data if trace.get("showlegend", True)]
+        flat = {**self.layout, **self.layout.get("scene", {})}
         axes = [
-            self.layout[name]["title"]["text"]
-            for name in self.layout
-            if name.startswith(("xaxis", "yaxis")) and "title" in self.layout[name]
+            flat[name]["title"]["text"].replace("<br>", " ")
+            for name in flat
+            if name.startswith(("xaxis", "yaxis", "zaxis")) and "title" in flat[name]
         ]
         prefix = "Synthetic data. " if self.synthetic else ""
         lines = ", ".join(dict.fromkeys(names))

@@ -21,6 +21,7 @@ __all__ = [
     "measured",
     "number",
     "number_text",
+    "probability",
     "span",
     "words",
 ]
@@ -28,6 +29,7 @@ __all__ = [
 NOT_GIVEN = "\N{EN DASH}"
 _MOST_DECIMALS = 12
 _LEAST_LEADING = 2.0
+_LEAST_PROBABILITY = 1e-4
 _NOISE = 1e-12
 """A sum of numbers of order one that ought to vanish ends at 1e-16 or so, in percent at 1e-14."""
 
@@ -153,6 +155,20 @@ def measured(
     places = _decimals(half, 1 if is_short and leading >= _LEAST_LEADING else 2)
     shown = f"{_fixed(value * scale, places)} ± {_fixed(half, places)}"
     return Cell(shown, _exact(value), is_number=True)
+
+
+def probability(value: float) -> Cell:
+    """Return a cell of a probability; below 0.0001 only that it is.
+
+    Examples
+    --------
+    >>> probability(0.0312).text, probability(2e-9).text
+    ('0.0312', '<0.0001')
+    """
+    if not isfinite(value):
+        return Cell(NOT_GIVEN, is_number=True)
+    text = "<0.0001" if value < _LEAST_PROBABILITY else f"{value:.4f}"
+    return Cell(text, _exact(value), is_number=True)
 
 
 def span(low: float, high: float, unit: Shown, *, places: int) -> Cell:

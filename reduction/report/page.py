@@ -21,6 +21,8 @@ from reduction.archive.products import test_archives
 from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
 from reduction.report.designtables import design_tables
+from reduction.report.experimentsection import make_experiment_section
+from reduction.report.experimentview import ExperimentView
 from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.campaign import (
     draw_all_moduli,
@@ -110,7 +112,10 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
             ordered.insert(0, make_outcome_section(outcomes))
         except ArchiveError as error:
             unreadable[of_outcomes.name] = str(error)
-    html = _render(tests, outcomes, ordered, statuses, unreadable, units, processed.name)
+    experiments = _experiments(processed / "surfaces.nc", by_id, units, unreadable)
+    html = _render(
+        tests, outcomes, experiments, ordered, statuses, unreadable, units, processed.name
+    )
     page = out / "index.html"
     write_whole(page, html)
     return page
@@ -119,6 +124,7 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
 def _render(
     tests: Sequence[TestView],
     outcomes: OutcomeView | None,
+    experiments: Sequence[Section],
     sections: Sequence[Section],
     statuses: Sequence[Status],
     unreadable: dict[str, str],
@@ -157,6 +163,7 @@ def _render(
         intervals=[table for table in intervals if table is not None],
         faults=faults,
         comparisons=[part for part in comparisons if part.figures],
+        experiments=experiments,
         sections=sections,
         units="US customary" if units == "us" else "SI",
         version=__version__,
@@ -181,6 +188,25 @@ def _tiles(
     size = len(outcomes.outcomes)
     noun = "outcome" if size == 1 else "outcomes"
     return [Tile(f"{size:,}", f"{noun} without a log", "outcomes"), *found]
+
+
+def _experiments(
+    path: Path, tests: Mapping[str, TestView], units: UnitSystem, unreadable: dict[str, str]
+) -> list[Section]:
+    """Return a section for each experiment of the campaign; none where it has none."""
+    if not path.is_file():
+        return []
+    try:
+        with open_archive(path) as data:
+            return [
+                make_experiment_section(
+                    ExperimentView(f"experiment-{index}", data, index, units), tests
+                )
+                for index in range(data.sizes["experiment"])
+            ]
+    except ArchiveError as error:
+        unreadable[path.name] = str(error)
+        return []
 
 
 def _read_statuses(path: Path) -> list[Status]:

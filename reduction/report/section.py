@@ -10,6 +10,7 @@ from typing import Any
 from reduction.report.figure import Figure
 from reduction.report.figures.elastomers import draw_mooney
 from reduction.report.figures.holds import draw_holds
+from reduction.report.figures.lines import draw_pull
 from reduction.report.figures.loops import draw_loops
 from reduction.report.figures.moduli import draw_cycle_curves, draw_moduli
 from reduction.report.figures.record import draw_record, draw_tension_position
@@ -17,6 +18,7 @@ from reduction.report.figures.stepwise import draw_steps
 from reduction.report.figures.trends import draw_trends
 from reduction.report.holdtables import hold_table, prony_table, refusals
 from reduction.report.htmltable import Table
+from reduction.report.linetables import line_table, pull_share_table, pull_table
 from reduction.report.specimentables import (
     coefficient_table,
     history_table,
@@ -44,13 +46,15 @@ _LONG = ("settings", "raw_metadata", "history")
 
 @dataclass(frozen=True)
 class Part:
-    """One heading with sentences, figures and tables under it."""
+    """One heading with sentences, figures and tables under it; what is folded opens by a click."""
 
     heading: str
     figures: tuple[Figure, ...] = ()
     tables: tuple[Table, ...] = ()
     sentences: tuple[str, ...] = ()
     refusals: tuple[str, ...] = ()
+    folded: Part | None = None
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -72,10 +76,14 @@ def make_part(
     tables: Sequence[Table | None] = (),
     sentences: Sequence[str] = (),
     refusals: Sequence[str] = (),
+    folded: Part | None = None,
+    warnings: Sequence[str] = (),
 ) -> Part:
     """Return a part; tables that a test does not give are left out."""
     given = tuple(table for table in tables if table is not None)
-    return Part(heading, tuple(figures), given, tuple(sentences), tuple(refusals))
+    return Part(
+        heading, tuple(figures), given, tuple(sentences), tuple(refusals), folded, tuple(warnings)
+    )
 
 
 def make_section(view: TestView) -> Section:
@@ -101,6 +109,10 @@ def make_section(view: TestView) -> Section:
             "Strain and splices", (), [coefficient_table(view), mark_table(view)],
             slope_sentences(view),
         ),
+        make_part(
+            "Slow pull", draw_pull(view), [pull_table(view), pull_share_table(view)]
+        ),
+        make_part("Three-parameter line", (), [line_table(view)]),
         make_part("First loading", draw_mooney(view), [stress_table(view), elastomer_table(view)]),
         make_part("History of the specimens", (), [history_table(view)]),
     ]  # fmt: skip

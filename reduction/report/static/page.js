@@ -31,6 +31,18 @@
     if (layout.title.subtitle) {
       result.title.subtitle = { ...layout.title.subtitle, font: { size: 11, color: printing ? "#7a2b00" : ink("--bad") } };
     }
+    if (layout.scene) {
+      const scene = { ...layout.scene };
+      for (const name of ["xaxis", "yaxis", "zaxis"]) {
+        scene[name] = {
+          gridcolor: colours.grid, zerolinecolor: colours.grid, color: colours.font,
+          showbackground: false, exponentformat: "none", tickfont: { size: 10 }, ...layout.scene[name],
+        };
+        scene[name].title = { ...scene[name].title, font: { size: 11 } };
+      }
+      result.scene = scene;
+      result.margin = { l: 0, r: 0, t: result.margin.t, b: 4 };
+    }
     for (const name of Object.keys(layout)) {
       if (/^[xy]axis/.test(name)) {
         result[name] = {
@@ -74,9 +86,14 @@
 
   const near = new IntersectionObserver((seen) => {
     for (const entry of seen) {
+      const plot = entry.target;
       if (entry.isIntersecting) {
-        near.unobserve(entry.target);
-        if (!drawn.has(entry.target)) draw(entry.target);
+        if (!drawn.has(plot)) draw(plot);
+        if (!plot.layout?.scene) near.unobserve(plot);
+      } else if (drawn.has(plot) && plot.layout?.scene && !printing) {
+        // a browser keeps only some figures in space alive at a time: those out of sight make room
+        Plotly.purge(plot);
+        drawn.delete(plot);
       }
     }
   }, { rootMargin: "600px" });

@@ -1,0 +1,242 @@
+"""The three-parameter line over the runs, the stiffness forms of codes, and a slow pull."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from reduction.record import Bools, Floats, Integers
+from reduction.report.decimate import keep_extremes
+from reduction.report.experimentview import ExperimentView, response_unit
+from reduction.report.figure import Figure, Trace, axis, band, line, make_figure, plain_numbers
+from reduction.report.htmltable import number_text
+from reduction.report.style import COLOURS, SYMBOLS, colour, plot_text, shown
+from reduction.report.view import TestView
+
+__all__ = ["draw_forms", "draw_pull", "draw_single_time"]
+
+_GREY = "#8C8C8C"
+_FORM_WORDS = {
+    "del-vecchio": "load, amplitude and log period",
+    "mean-load": "mean load alone",
+    "quadratic": "quadratic surface",
+}
+
+
+def draw_single_time(view: ExperimentView) -> list[Figure]:
+    """Draw the relaxation time against frequency, with the lines of one time and of 1/f."""
+    exponent = view.scalar("single_time_exponent")
+    unit = shown("time", view.units)
+    frequency = view.per_run("run_frequency")
+    time = view.per_run("relaxation_time_measured") * unit.factor
+    half = view.per_run("relaxation_time_measured_standard_uncertainty") * unit.factor
+    known = np.isfinite(frequency) & (time > 0)
+    if not np.isfinite(exponent) or "frequency" not in view.factors or not known.any():
+        return []
+    groups = _groups(view, known)
+    data: list[Trace] = []
+    reach = np.array([frequency[known].min() / 1.1, frequency[known].max() * 1.1])
+    centre = np.exp(np.mean(np.log(frequency[known]))), np.exp(np.mean(np.log(time[known])))
+    for name, power, dash in (("one time, f⁰", 0.0, "dot"), ("as 1/f", 1.0, "dash")):
+        y = centre[1] * (reach / centre[0]) ** -power
+        data.append(line(reach, y, name=name, colour=_GREY, dash=dash, width=2))
+    several = [own for own in groups.values() if np.unique(np.round(frequency[own], 3)).size > 1]
+    for place, own in enumerate(several):
+        height = np.exp(np.mean(np.log(time[own] * frequency[own] ** exponent)))
+        tint = colour(place)
+        ends = np.array([frequency[own].min(), frequency[own].max()])
+        data.append(
+            line(
+                ends, height * ends**-exponent, name="fit", colour=tint, width=1.2,
+                showlegend=False, hoverinfo="skip",
+            )
+        )  # fmt: skip
+        data.append(
+            _timed(view, own, (frequency, time, half), tint, SYMBOLS[place % len(SYMBOLS)],
+                   _loads(view, own))
+        )  # fmt: skip
+    rest = np.array(sorted(set(np.flatnonzero(known)) - {k for own in several for k in own}), int)
+    if rest.size:
+        data.append(
+            _timed(view, rest, (frequency, time, half), _GREY, "circle-open",
+                   "loads at one frequency only")
+        )  # fmt: skip
+    low, high = (view.scalar(f"single_time_exponent_{end}") for end in ("low", "high"))
+    times = time[known]
+    span: dict[str, Any] = {}
+    if times.max() < 3 * times.min():
+        # a straight level would fill the height otherwise, and noise would look like a law
+        middle = np.log10(centre[1])
+        span["range"] = [float(middle - 0.5), float(middle + 0.5)]
+    return [
+        make_figure(
+            f"{view.key}-single-time", "Relaxation time against frequency",
+            "Relaxation time of each run, on logarithmic axes. One relaxation time would lie on the"
+            " dotted level; dashed: as 1/f, which is a loss angle that does not change with"
+            f" frequency. Thin: the fit, tau ~ f^-n with n = {exponent:.3g} ({low:.3g} to"
+            f" {high:.3g}), one factor for each pair of loads. Bars: one standard uncertainty.",
+            data, synthetic=view.is_synthetic, height=420,
+            xaxis=axis("frequency [Hz]", type="log", **_decade_ticks(reach)),
+            yaxis=axis(unit.label("relaxation time"), type="log", **span),
+        )
+    ]  # fmt: skip
+
+
+def draw_forms(view: ExperimentView) -> list[Figure]:
+    """Draw the spring constant by each form of stiffness against the measured one."""
+    unit = response_unit("apparent_spring_constant", view.units)
+    measured = view.per_run("apparent_spring_constant_measured") * unit.factor
+    fitted = view.array("stiffness_fitted")
+    if fitted.size == 0 or not np.isfinite(fitted).any():
+        return []
+    forms = [str(name) for name in view.data["stiffness_form"].values]
+    rows = {
+        name: fitted[k] * unit.factor
+        for k, name in enumerate(forms)
+        if np.isfinite(fitted[k]).any()
+    }
+    rows["quadratic"] = view.per_run("apparent_spring_constant_fitted") * unit.factor
+    everything = np.concatenate([measured, *rows.values()])
+    ends = np.array([np.nanmin(everything), np.nanmax(everything)])
+    data = [line(ends, ends, name="equal", colour=_GREY, dash="dot", showlegend=False)]
+    for place, (name, values) in enumerate(rows.items()):
+        data.append(
+            {
+                "type": "scatter", "mode": "markers", "name": _FORM_WORDS.get(name, name),
+                "x": plain_numbers(measured), "y": plain_numbers(values),
+                "text": [plot_text(run) for run in view.runs],
+                "marker": {"size": 8, "color": COLOURS[place], "symbol": SYMBOLS[place]},
+            }
+        )  # fmt: skip
+    return [
+        make_figure(
+            f"{view.key}-forms", "Stiffness forms of mooring codes",
+            "Apparent spring constant by each form against the measured one, a point a run;"
+            " dotted: equal.",
+            data, synthetic=view.is_synthetic, height=400,
+            xaxis=axis(unit.label("measured")), yaxis=axis(unit.label("by the form")),
+        )
+    ]  # fmt: skip
+
+
+def draw_pull(view: TestView) -> list[Figure]:
+    """Draw the load-strain curve of a slow pull, and the spring constant that is its slope."""
+    grid, strain = view.array("tension_grid"), view.array("quasi_static_strain")
+    constant = view.array("quasi_static_spring_constant")
+    if grid is None or strain is None or constant is None:
+        return []
+    half = view.array_like("quasi_static_spring_constant_standard_uncertainty", constant)
+    force, percent = shown("tension", view.units), shown("strain", view.units)
+    curves: list[Trace] = []
+    slopes: list[Trace] = []
+    for k, name in enumerate(view.specimens):
+        if not np.isfinite(strain[k]).any():
+            continue
+        tint = colour(k)
+        curves += _logged(view, k, percent.factor, force.factor)
+        curves.append(
+            line(
+                strain[k] * percent.factor, grid * force.factor,
+                name=f"{name}: cubic, range of use", colour=tint, width=2.2,
+            )
+        )  # fmt: skip
+        low, high = (constant[k] + sign * half[k] for sign in (-1, 1))
+        slopes += [
+            band(
+                grid * force.factor, low * force.factor, high * force.factor, name=name,
+                colour=tint, alpha=0.25,
+            ),
+            line(grid * force.factor, constant[k] * force.factor, name=name, colour=tint),
+        ]  # fmt: skip
+    figures = (
+        make_figure(
+            f"{view.key}-pull", f"{view.id}: load against strain, slow pull",
+            "Tension against strain as logged (grey), and strain as a cubic of tension over its"
+            " range of use, beyond which it is not to be taken.",
+            curves, synthetic=view.is_synthetic, height=400,
+            xaxis=axis(percent.label("strain")), yaxis=axis(force.label("tension")),
+        ),
+        make_figure(
+            f"{view.key}-pull-constant", f"{view.id}: quasi-static spring constant",
+            "K_0, the slope of tension on strain, against tension: to be taken at the mean tension"
+            " of interest. Band: one standard uncertainty of the fit, where it is wider than the"
+            " line.",
+            slopes, synthetic=view.is_synthetic, height=400,
+            xaxis=axis(force.label("tension")),
+            yaxis=axis(force.label("K_0"), rangemode="tozero"),
+        ),
+    )  # fmt: skip
+    return [figure for figure in figures if figure.has_data]
+
+
+def _logged(view: TestView, place: int, to_x: float, to_y: float) -> list[Trace]:
+    strain, tension = view.array("strain"), view.array("tension")
+    if strain is None or tension is None:
+        return []
+    known = np.isfinite(strain[place]) & np.isfinite(tension[place])
+    x, y = strain[place, known] * to_x, tension[place, known] * to_y
+    if x.size == 0:
+        return []
+    kept = keep_extremes(np.arange(x.size, dtype=np.float64), y)
+    return [
+        line(x[kept], y[kept], name=f"{view.specimens[place]}: as logged", colour=_GREY, width=5,
+             opacity=0.5)
+    ]  # fmt: skip
+
+
+def _groups(view: ExperimentView, known: Bools) -> dict[tuple[str, ...], Integers]:
+    """Runs at equal loads as planned, of one specimen: places by what they have in common."""
+    frequency = view.factors.index("frequency")
+    others = np.delete(view.array("run_plan"), frequency, axis=1)
+    specimens = view.texts("run_specimen")
+    found: dict[tuple[str, ...], list[int]] = {}
+    for k in np.flatnonzero(known):
+        found.setdefault((specimens[k], *map(str, others[k])), []).append(int(k))
+    return {key: np.array(own) for key, own in found.items()}
+
+
+def _loads(view: ExperimentView, own: Integers) -> str:
+    """Say the levels of a group of runs but for the frequency."""
+    level = view.array("run_level")[own].mean(axis=0)
+    parts = [
+        f"{number_text(float(level[j]) * unit.factor, 3)} {unit.unit}"
+        for j, unit in enumerate(view.factor_units)
+        if view.factors[j] != "frequency"
+    ]
+    specimens = view.texts("run_specimen")
+    who = f"{specimens[own[0]]}: " if len(set(specimens)) > 1 else ""
+    return who + ", ".join(parts)
+
+
+def _timed(
+    view: ExperimentView,
+    own: Integers,
+    columns: tuple[Floats, Floats, Floats],
+    tint: str,
+    symbol: str,
+    name: str,
+) -> Trace:
+    frequency, time, half = (column[own] for column in columns)
+    return {
+        "type": "scatter", "mode": "markers", "name": plot_text(name),
+        "x": plain_numbers(frequency), "y": plain_numbers(time),
+        "text": [plot_text(view.runs[k]) for k in own],
+        "error_y": {"type": "data", "array": plain_numbers(half), "color": tint, "thickness": 1},
+        "marker": {"size": 8, "color": tint, "symbol": symbol},
+    }  # fmt: skip
+
+
+def _decade_ticks(reach: Floats) -> dict[str, Any]:
+    """Return ticks at 1, 2 and 5 of each decade: plotly labels the digits between them bare."""
+    powers = np.arange(np.floor(np.log10(reach[0])) - 1, np.ceil(np.log10(reach[1])) + 1)
+    ticks = [
+        digit * 10.0**power
+        for power in powers
+        for digit in (1, 2, 3, 5)
+        if reach[0] / 1.5 <= digit * 10.0**power <= reach[1] * 1.5
+    ]
+    return {
+        "tickvals": plain_numbers(np.array(ticks)),
+        "ticktext": [f"{tick:.3g}" for tick in ticks],
+    }

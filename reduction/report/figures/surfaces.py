@@ -1,0 +1,338 @@
+"""A response surface: over two loads in space, as contours at three levels, on the cube.
+
+The cube is that of Figure 6 of [1]_; contours say, as it does not, where the runs say less
+than at the worst of them.
+
+References
+----------
+.. [1] CG-D-39-80, sec. 4.4.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from reduction.record import Bools, Floats
+from reduction.report.experimentview import ExperimentView, in_words, response_unit
+from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
+from reduction.report.htmltable import number_text
+from reduction.report.style import COLOURS, faded, plot_text
+from reduction.report.surfacegrid import HELD, Planes, runs_on_plane
+from reduction.surface.bands import evaluate_surfaces
+from reduction.surface.product import ResponseSurfaces
+from reduction.vocabulary import RESPONSES
+
+__all__ = ["base_response", "draw_contours", "draw_cube", "draw_surface"]
+
+_SCALE = [[0.0, "#e4eef6"], [0.5, "#97c4e3"], [1.0, "#3a8fc8"]]
+"""Light enough everywhere for dark labels upon it."""
+_INK, _GREY = "#1b1f23", "#8C8C8C"
+_DEPTH = (0.46, 0.34)
+"""By which the back of the cube is shifted right and up."""
+_DIGITS = 4
+
+
+def base_response(name: str) -> str:
+    """Return the response that a surface is of, before any transform.
+
+    Examples
+    --------
+    >>> base_response("log_hysteresis_energy")
+    'hysteresis_energy'
+    """
+    return next(base for base in RESPONSES if name.endswith(base))
+
+
+def draw_surface(
+    view: ExperimentView, surfaces: ResponseSurfaces, index: int, planes: Planes
+) -> list[Figure]:
+    """Draw the surface over two factors, the third in the middle, and the runs made there."""
+    name = surfaces.response_names[index]
+    unit = response_unit(base_response(name), view.units)
+    words = in_words(base_response(name))
+    x, y = (_shown(view, place, planes.coded) for place in planes.across)
+    middle = planes.value[index, 1] * unit.factor
+    data: list[Trace] = [
+        {
+            "type": "surface", "name": "surface", "x": plain_numbers(x), "y": plain_numbers(y),
+            "z": [plain_numbers(row, _DIGITS) for row in middle], "colorscale": _SCALE,
+            "showscale": False, "showlegend": False, "opacity": 0.92,
+            "contours": {"z": {"show": True, "color": faded("#000000", 0.25)}},
+        }
+    ]  # fmt: skip
+    data += _points_in_space(view, surfaces, index, planes)
+    held, level = view.factors[planes.held], view.levels(planes.held)[1]
+    title = f"{words.capitalize()} at {_at(view, planes.held, level)}"
+    return _given(
+        make_figure(
+            f"{view.key}-{name}-surface", title,
+            f"Surface of the {words} over {in_words(view.factors[planes.across[0]])} and"
+            f" {in_words(view.factors[planes.across[1]])}, {in_words(held)} held in the middle of"
+            f" its range{_by(name)}. Points: the runs made at this {in_words(held)}, upright"
+            " lines their distance from the surface. Turn it with the pointer; the same values"
+            " stand in the contours.",
+            data, synthetic=view.is_synthetic, height=430,
+            scene={
+                "xaxis": axis(view.factor_label(planes.across[0])),
+                "yaxis": axis(view.factor_label(planes.across[1])),
+                "zaxis": axis(unit.label(words).replace(" ", "<br>", 1)),
+                "camera": {"eye": {"x": -1.55, "y": -1.75, "z": 0.95}},
+                "aspectmode": "cube",
+            },
+        )
+    )  # fmt: skip
+
+
+def draw_contours(
+    view: ExperimentView, surfaces: ResponseSurfaces, index: int, planes: Planes
+) -> list[Figure]:
+    """Draw contours at the low, middle and high level of the held factor, one scale for all."""
+    name = surfaces.response_names[index]
+    unit = response_unit(base_response(name), view.units)
+    words = in_words(base_response(name))
+    x, y = (_shown(view, place, planes.coded) for place in planes.across)
+    value = planes.value[index] * unit.factor
+    if not np.isfinite(value).any():
+        return []
+    ends = {"zmin": float(np.nanmin(value)), "zmax": float(np.nanmax(value))}
+    found = []
+    for place, level in enumerate(HELD):
+        ratio = planes.leverage_ratio[index, place]
+        data: list[Trace] = [
+            {
+                "type": "contour", "name": words, "showlegend": False, **ends,
+                "x": plain_numbers(x), "y": plain_numbers(y),
+                "z": [plain_numbers(row, _DIGITS) for row in value[place]],
+                "colorscale": _SCALE, "line": {"color": _INK, "width": 0.8},
+                "contours": {"coloring": "heatmap", "showlabels": True,
+                             "labelfont": {"color": _INK, "size": 10}},
+                "colorbar": {
+                    "title": {"text": unit.unit}, "thickness": 10, "tickfont": {"size": 10},
+                },
+            }
+        ]  # fmt: skip
+        is_thin = bool((ratio > 1 + 1e-6).any())
+        if is_thin:
+            data.append(_thin_region(x, y, ratio))
+        on_plane = runs_on_plane(view, planes, level)
+        data += _points_on_plane(view, planes, on_plane)
+        at = _at(view, planes.held, view.levels(planes.held)[place])
+        says = (
+            " Grey: the runs say less there than at the worst of them (leverage above the greatest"
+            " of a run); a value there leans on the form of the surface."
+            if is_thin
+            else ""
+        )
+        found.append(
+            make_figure(
+                f"{view.key}-{name}-contour-{place}", f"{words.capitalize()} at {at}",
+                f"Contours of the {words}{_by(name)} at {at}. Points: the runs made there.{says}",
+                data, synthetic=view.is_synthetic, height=380,
+                xaxis=axis(view.factor_label(planes.across[0])),
+                yaxis=axis(view.factor_label(planes.across[1])),
+            )
+        )  # fmt: skip
+    return found
+
+
+def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> list[Figure]:
+    """Draw the cube of three factors with the value at its corners, edges and centre."""
+    name = surfaces.response_names[index]
+    if len(view.factors) != 3:
+        return []
+    unit = response_unit(base_response(name), view.units)
+    words = in_words(base_response(name))
+    # x across, y up, z away: mean tension, the last factor and the held one
+    order = [k for k in range(3) if view.factors[k] != "frequency"][:2]
+    order.append(next(k for k in range(3) if k not in order))
+    grid = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
+    n_middle = (grid == 0).sum(axis=1)
+    grid = grid[n_middle != 2]  # no middle of a face
+    is_corner = (grid == 0).sum(axis=1) == 0
+    coded = np.empty_like(grid)
+    coded[:, order] = grid
+    at = evaluate_surfaces(surfaces, coded, units="coded")
+    value = at.value[index] * unit.factor
+    if not np.isfinite(value).any():
+        return []
+    place = _projected(grid)
+    data = [*_edges(), *_cube_points(place, value, is_corner)]
+    ends = [
+        f"{in_words(view.factors[k])} {number_text(view.levels(k)[0], 3)} to"
+        f" {number_text(view.levels(k)[2], 3)} {view.factor_units[k].unit}"
+        for k in order
+    ]
+    return _given(
+        make_figure(
+            f"{view.key}-{name}-cube", f"{words.capitalize()} on the cube of the levels",
+            f"Value of the surface of the {words}{_by(name)} at the corners, edges and centre"
+            f" [{unit.unit}]: to the right {ends[0]}, upward {ends[1]}, away {ends[2]}. Full"
+            " markers: where the design has its runs; open ones, the corners, have no run near.",
+            data, synthetic=view.is_synthetic, height=430,
+            xaxis={
+                **axis(f"{view.factor_label(order[0])}, low to high"),
+                "range": [-0.25, 1.75], "showgrid": False, "zeroline": False,
+                "showticklabels": False, "showline": False, "ticks": "",
+            },
+            yaxis={
+                **axis(f"{view.factor_label(order[1])}, low to high"),
+                "range": [-0.12, 1.5], "showgrid": False, "zeroline": False,
+                "showticklabels": False, "showline": False, "ticks": "",
+            },
+            annotations=[_away(view, order[2])],
+        )
+    )  # fmt: skip
+
+
+def _shown(view: ExperimentView, place: int, coded: Floats) -> Floats:
+    low, middle, high = view.levels(place)
+    return middle + coded * (high - low) / 2
+
+
+def _levels_reached(view: ExperimentView, place: int) -> Floats:
+    return view.array("run_level")[:, place] * view.factor_units[place].factor
+
+
+def _at(view: ExperimentView, place: int, level: float) -> str:
+    return f"{number_text(level, 3)} {view.factor_units[place].unit}"
+
+
+def _by(name: str) -> str:
+    """Say on what scale a surface was fitted where it was not the response itself."""
+    if name == base_response(name):
+        return ""
+    scale = "logarithm" if name.startswith("log_") else "Box-Cox transform"
+    return f", fitted to its {scale} and brought back (medians)"
+
+
+def _given(figure: Figure) -> list[Figure]:
+    return [figure] if figure.has_data else []
+
+
+def _points_in_space(
+    view: ExperimentView, surfaces: ResponseSurfaces, index: int, planes: Planes
+) -> list[Trace]:
+    """Return the runs of the middle plane, and a line from each to the surface there."""
+    name = base_response(surfaces.response_names[index])
+    factor = response_unit(name, view.units).factor
+    measured = view.per_run(f"{name}_measured")
+    own = runs_on_plane(view, planes, 0.0) & np.isfinite(measured)
+    if not own.any():
+        return []
+    x, y = (_levels_reached(view, place)[own] for place in planes.across)
+    at = evaluate_surfaces(
+        surfaces, view.array("run_coded_level")[own], units="coded", outside="flag"
+    )
+    z, foot = measured[own] * factor, at.value[index] * factor
+    gap = np.full(z.size, np.nan)
+    stems = {
+        key: plain_numbers(np.stack(values, axis=1).ravel())
+        for key, values in (("x", (x, x, gap)), ("y", (y, y, gap)), ("z", (z, foot, gap)))
+    }
+    return [
+        {
+            "type": "scatter3d", "mode": "lines", "name": "distance", "showlegend": False,
+            "line": {"color": COLOURS[1], "width": 4}, "hoverinfo": "skip", **stems,
+        },
+        {
+            "type": "scatter3d", "mode": "markers", "name": "runs", "showlegend": False,
+            "x": plain_numbers(x), "y": plain_numbers(y), "z": plain_numbers(z),
+            "text": [plot_text(run) for run, one in zip(view.runs, own, strict=True) if one],
+            "marker": {"size": 4.5, "color": COLOURS[1]},
+        },
+    ]  # fmt: skip
+
+
+def _points_on_plane(view: ExperimentView, planes: Planes, own: Bools) -> list[Trace]:
+    """Return the runs of a plane at the levels they reached; repeats have one label."""
+    if not own.any():
+        return []
+    cells = view.per_run("run_cell")
+    x, y = (_levels_reached(view, place) for place in planes.across)
+    places = np.flatnonzero(own)
+    labels = []
+    for k in places:
+        mates = [j for j in places if cells[j] == cells[k] and cells[k] > 0] or [k]
+        labels.append(", ".join(view.runs[j] for j in mates) if mates[0] == k else "")
+    side = [
+        "middle right" if x[k] < np.mean(view.levels(planes.across[0])) else "middle left"
+        for k in places
+    ]
+    return [
+        {
+            "type": "scatter", "mode": "markers+text", "name": "runs", "showlegend": False,
+            "x": plain_numbers(x[own]), "y": plain_numbers(y[own]), "cliponaxis": False,
+            "text": [plot_text(label) for label in labels], "textposition": side,
+            "textfont": {"size": 10, "color": _INK},
+            "marker": {
+                "size": 9, "color": COLOURS[1], "line": {"width": 1.5, "color": "#ffffff"},
+            },
+        }
+    ]  # fmt: skip
+
+
+def _thin_region(x: Floats, y: Floats, ratio: Floats) -> Trace:
+    """Return a grey veil with a dashed edge where the leverage is above that of every run.
+
+    Plotly fills what does not meet a constraint.
+    """
+    return {
+        "type": "contour", "name": "runs say little", "showlegend": False, "showscale": False,
+        "x": plain_numbers(x), "y": plain_numbers(y),
+        "z": [plain_numbers(row, 3) for row in ratio], "hoverinfo": "skip",
+        "contours": {"type": "constraint", "operation": "<", "value": 1.0},
+        "fillcolor": faded("#555555", 0.38), "line": {"color": _INK, "width": 1.5, "dash": "dash"},
+    }  # fmt: skip
+
+
+def _projected(grid: Floats) -> Floats:
+    """Return places on paper of points of the cube, shape (n_points, 2)."""
+    unit = (grid + 1) / 2
+    flat: Floats = unit[:, :2] + unit[:, 2:] * np.array(_DEPTH)
+    return flat
+
+
+def _edges() -> list[Trace]:
+    """Return the twelve edges; the three that a solid cube would hide are dotted."""
+    corners = np.array(list(product((-1.0, 1.0), repeat=3)))
+    hidden_corner = np.array([-1.0, -1.0, 1.0])
+    seen: list[Floats] = []
+    hidden: list[Floats] = []
+    for one, other in product(range(8), repeat=2):
+        if one < other and np.abs(corners[one] - corners[other]).sum() == 2:
+            ends = np.vstack([_projected(corners[[one, other]]), [np.nan, np.nan]])
+            is_hidden = any((corners[k] == hidden_corner).all() for k in (one, other))
+            (hidden if is_hidden else seen).append(ends)
+    more: dict[str, Any] = {"showlegend": False, "hoverinfo": "skip", "width": 1.4}
+    return [
+        line(*np.vstack(group).T, name="edges", colour=_GREY, dash=dash, **more)
+        for group, dash in ((seen, "solid"), (hidden, "dot"))
+    ]
+
+
+def _cube_points(place: Floats, value: Floats, is_corner: Bools) -> list[Trace]:
+    traces: list[Trace] = []
+    for own, looks in ((~is_corner, "circle"), (is_corner, "circle-open")):
+        traces.append(
+            {
+                "type": "scatter", "mode": "markers+text", "showlegend": False,
+                "name": "corners" if looks == "circle-open" else "edges and centre",
+                "x": plain_numbers(place[own, 0]), "y": plain_numbers(place[own, 1]),
+                "text": [number_text(one, _DIGITS) for one in value[own]],
+                "textposition": "top center", "textfont": {"size": 11}, "hoverinfo": "text",
+                "marker": {"size": 8, "color": COLOURS[0], "symbol": looks},
+            }
+        )  # fmt: skip
+    return traces
+
+
+def _away(view: ExperimentView, place: int) -> dict[str, Any]:
+    """Return the name of the factor that leads away, at the lower right edge."""
+    return {
+        "x": 1 + _DEPTH[0] * 0.75, "y": _DEPTH[1] * 0.5, "xanchor": "left", "yanchor": "top",
+        "text": plot_text(view.factor_label(place), 60).replace(" [", "<br>["), "showarrow": False,
+        "align": "left", "font": {"size": 11},
+    }  # fmt: skip

@@ -1,0 +1,251 @@
+"""Tables of the three-parameter line, of a slow pull, and of the stiffness forms of codes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from reduction.line.product import REASONS
+from reduction.report.experimentview import ExperimentView, response_unit
+from reduction.report.htmltable import Cell, Table, make_table, measured, number, probability, words
+from reduction.report.style import Shown, shown
+from reduction.report.uncertainty import plus_minus
+from reduction.report.view import TestView
+
+__all__ = [
+    "form_quality_table", "form_table", "line_of_runs_table", "line_table", "pull_share_table",
+    "pull_table",
+]  # fmt: skip
+
+_PARAMETERS = (
+    ("test_quasi_static_spring_constant", "tension", "K_0, quasi-static spring constant"),
+    ("test_dissipation_spring_constant", "tension", "K_1, dissipation spring constant"),
+    ("test_relaxation_time", "time", "tau, relaxation time"),
+    ("test_dashpot_coefficient", "dashpot", "C = K_1 tau, dashpot coefficient"),
+)
+_FROM = "scatter between cycles, and K_0 with the fit of its slow pull"
+_LEFT = "load-cell calibration, gauge length, lag between the channels"
+_CONDITIONING = (
+    "Conditioning, K_0 / (E' - K_0): how many times a relative error of K_0 enters E' - K_0, on"
+    " which K_1 and tau stand."
+)
+_TERMS = ("1", "T", "T²", "T³")
+
+
+def line_table(view: TestView) -> Table | None:
+    """Return the parameters of the line of each specimen of a test."""
+    if "test_relaxation_time" not in view.data:
+        return None
+    rows = [[words(name), *_line_cells(view, k)] for k, name in enumerate(view.specimens)]
+    return make_table(
+        "The three-parameter line: a spring K_0 beside a spring K_1 in series with a dashpot.",
+        ("specimen", *_line_columns(view)), rows, synthetic=view.is_synthetic,
+        remarks=[_CONDITIONING, plus_minus(_FROM, left_out=_LEFT)],
+    )  # fmt: skip
+
+
+def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> Table | None:
+    """Return the parameters of the line of each run, and those derived from surfaces beside."""
+    names, specimens = view.texts("run_name"), view.texts("run_specimen")
+    force, time = shown("tension", view.units), shown("time", view.units)
+    derived = (
+        (view.per_run("derived_dissipation_spring_constant"), force),
+        (view.per_run("derived_relaxation_time"), time),
+    )
+    rows, first = [], None
+    for k, (run, specimen) in enumerate(zip(names, specimens, strict=True)):
+        test = tests.get(run)
+        if test is None or "test_relaxation_time" not in test.data:
+            continue
+        first = first or test
+        rows.append(
+            [
+                words(view.runs[k]),
+                *_line_cells(test, test.specimens.index(specimen)),
+                *(number(float(values[k]), unit) for values, unit in derived),
+            ]
+        )
+    if first is None:
+        return None
+    *columns, refusal = _line_columns(first)
+    head, tail = columns, [force.label("K_1 from surfaces"), time.label("tau from surfaces")]
+    return make_table(
+        "The three-parameter line of each run; at the right K_1 and tau from surfaces of E' and E''"
+        " at the same levels, which smooth over the runs.",
+        ("run", *head, refusal, *tail), rows, synthetic=view.is_synthetic, is_compact=True,
+        remarks=[_CONDITIONING, plus_minus(_FROM, left_out=_LEFT)],
+    )  # fmt: skip
+
+
+def form_table(view: ExperimentView) -> Table | None:
+    """Return the coefficients of the stiffness forms with their intervals."""
+    forms = _forms(view)
+    names, units = (view.array_of_texts(f"stiffness_coefficient_{w}") for w in ("name", "unit"))
+    rows = []
+    for k, form in forms:
+        for j in range(names.shape[1]):
+            if not names[k, j]:
+                continue
+            low, high = (view.array(f"stiffness_coefficient_{e}")[k, j] for e in ("low", "high"))
+            rows.append(
+                [
+                    words(form),
+                    words(str(names[k, j])),
+                    measured(
+                        float(view.array("stiffness_coefficient")[k, j]),
+                        float(view.array("stiffness_coefficient_standard_uncertainty")[k, j]),
+                    ),
+                    words(str(units[k, j])),
+                    Cell(f"{low:.4g} to {high:.4g}", f"{low!r} {high!r}", is_number=True),
+                    probability(float(view.array("stiffness_p_value")[k, j])),
+                ]
+            )
+    if not rows:
+        return None
+    confidence = 100 * float(np.nanmax(view.array("stiffness_confidence")))
+    return make_table(
+        "Coefficients of the stiffness forms of mooring codes.",
+        ("form", "coefficient", "value", "unit", f"{confidence:g} % interval", "p if nil [1]"),
+        rows, synthetic=view.is_synthetic,
+        remarks=[plus_minus("scatter of the runs about the form",
+                            left_out="that the form itself may be wrong: see its quality")],
+    )  # fmt: skip
+
+
+def form_quality_table(view: ExperimentView) -> Table | None:
+    """Return how well each form fits the runs, beside the quadratic surface."""
+    forms = _forms(view)
+    if not forms:
+        return None
+    strength = np.nanmax(view.per_run("run_rated_break_strength"))
+    unit = response_unit("apparent_spring_constant", view.units)
+    of_strength = Shown(unit.unit, unit.factor * float(strength))
+    columns = ("n_coefficients", "r2", "adjusted_r2", "predicted_r2", "sigma", "sigma", "aicc")
+    rows = [
+        [
+            words(form),
+            *(
+                number(float(view.array(f"stiffness_{name}")[k]), of_strength if j == 5 else None)
+                for j, name in enumerate(columns)
+            ),
+        ]
+        for k, form in forms
+    ]
+    return make_table(
+        "The forms against the quadratic surface of the same runs.",
+        ("form", "coefficients [1]", "r² [1]", "adjusted r² [1]", "predicted r² [1]",
+         "s over break strength [1]", unit.label("s"), "AICc [1]"),
+        rows, synthetic=view.is_synthetic,
+        remarks=["s: standard deviation of a run about the form. AICc: lower is better; one form"
+                 " against another on the same runs, nothing by itself."],
+    )  # fmt: skip
+
+
+def pull_table(view: TestView) -> Table | None:
+    """Return the cubic of each slow pull, its range of use, and how it was made."""
+    coefficient = view.array("pull_strain_coefficient")
+    if coefficient is None:
+        return None
+    force, percent = shown("tension", view.units), shown("strain", view.units)
+    half = view.array_like("pull_strain_coefficient_standard_uncertainty", coefficient)
+    given = [k for k in range(len(view.specimens)) if np.isfinite(coefficient[k]).any()]
+    rows = []
+    for power, term in enumerate(_TERMS):
+        scale = 1.0 / force.factor**power
+        per = "1" if power == 0 else f"{force.unit}-{power}"
+        rows.append(
+            [words(f"strain, coefficient of {term} [{per}]")]
+            + [_scaled(coefficient[k, power], half[k, power], scale) for k in given]
+        )
+    low, high = (view.array_like(f"pull_tension_{e}", coefficient[:, 0]) for e in ("low", "high"))
+    scalars: Sequence[tuple[str, str, Shown]] = (
+        ("residual of the cubic", "pull_residual", percent),
+        ("rate of strain", "pull_strain_rate", Shown("%/min", 6000.0)),
+        ("waiting time before the pull", "pull_waiting_time", Shown("h", 1 / 3600.0)),
+        ("tension at which the length was read", "pull_reference_tension", force),
+    )
+    rows += [
+        [words(force.label("range of use"))]
+        + [
+            Cell(
+                f"{low[k] * force.factor:,.0f} to {high[k] * force.factor:,.0f}",
+                f"{low[k]!r} {high[k]!r}", is_number=True,
+            )
+            for k in given
+        ]
+    ]  # fmt: skip
+    for text, name, unit in scalars:
+        values = view.array_like(name, coefficient[:, 0])
+        rows.append([words(unit.label(text))] + [number(float(values[k]), unit) for k in given])
+    said = view.texts("pull_waiting")
+    if any(said):
+        rows.append([words("waiting, as stated"), *(words(said[k]) for k in given)])
+    return make_table(
+        "Slow pull: strain as a cubic of tension T, and the conditions it holds for.",
+        ("what, with its unit", *(view.specimens[k] for k in given)), rows,
+        synthetic=view.is_synthetic,
+        remarks=["K_0 is the inverse slope of the cubic at the mean tension of interest; it grows"
+                 " with the rate of strain and with the waiting time.",
+                 plus_minus("scatter about the cubic", left_out=_LEFT)],
+    )  # fmt: skip
+
+
+def pull_share_table(view: TestView) -> Table | None:
+    """Return strain and K_0 of the slow pull at round shares of the break strength."""
+    share, strain = view.array("break_share"), view.array("strain_at_break_share")
+    if share is None or strain is None:
+        return None
+    half = view.array_like("strain_at_break_share_standard_uncertainty", strain)
+    percent = shown("strain", view.units)
+    kept = np.flatnonzero(np.isfinite(strain).any(axis=0))
+    if kept.size == 0:
+        return None
+    rows = [
+        [words(f"{100 * share[j]:g}")]
+        + [measured(strain[k, j], half[k, j], percent) for k in range(len(view.specimens))]
+        for j in kept
+    ]
+    return make_table(
+        "Strain of the slow pull at round shares of the rated break strength, within its range.",
+        ("tension [%RBS]", *(percent.label(name) for name in view.specimens)), rows,
+        synthetic=view.is_synthetic,
+        remarks=[plus_minus("scatter about the cubic", left_out=_LEFT)],
+    )  # fmt: skip
+
+
+def _line_columns(view: TestView) -> tuple[str, ...]:
+    units = [_unit(view, kind).label(text) for _, kind, text in _PARAMETERS]
+    return (*units, "conditioning [1]", "refused because")
+
+
+def _line_cells(view: TestView, place: int) -> list[Cell]:
+    cells = []
+    for name, kind, _ in _PARAMETERS:
+        values = view.array_like(name, np.empty(len(view.specimens)))
+        half = view.array_like(f"{name}_standard_uncertainty", values)
+        cells.append(measured(float(values[place]), float(half[place]), _unit(view, kind)))
+    conditioning = view.array_like("test_line_conditioning", np.empty(len(view.specimens)))
+    codes = view.array("test_line_refusal")
+    reason = "" if codes is None else REASONS.get(int(codes[place]), "")
+    return [*cells, number(float(conditioning[place]), digits=3), words(reason)]
+
+
+def _unit(view: TestView, kind: str) -> Shown:
+    force, time = shown("tension", view.units), shown("time", view.units)
+    dashpot = Shown(f"{force.unit} {time.unit}", force.factor * time.factor)
+    return {"tension": force, "time": time, "dashpot": dashpot}[kind]
+
+
+def _forms(view: ExperimentView) -> list[tuple[int, str]]:
+    if (
+        "stiffness_form" not in view.data
+        or not np.isfinite(view.array("stiffness_n_coefficients")).any()
+    ):
+        return []
+    return [(k, str(name)) for k, name in enumerate(view.data["stiffness_form"].values)]
+
+
+def _scaled(value: float, half: float, scale: float) -> Cell:
+    text = f"{value * scale:.6g}" + (f" ± {half * scale:.2g}" if np.isfinite(half) else "")
+    return Cell(text, repr(float(value)), is_number=True)

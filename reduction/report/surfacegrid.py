@@ -1,0 +1,109 @@
+"""Surfaces on the planes that figures show: two factors across, the others held."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from reduction.record import Bools, Floats
+from reduction.report.experimentview import ExperimentView
+from reduction.surface.bands import evaluate_surfaces
+from reduction.surface.product import ResponseSurfaces
+from reduction.vocabulary import RESPONSES
+
+__all__ = ["HELD", "Planes", "lowest_in_box", "make_planes", "negative_inside", "runs_on_plane"]
+
+POINTS = 31
+"""Points along each side of a plane: finer is not seen, and makes the page heavy."""
+HELD = (-1.0, 0.0, 1.0)
+"""Coded levels of the held factor, one plane each. [1]"""
+_MOST_POINTS = 20000
+_NEVER_NEGATIVE = RESPONSES
+_NEAR = 0.5
+"""A run belongs to a plane where its held factor is nearer to it than to the next one. [1]"""
+
+
+@dataclass(frozen=True)
+class Planes:
+    """Every surface of an experiment on three planes.
+
+    Parameters
+    ----------
+    across : tuple of int
+        Factors along x and y.
+    held : int
+        Factor that is constant on a plane; any further ones are in the middle.
+    coded : ndarray, shape (n_points,)
+        Of x and of y. [1]
+    value : ndarray, shape (n_responses, 3, n_points, n_points)
+        Rows are y; on the scale of the response itself. [unit of the response]
+    leverage_ratio : ndarray, shape (n_responses, 3, n_points, n_points)
+        Leverage over the greatest of a run: above 1 the runs say less than at the worst of
+        them. [1]
+    """
+
+    across: tuple[int, int]
+    held: int
+    coded: Floats
+    value: Floats
+    leverage_ratio: Floats
+
+
+def make_planes(view: ExperimentView, surfaces: ResponseSurfaces) -> Planes | None:
+    """Return the planes over two loads at three frequencies; None with fewer than three factors.
+
+    The factor that is held is the frequency where there is one, else the last.
+    """
+    names = view.factors
+    if len(names) < 3:
+        return None
+    held = names.index("frequency") if "frequency" in names else len(names) - 1
+    across = [place for place in range(len(names)) if place != held][:2]
+    side = np.linspace(-1.0, 1.0, POINTS)
+    points = np.zeros((3, POINTS, POINTS, len(names)))
+    points[..., held] = np.array(HELD)[:, None, None]
+    points[..., across[0]] = side
+    points[..., across[1]] = side[:, None]
+    at = evaluate_surfaces(surfaces, points.reshape(-1, len(names)), units="coded", outside="flag")
+    shape = (len(surfaces.response_names), *points.shape[:3])
+    ratio = at.variance_factor / _greatest_leverage(surfaces)[:, None]
+    return Planes((across[0], across[1]), held, side, at.value.reshape(shape), ratio.reshape(shape))
+
+
+def runs_on_plane(view: ExperimentView, planes: Planes, level: float) -> Bools:
+    """Which runs were made on a plane."""
+    coded = view.array("run_coded_level")
+    others = [k for k in range(coded.shape[1]) if k not in (*planes.across, planes.held)]
+    on_plane = np.abs(coded[:, planes.held] - level) < _NEAR
+    return np.asarray(on_plane & (np.abs(coded[:, others]) < _NEAR).all(axis=1))
+
+
+def lowest_in_box(surfaces: ResponseSurfaces) -> tuple[Floats, Floats]:
+    """Return the least value of each surface within the levels, and where it is, coded."""
+    n_factors = surfaces.coded.shape[1]
+    n_side = max(2, min(21, int(_MOST_POINTS ** (1 / n_factors))))
+    points = np.array(list(product(np.linspace(-1, 1, n_side), repeat=n_factors)))
+    value = evaluate_surfaces(surfaces, points, units="coded").value
+    place = np.argmin(np.where(np.isfinite(value), value, np.inf), axis=1)
+    return value[np.arange(len(value)), place], points[place]
+
+
+def negative_inside(surfaces: ResponseSurfaces) -> dict[str, tuple[float, Floats]]:
+    """Return least value and its place of each surface that goes below zero and cannot be."""
+    least, place = lowest_in_box(surfaces)
+    return {
+        name: (float(least[index]), place[index])
+        for index, name in enumerate(surfaces.response_names)
+        if name in _NEVER_NEGATIVE and least[index] < 0
+    }
+
+
+def _greatest_leverage(surfaces: ResponseSurfaces) -> Floats:
+    """Largest leverage of a run that was used, by response."""
+    known = np.isfinite(surfaces.coded).all(axis=1)
+    at_runs = evaluate_surfaces(surfaces, surfaces.coded[known], units="coded", outside="flag")
+    used = surfaces.is_used[surfaces.pattern][:, known] & np.isfinite(at_runs.variance_factor)
+    greatest: Floats = np.max(at_runs.variance_factor, axis=1, where=used, initial=-np.inf)
+    return np.where(used.any(axis=1), greatest, np.nan)
