@@ -41,6 +41,8 @@ strain.1 = { column = "e", unit = "1" }
 [defaults]
 layout = "logger"
 control = "load"
+"""
+ONE_LOG = """
 [tests.P-7]
 file = "P-7.csv"
 specimens = ["R-1"]
@@ -203,19 +205,51 @@ KINDS = {
 }
 
 
-def write_campaign(folder):
-    """A campaign of both logs; the programme in steps of one."""
-    log = programme_log()
-    write(log, folder / "P-7.csv")
-    write(tensile_log(), folder / "B-1.csv", seed=6)
-    lines = [CAMPAIGN]
-    for name, (begin, end) in log.steps.items():
-        lines += [
-            "[[tests.P-7.steps]]", f'name = "{name}"', f'from = "{begin:g} s"', f'to = "{end:g} s"',
-            f'kind = "{KINDS.get(name, "cyclic")}"',
-        ]  # fmt: skip
-    lines += ["[tests.B-1]", 'file = "B-1.csv"', 'specimens = ["R-2"]', 'kind = "tensile"',
-              'control = "position"']  # fmt: skip
+def stopped_log():
+    """A pull that is taken back from 60 % of the strength."""
+    log = Log()
+    log.go(20, lambda since: 0.0, lambda since: 0.0)
+    log.ramp(100, 0.6 * STRENGTH, 0.08)
+    log.ramp(100, 0.0, 0.01)
+    log.go(20, lambda since: 0.0, lambda since: 0.01)
+    return log
+
+
+N_SNAP = 25
+
+
+def snap_log(valley=0.0):
+    """Cycles in which the machine goes back by half as much again as the line does."""
+    log = Log()
+    log.go(30, lambda since: valley, lambda since: 0.0)
+    for _ in range(N_SNAP):
+        log.ramp(PERIOD / 4, valley, 0.02)
+        log.ramp(PERIOD / 4, 0.3 * STRENGTH, 0.06)
+        log.ramp(PERIOD / 4, valley, 0.02)
+        log.ramp(PERIOD / 4, valley, 0.0)
+    log.go(30, lambda since: valley, lambda since: 0.0)
+    return log
+
+
+def steps_of(log, **kinds):
+    """The steps of a log as a campaign has them."""
+    return "\n".join(
+        f'[[tests.P-7.steps]]\nname = "{name}"\nfrom = "{begin:g} s"\nto = "{end:g} s"\n'
+        f'kind = "{(KINDS | kinds).get(name, "cyclic")}"'
+        for name, (begin, end) in log.steps.items()
+    )
+
+
+def single(name, kind, *lines, specimen="R-1"):
+    """A test with a log of its own."""
+    return "\n".join(
+        [f"[tests.{name}]", f'file = "{name}.csv"', f'specimens = ["{specimen}"]',
+         f'kind = "{kind}"', *lines]
+    )  # fmt: skip
+
+
+def write_campaign(folder, *parts):
+    """A campaign of tests given as text."""
     path = folder / "campaign.toml"
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    path.write_text("\n".join([CAMPAIGN, *parts]) + "\n", encoding="utf-8")
     return path

@@ -133,12 +133,22 @@ class TestFailure:
         lasted = cycles_to_failure(loops, rated_break_strength=1.0, cycle_number=numbers)
         assert lasted.cycles == 2000
 
+    def test_a_cycle_in_which_it_parts_is_not_one_that_it_lasted(self):
+        loops = loops_with((3, 5), peak_tension=[100.0, 100, 100, 100, 60])
+        lasted = cycles_to_failure(loops, rated_break_strength=200.0, parted_in=[4, 5, -1])
+        assert lasted.cycles.tolist() == [4, 5, 5]
+        assert lasted.failed.tolist() == [True, True, False]
+        assert lasted.peak_tension.tolist() == [100.0, 92.0, 92.0]
+        assert lasted.how[:2] == ("slack at a position at which it was taut",) * 2
+
     def test_a_specimen_without_any_reading_is_nan(self):
         loops = loops_with((1, 3), peak_tension=np.nan, valley_tension=np.nan)
         assert np.isnan(cycles_to_failure(loops, rated_break_strength=1.0).peak_tension)
 
     @pytest.mark.parametrize(
-        "changed", [{"failed": [True, False]}, {"cycle_number": [1]}], ids=["words", "numbers"]
+        "changed",
+        [{"failed": [True, False]}, {"cycle_number": [1]}, {"parted_in": [0]}],
+        ids=["words", "numbers", "no cycle before"],
     )
     def test_what_does_not_fit_is_refused(self, changed):
         with pytest.raises(DataError, match="the arrays do not fit the loops; found 3 cycles"):

@@ -15,7 +15,9 @@ AREA = np.array([3e-4])
 def notes_of(triangle):
     strain, cycles = triangle(low=0.5, high=1.5)
 
-    def notes(tension=1000 * strain, *, stretch=strain, waveform="triangular", share=None):
+    def notes(
+        tension=1000 * strain, *, stretch=strain, waveform="triangular", share=None, snap=False
+    ):
         one = cycles
         if share is not None:
             within = np.arange(strain.size) % 50 < 50 * share  # a branch has 51 samples
@@ -27,6 +29,7 @@ def notes_of(triangle):
         return plausibility_notes(
             stretch, specimens=("new",), slack_tension=20.0, waveform=waveform, cycles=one,
             loops=close_loops(0.1 * np.arange(strain.size), load, stretch, one), curves=curves,
+            is_snap=snap,
         )  # fmt: skip
 
     notes.strain = strain
@@ -54,6 +57,12 @@ def test_tension_that_falls_with_stretch_is_named_where_it_is_positive(notes_of)
 def test_a_strain_no_specimen_reaches_asks_for_the_unit_of_position(notes_of):
     (note,) = notes_of(stretch=1000 * notes_of.strain)
     assert note.startswith("new: strain reaches 1500, which no specimen does")
+
+
+def test_snap_loads_go_slack_and_a_line_that_stays_taut_is_named(notes_of):
+    assert notes_of(np.maximum(1000 * (notes_of.strain - 0.7), 0), snap=True) == ()
+    (note,) = notes_of(snap=True)
+    assert "are no snap loads: tension stays above 20 N" in note
 
 
 def test_cycles_that_go_slack_are_counted(notes_of):

@@ -1,0 +1,256 @@
+"""A rope programme from its logs to archives and tables, each number against what made it."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import programme as made
+import pytest
+
+from reduction.archive.open import open_archive
+from reduction.batch.run import run_campaign
+from reduction.campaign.load import load_campaign
+
+COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
+POSITION = 'control = "position"'
+
+
+def run(folder, *parts):
+    path = made.write_campaign(folder, *parts)
+    return run_campaign(
+        load_campaign(path), processed=folder / "p", reports=folder / "r", clock=lambda: 0.0
+    )
+
+
+def table(result, name):
+    frame = pd.read_csv(result.processed / "tables" / f"{name}.csv")
+    return frame.rename(columns=lambda column: column.partition(" [")[0])
+
+
+def row(result, test, name="rope_programme"):
+    frame = table(result, name)
+    return frame[frame["test"] == test].iloc[0]
+
+
+def notes(result, test):
+    with open_archive(result.processed / f"{test}.nc") as archive:
+        return archive["note"].to_numpy().tolist()
+
+
+def near(found, name, truth, *, floor=0.0):
+    """Within three of its standard uncertainties, and of a stated floor."""
+    spread = found[f"{name}_standard_uncertainty"]
+    assert spread >= 0
+    assert found[name] == pytest.approx(truth, abs=3 * spread + floor), name
+
+
+@pytest.fixture(scope="module")
+def log():
+    return made.programme_log()
+
+
+@pytest.fixture(scope="module")
+def whole(log, tmp_path_factory):
+    """One log in steps, and a pull to the end of another specimen."""
+    folder = tmp_path_factory.mktemp("programme")
+    made.write(log, folder / "P-7.csv")
+    made.write(made.tensile_log(), folder / "B-1.csv", seed=6)
+    return run(
+        folder, made.ONE_LOG, made.steps_of(log),
+        made.single("B-1", "tensile", POSITION, specimen="R-2"),
+    )  # fmt: skip
+
+
+def test_every_step_is_a_row(whole):
+    assert whole.exit_status == 0
+    found = table(whole, "rope_programme").set_index("test")["programme_step"]
+    assert found.to_dict() == {
+        "B-1": "tensile strength",
+        "P-7.bedding-in": "bedding-in",
+        "P-7.quasi-static": "quasi-static stiffness",
+        **{f"P-7.dynamic-{level}": "dynamic stiffness" for level in (1, 2, 3)},
+        "P-7.creep": "creep",
+        "P-7.life": "cycles to failure",
+    }
+
+
+def test_bedding_in_has_the_stiffness_of_its_ends_and_the_permanent_strain(whole):
+    found = row(whole, "P-7.bedding-in")
+    first, last = made.bedding_stiffness(1), made.bedding_stiffness(made.N_BEDDING)
+    assert found["bedding_cycles"] == made.N_BEDDING
+    near(found, "bedding_first_stiffness", first)
+    near(found, "bedding_last_stiffness", last)
+    near(found, "bedding_first_stiffness_over_strength", first / made.STRENGTH)
+    near(found, "bedding_last_stiffness_over_strength", last / made.STRENGTH)
+    near(found, "bedding_stiffening", last / first)
+    permanent = made.bedding_foot(made.N_BEDDING) - made.bedding_foot(1)
+    assert found["bedding_permanent_strain"] == pytest.approx(permanent, abs=1e-4)
+
+
+def test_stiffness_between_holds_falls_with_the_logarithm_of_time(whole):
+    found = row(whole, "P-7.quasi-static", "static_stiffness")
+    assert (found["held_pair_low_hold"], found["held_pair_high_hold"]) == (1, 2)
+    assert found["held_pair_low_tension"] == pytest.approx(1e4, abs=10)
+    assert found["held_pair_high_tension"] == pytest.approx(3e4, abs=10)
+    near(found, "static_stiffness", 5e5)
+    near(found, "static_stiffness_over_strength", 5.0)
+    near(found, "static_stiffness_per_decade", -1.5e4)
+    near(found, "static_stiffness_per_decade_over_strength", -0.15)
+    assert found["static_stiffness_standard_uncertainty"] < 5e2
+    # the row of the step has the same
+    of_step = row(whole, "P-7.quasi-static")
+    assert of_step["static_stiffness"] == found["static_stiffness"]
+    points = table(whole, "static_stiffness_times")
+    assert points["static_elapsed_time"].iloc[-1] > 3000
+    truth = made.static_stiffness(points["static_elapsed_time"].to_numpy())
+    assert points["static_stiffness_at_time"].to_numpy() == pytest.approx(truth, rel=2e-3)
+
+
+@pytest.mark.parametrize("level", range(3))
+def test_dynamic_stiffness_of_each_level_is_that_of_its_last_cycles(whole, level):
+    found = row(whole, f"P-7.dynamic-{level + 1}")
+    last = np.arange(made.N_LEVEL - made.LAST, made.N_LEVEL) + 1
+    truth = made.level_stiffness(level, last).mean()
+    assert found["dynamic_cycles"] == made.LAST
+    near(found, "dynamic_stiffness", truth)
+    near(found, "dynamic_stiffness_over_strength", truth / made.STRENGTH)
+    assert found["dynamic_stiffness_standard_uncertainty"] < 2e-3 * truth
+    near(found, "dynamic_stiffness_drift", 0.0)
+    assert found["dynamic_frequency"] == pytest.approx(1 / made.PERIOD, rel=1e-3)
+    mean, amplitude = made.LEVELS[level]
+    assert found["dynamic_mean_tension_over_strength"] == pytest.approx(mean, rel=2e-3)
+    assert found["dynamic_tension_amplitude_over_strength"] == pytest.approx(amplitude, rel=2e-3)
+
+
+def test_creep_a_decade_stands_alone_and_over_the_strength(whole):
+    found = row(whole, "P-7.creep", "creep")
+    near(found, "creep_rate_per_decade", made.CREEP, floor=0.001 * made.CREEP)
+    near(found, "creep_compliance_per_decade", made.CREEP / 0.4, floor=0.001 * made.CREEP / 0.4)
+    assert found["creep_tension_over_strength"] == pytest.approx(0.4, abs=1e-4)
+    of_step = row(whole, "P-7.creep")
+    assert of_step["creep_rate_per_decade"] == found["creep_rate_per_decade"]
+
+
+def test_cycles_to_failure_are_those_before_the_one_in_which_it_parts(whole):
+    found = row(whole, "P-7.life")
+    assert found["cycles_to_failure"] == made.N_LIFE
+    assert found["cycles_are_run_out"] == "no"
+    assert found["failure_judged_by"] == "slack at a position at which it was taut"
+    assert found["failure_peak_tension_over_strength"] == pytest.approx(0.5, abs=1e-3)
+    assert found["failure_valley_tension"] == pytest.approx(0.05 * made.STRENGTH, rel=0.01)
+
+
+def test_a_pull_to_the_end_has_a_strength_and_a_strain(whole):
+    found = row(whole, "B-1", "tensile")
+    assert found["pull_is_break"] == "yes"
+    near(found, "tensile_strength", made.BREAK)
+    near(found, "strain_at_failure", made.STRAIN_AT_BREAK, floor=1e-4)
+    near(found, "pull_peak_tension_over_strength", made.BREAK / made.STRENGTH)
+
+
+def test_a_level_that_has_not_settled_is_named(whole):
+    last = np.arange(made.N_BEDDING - made.LAST, made.N_BEDDING) + 1
+    slope = np.polyfit(last, made.bedding_stiffness(last), 1)[0]
+    near(row(whole, "P-7.bedding-in"), "dynamic_stiffness_drift", slope)
+    assert any("has not settled" in note for note in notes(whole, "P-7.bedding-in"))
+    assert not any("settled" in note for note in notes(whole, "P-7.dynamic-1"))
+
+
+def test_the_compliance_checker_finds_nothing(whole):
+    products = sorted(whole.processed.glob("*.nc"))
+    assert len(products) == 8
+    done = subprocess.run(
+        [sys.executable, str(COMPLIANCE), *map(str, products)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.fixture(scope="module")
+def apart(log, tmp_path_factory):
+    """Each step as a log of its own; the last one stops before the line parts."""
+    folder = tmp_path_factory.mktemp("apart")
+    made.write(log, folder / "P-7.csv")
+    head, *lines = (folder / "P-7.csv").read_text().splitlines()
+    at = np.array([float(line.partition(",")[0]) for line in lines])
+    parts = []
+    for step, (begin, end) in log.steps.items():
+        name = step.replace(" ", "-")
+        end = begin + 20 + made.N_LIFE * made.PERIOD if step == "life" else end
+        kept = [line for line, time in zip(lines, at, strict=True) if begin <= time <= end]
+        (folder / f"{name}.csv").write_text("\n".join([head, *kept]) + "\n")
+        parts.append(made.single(name, made.KINDS.get(step, "cyclic")))
+    return run(folder, *parts)
+
+
+def test_several_logs_give_what_one_log_gives(whole, apart):
+    of_steps = table(whole, "rope_programme").set_index("test")
+    for _, found in table(apart, "rope_programme").iterrows():
+        if found["test"] == "life":
+            continue
+        same = of_steps.loc[f"P-7.{found['test']}"]
+        for name in found.index.drop("test"):
+            assert found[name] == same[name] or (pd.isna(found[name]) and pd.isna(same[name])), name
+
+
+def test_a_log_that_stops_before_the_failure_is_a_run_out(apart):
+    found = row(apart, "life")
+    assert (found["cycles_to_failure"], found["cycles_are_run_out"]) == (made.N_LIFE, "yes")
+
+
+def test_the_word_of_the_laboratory_decides(log, tmp_path):
+    made.write(log, tmp_path / "P-7.csv")
+    begin = log.steps["life"][0]
+    end = begin + 20 + made.N_LIFE * made.PERIOD
+    result = run(
+        tmp_path, made.ONE_LOG, "[[tests.P-7.steps]]", 'name = "life"', f'from = "{begin:g} s"',
+        f'to = "{end:g} s"', 'kind = "fatigue"', "failed = true",
+    )  # fmt: skip
+    found = row(result, "P-7.life")
+    assert (found["cycles_to_failure"], found["cycles_are_run_out"]) == (made.N_LIFE, "no")
+    assert found["failure_judged_by"] == "as stated, after the last whole cycle"
+    with open_archive(result.processed / "P-7.life.nc") as archive:
+        assert archive.attrs["failed"] == "yes"
+
+
+def test_a_pull_that_was_stopped_has_no_strength(tmp_path):
+    made.write(made.stopped_log(), tmp_path / "B-2.csv")
+    result = run(tmp_path, made.single("B-2", "tensile", POSITION))
+    found = row(result, "B-2", "tensile")
+    assert found["pull_is_break"] == "no"
+    assert np.isnan(found["tensile_strength"]) and np.isnan(found["strain_at_failure"])
+    near(found, "pull_peak_tension", 0.6 * made.STRENGTH)
+    assert any("refused: tensile strength" in note for note in notes(result, "B-2"))
+
+
+def test_snap_loads_are_cycles_that_go_slack(tmp_path):
+    made.write(made.snap_log(), tmp_path / "S-1.csv")
+    made.write(made.snap_log(valley=0.1 * made.STRENGTH), tmp_path / "S-2.csv")
+    result = run(
+        tmp_path, made.single("S-1", "snap", POSITION), made.single("S-2", "snap", POSITION)
+    )
+    assert result.exit_status == 0
+    found = row(result, "S-1")
+    assert found["programme_step"] == "cycles to failure under snap loads"
+    assert (found["cycles_to_failure"], found["cycles_are_run_out"]) == (made.N_SNAP, "yes")
+    assert found["failure_peak_tension_over_strength"] == pytest.approx(0.3, abs=2e-3)
+    assert not any("slack within" in note for note in notes(result, "S-1"))
+    assert any("are no snap loads" in note for note in notes(result, "S-2"))
+
+
+def test_without_a_break_strength_nothing_is_divided_by_it(log, tmp_path):
+    made.write(log, tmp_path / "P-7.csv")
+    path = made.write_campaign(tmp_path, made.ONE_LOG, made.steps_of(log))
+    path.write_text(path.read_text().replace('rated_break_strength = "100 kN"\n', ""))
+    result = run_campaign(
+        load_campaign(path), processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0,
+        tests=["P-7.dynamic-2", "P-7.creep"],
+    )  # fmt: skip
+    found = row(result, "P-7.dynamic-2")
+    assert found["dynamic_stiffness"] == pytest.approx(1.3e6, rel=2e-3)
+    assert np.isnan(found["dynamic_stiffness_over_strength"])
+    assert any("nothing is divided by it" in note for note in notes(result, "P-7.dynamic-2"))
+    with open_archive(result.processed / "P-7.creep.nc") as archive:
+        assert not [name for name in archive.variables if "over_strength" in str(name)]

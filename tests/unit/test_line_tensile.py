@@ -1,0 +1,83 @@
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.line.tensile import parting_sample, tensile_pull
+
+
+def pull(*, after, back=0.0, noise=0.0, n=400):
+    """A rise to 5,000 N over 1 m, and 50 readings after it."""
+    reach = np.concatenate([np.linspace(0, 1, n), np.linspace(1, 1 - back, 50)])
+    load = np.concatenate([np.linspace(0, 5000, n), np.full(50, float(after))])
+    if back:
+        load[n:] = np.linspace(5000, after, 50)
+    load = load + np.random.default_rng(1).normal(0, noise, load.size)
+    return reach, load, reach / 8
+
+
+def test_a_break_is_a_fall_at_the_position_of_the_peak():
+    position, load, strain = pull(after=20.0)
+    found = tensile_pull(position, load, strain, rated_break_strength=4000.0)
+    assert found.is_break.tolist() == [True]
+    assert found.peak_tension == pytest.approx([5000.0])
+    assert found.strain_at_peak == pytest.approx([0.125])
+    assert found.peak_tension_over_strength == pytest.approx([1.25])
+    assert "falls by half" in found.how[0]
+
+
+def test_a_pull_that_is_taken_back_is_no_break():
+    found = tensile_pull(*pull(after=20.0, back=0.9), rated_break_strength=np.nan)
+    assert found.is_break.tolist() == [False]
+    assert np.isnan(found.peak_tension_over_strength).all()
+    assert "does not fall by half" in found.how[0]
+
+
+def test_a_strand_that_parts_and_leaves_more_than_half_is_no_break():
+    assert not tensile_pull(*pull(after=3000.0), rated_break_strength=np.nan).is_break.any()
+
+
+def test_two_low_readings_are_no_break():
+    position, load, strain = pull(after=4900.0)
+    load[-10:-8] = 0.0
+    assert not tensile_pull(position, load, strain, rated_break_strength=np.nan).is_break.any()
+
+
+@pytest.mark.parametrize("broke", [True, False])
+def test_the_word_of_the_laboratory_decides(broke):
+    found = tensile_pull(
+        *pull(after=20.0 if not broke else 5000.0), rated_break_strength=1e4, broke=broke
+    )
+    assert found.is_break.tolist() == [broke] and found.how == ("as stated",)
+
+
+def test_the_noise_of_a_reading_and_a_flat_top_are_uncertainties():
+    position, load, strain = pull(after=20.0, noise=10.0, n=4000)
+    found = tensile_pull(position, load, strain, rated_break_strength=1e4)
+    assert found.peak_tension_standard_uncertainty == pytest.approx([10.0], rel=0.1)
+    # 2 sigma are 20 N of 5,000 over 0.125
+    width = 20 / 5000 * 0.125
+    assert 0.5 * width < found.strain_at_peak_standard_uncertainty[0] * 2 * np.sqrt(3) < 3 * width
+    assert abs(found.peak_tension[0] - 5000) < 4 * found.peak_tension_standard_uncertainty[0]
+    assert found.peak_tension_over_strength_standard_uncertainty == pytest.approx(
+        found.peak_tension_standard_uncertainty / 1e4
+    )
+
+
+def test_without_strain_there_is_none_at_the_peak():
+    position, load, strain = pull(after=20.0)
+    found = tensile_pull(position, load, strain * np.nan, rated_break_strength=1e4)
+    assert np.isnan(found.strain_at_peak).all() and np.isfinite(found.peak_tension).all()
+
+
+def test_missing_readings_after_the_peak_say_nothing():
+    position, load, strain = pull(after=np.nan)
+    assert not tensile_pull(position, load, strain, rated_break_strength=1e4).is_break.any()
+    assert parting_sample(position, load, last=399, least_position=0.9, tension_low=2500.0) == -1
+
+
+def test_series_that_do_not_fit_are_refused():
+    position, load, strain = pull(after=0.0)
+    with pytest.raises(DataError, match="strain does not fit the tension"):
+        tensile_pull(position, load, strain[:-1], rated_break_strength=1e4)
+    with pytest.raises(DataError, match="too few readings of tension"):
+        tensile_pull(position, load * np.nan, strain, rated_break_strength=1e4)

@@ -1,0 +1,138 @@
+"""Which step of a programme a test is, and what is said of it."""
+
+import numpy as np
+import pytest
+
+from reduction.cycles.loops import close_loops
+from reduction.line.programme import DynamicStiffness
+from reduction.pipeline.locate import locate
+from reduction.pipeline.programme import rope_step
+from reduction.record import Record, Specimen
+from reduction.settings import CycleSettings, ReductionSettings, RopeSettings
+
+ROPE = Specimen("line", kind="rope", rated_break_strength=1000.0)
+TETHER = Specimen("tether", rated_break_strength=1000.0)
+
+
+def record(load, *, name="line", counter=None, position=None):
+    """Half a second a reading; a line of 2,000 N a unit of strain, ten metres long."""
+    load = np.asarray(load, dtype=float)
+    noise = np.random.default_rng(4)
+    position = 10 + load / 200 if position is None else position
+    flags = np.zeros(load.size, dtype=np.uint16)
+    return Record(
+        test_id="A",
+        specimens=(name,),
+        time=0.5 * np.arange(load.size),
+        crosshead_position=position + noise.normal(0, 1e-5, load.size),
+        tension=(load + noise.normal(0, 0.02, load.size))[None],
+        quality_flag=flags[None],
+        crosshead_position_quality_flag=flags,
+        cycle_counter=counter,
+    )
+
+
+def cycles(n, *, start=100.0, low=100.0, high=300.0):
+    """A stand at the start, and cycles of twenty readings."""
+    turns = [start, *[high, low] * n]
+    return np.concatenate(
+        [np.full(20, start), np.interp(np.arange(20 * n + 1), 10 * np.arange(2 * n + 1), turns)]
+    )
+
+
+def step_of(one, kind, *, specimen=ROPE, failed=None, control="load", **numbers):
+    settings = ReductionSettings(
+        cycles=CycleSettings(control=control), rope=RopeSettings(**numbers)
+    )
+    located = locate(one, kind=kind, settings=settings)
+    strain = (located.position[None] - 10) / 10
+    loops = (
+        None
+        if located.cycles is None
+        else close_loops(one.time, located.tension, strain, located.cycles)
+    )
+    return rope_step(
+        located, strain, located.tension, kind=kind, specimens=(specimen,), loops=loops, holds=(),
+        failed=failed, settings=settings.rope,
+    )  # fmt: skip
+
+
+def test_the_kind_says_which_step_it_is():
+    one = record(cycles(12))
+    assert isinstance(step_of(one, "cyclic").dynamic, DynamicStiffness)
+    bedding = step_of(one, "bedding-in")
+    assert bedding.bedding_in.n_cycles == 12 and bedding.dynamic is not None
+    life = step_of(one, "fatigue")
+    assert life.lasted.cycles == 12 and life.dynamic is None
+    assert step_of(one, "relaxation") is None
+    # a quasi-static test without holds is a slow pull alone
+    assert step_of(one, "quasi-static") is None
+
+
+def test_cycles_of_a_tether_are_no_programme_but_its_life_is():
+    one = record(cycles(12), name="tether")
+    assert step_of(one, "cyclic", specimen=TETHER) is None
+    assert step_of(one, "fatigue", specimen=TETHER).lasted.cycles == 12
+
+
+def test_fewer_cycles_than_asked_for_are_named():
+    assert step_of(record(cycles(12)), "cyclic").notes == ()
+    (note,) = step_of(record(cycles(12)), "cyclic", last_cycles=50).notes
+    assert note == "line: dynamic stiffness from 12 cycles; rope.last_cycles asks for 50"
+
+
+def test_a_first_cycle_that_begins_lower_is_named():
+    load = cycles(12)
+    load[:31] = np.concatenate([np.full(20, 60.0), np.linspace(60, 300, 11)])
+    (note,) = step_of(record(load), "bedding-in").notes
+    assert note.startswith("line: the first cycle begins at 60")
+
+
+def test_bedding_in_of_one_cycle_is_refused():
+    load = np.concatenate([cycles(1), np.full(30, 100.0)])
+    found = step_of(record(load), "bedding-in", last_cycles=1)
+    assert found.bedding_in is None
+    assert "refused: bedding-in: one cycle alone; two are needed" in found.notes
+
+
+def test_cycles_are_those_of_the_machine_where_it_counts():
+    load = cycles(12)[20:]
+    counter = 1000 + np.minimum(np.arange(load.size) // 20, 11)
+    assert step_of(record(load, counter=counter), "fatigue").lasted.cycles == 1011
+
+
+@pytest.mark.parametrize(
+    ("back", "failed"), [(False, True), (True, False)], ids=["parted", "unloaded"]
+)
+def test_slack_at_a_position_at_which_it_was_taut_is_a_failure(back, failed):
+    load = np.concatenate([cycles(12), np.linspace(100, 250, 8), np.zeros(40)])
+    position = 10 + load / 200
+    if not back:
+        position[-40:] = 10 + 250 / 200 + 0.01 * np.arange(40)
+    found = step_of(record(load, position=position), "fatigue").lasted
+    assert found.failed.tolist() == [failed]
+    assert found.cycles[0] == 12 or back
+
+
+def test_the_word_of_the_laboratory_goes_before_the_record():
+    found = step_of(record(cycles(12)), "fatigue", failed=True).lasted
+    assert found.failed.tolist() == [True]
+
+
+def test_without_a_strength_nothing_is_divided_and_a_note_says_so():
+    bare = step_of(record(cycles(12)), "cyclic", specimen=Specimen("line", kind="rope"))
+    assert np.isnan(bare.dynamic.dynamic_stiffness_over_strength).all()
+    assert bare.notes == ("line: no rated break strength is stated: nothing is divided by it",)
+
+
+def test_a_pull_without_strain_has_a_strength_alone():
+    load = np.concatenate([np.linspace(0, 900, 200), np.zeros(20)])
+    position = 10 + np.arange(220) / 20
+    one = record(load, position=position)
+    located = locate(one, kind="tensile", settings=ReductionSettings())
+    found = rope_step(
+        located, located.tension * np.nan, located.tension, kind="tensile", specimens=(ROPE,),
+        loops=None, holds=(), failed=None, settings=RopeSettings(),
+    )  # fmt: skip
+    assert found.tensile.is_break.tolist() == [True]
+    assert found.notes == ("line: refused: strain at failure: no strain is known at the peak",)
