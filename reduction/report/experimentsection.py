@@ -17,7 +17,7 @@ from reduction.report.experimenttables import (
     share_text,
 )
 from reduction.report.experimentview import ExperimentView, in_words, response_unit
-from reduction.report.figures.lines import draw_forms, draw_single_time
+from reduction.report.figures.lines import draw_derived, draw_forms, draw_single_time
 from reduction.report.figures.screening import confounding_words, draw_effects
 from reduction.report.figures.surfacechecks import draw_checks, draw_pareto
 from reduction.report.figures.surfaces import (
@@ -27,7 +27,12 @@ from reduction.report.figures.surfaces import (
     draw_surface,
 )
 from reduction.report.htmltable import number_text
-from reduction.report.linetables import form_quality_table, form_table, line_of_runs_table
+from reduction.report.linetables import (
+    FORM_WORDS,
+    form_quality_table,
+    form_table,
+    line_of_runs_table,
+)
 from reduction.report.section import Part, Section, make_part, provenance_of
 from reduction.report.surfacegrid import make_planes, negative_inside
 from reduction.report.view import TestView
@@ -58,7 +63,8 @@ def make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView])
         *(_surface_parts(view, surfaces, tests) if surfaces is not None else []),
         *_effect_parts(view),
         make_part(
-            "The three-parameter line", draw_single_time(view), [line_of_runs_table(view, tests)],
+            "The three-parameter line",
+            [*draw_single_time(view), *draw_derived(view)], [line_of_runs_table(view, tests)],
             _single_time_words(view),
         ),
         make_part(
@@ -79,6 +85,7 @@ def make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView])
         notes=(("What a reader of the numbers has to know", notes),) if notes else (),
         provenance=provenance,
         documents=documents,
+        noun="experiment",
     )
 
 
@@ -256,20 +263,24 @@ def _single_time_words(view: ExperimentView) -> list[str]:
     tolerance = view.scalar("single_time_tolerance")
     ratio, span = view.scalar("single_time_ratio"), view.scalar("single_time_frequency_ratio")
     return [
-        f"A single relaxation time over frequency: {verdict}. With tau ~ f^-n, n = {exponent:.3g}"
-        f" ({low:.3g} to {high:.3g}; 0 is one relaxation time and 1 is 1/f, either met to within"
+        f"A single relaxation time over frequency: {verdict}. With tau ~ f⁻ⁿ, n = {exponent:.4f}"
+        f" ({low:.4f} to {high:.4f}; 0 is one relaxation time and 1 is 1/f, either met to within"
         f" {tolerance:g}); over a frequency ratio of {span:.3g} the relaxation time changes by a"
         f" factor of {ratio:.3g}."
     ]
 
 
 def _form_words(view: ExperimentView) -> list[str]:
-    """Say each form, and how it does against the quadratic surface."""
+    """Say each form in words, and how it does against the quadratic surface."""
     equations = view.array_of_texts("stiffness_equation")
-    sentences = [f"{text}." for text in equations if text]
-    if not sentences:
+    if not equations.size or not any(equations):
         return []
-    names = [str(name) for name in view.data["stiffness_form"].values]
+    forms = [str(name) for name in view.data["stiffness_form"].values]
+    sentences = [
+        f"{FORM_WORDS.get(name, name)}: {_FORM_SENTENCES.get(name, '')}{text}."
+        for name, text in zip(forms, equations, strict=True)
+        if text
+    ]
     scatter = view.array("stiffness_sigma")
     low = float(np.nanmin(view.array("stiffness_mean_load_low")))
     high = float(np.nanmax(view.array("stiffness_mean_load_high")))
@@ -277,18 +288,26 @@ def _form_words(view: ExperimentView) -> list[str]:
         f"Range of use: mean tension {100 * low:.3g} to {100 * high:.3g} % of the break strength,"
         " and the amplitudes and frequencies of the runs."
     )
-    if "quadratic" in names and np.isfinite(scatter[names.index("quadratic")]):
-        square = scatter[names.index("quadratic")]
+    if "quadratic" in forms and scatter[forms.index("quadratic")] > 0:
+        over = scatter / scatter[forms.index("quadratic")]
         more = [
-            f"{scatter[k] / square:.3g} ({name})"
-            for k, name in enumerate(names)
-            if name != "quadratic" and np.isfinite(scatter[k])
+            f"{over[k]:.3g} for {FORM_WORDS.get(name, name)}"
+            for k, name in enumerate(forms)
+            if name != "quadratic" and np.isfinite(over[k])
         ]
         text += (
-            " Standard deviation of a run about each, over that about the quadratic surface:"
+            " Standard deviation of a run about the form, over that about the quadratic surface:"
             f" {', '.join(more)}."
         )
     return [*sentences, text]
+
+
+_FORM_SENTENCES = {
+    "del-vecchio": "stiffness over break strength is a constant, plus a share of the mean load,"
+    " less a share of the load amplitude and of the logarithm of the period; ",
+    "mean-load": "stiffness is a share of the break strength plus a multiple of the mean tension,"
+    " whatever amplitude and period; ",
+}
 
 
 def _p(value: float) -> str:

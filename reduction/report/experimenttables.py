@@ -16,10 +16,11 @@ from reduction.report.htmltable import (
     make_table,
     measured,
     number,
+    number_text,
     probability,
     words,
 )
-from reduction.report.style import Shown, shown
+from reduction.report.style import Shown, shown, superscript
 from reduction.report.uncertainty import plus_minus
 from reduction.surface.product import ResponseSurfaces
 
@@ -167,7 +168,7 @@ def coefficient_table(view: ExperimentView, surfaces: ResponseSurfaces, index: i
                     float(surfaces.coefficient_engineering_standard_uncertainty[index, k]),
                     engineering,
                 ),
-                words(engineering.unit),
+                words(superscript(engineering.unit)),
             ]
         )  # fmt: skip
     base = f"{in_words(name)}: coefficients of the surface"
@@ -194,12 +195,17 @@ def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
     anova, name = surfaces.anova, surfaces.response_names[index]
     unit = response_unit(name, view.units)
     square = Shown(_squared(unit.unit), unit.factor**2)
+    is_large = bool(np.nanmax(anova.sum_of_squares[index]) * square.factor >= _LARGE)
     rows = [
         [
             words(source),
             count(float(anova.degrees_of_freedom[index, k])),
-            number(float(anova.sum_of_squares[index, k]), square),
-            number(float(anova.mean_square[index, k]), square),
+            *(
+                Cell(f"{one[index, k] * square.factor:.3e}", repr(float(one[index, k])), True)
+                if is_large
+                else number(float(one[index, k]), square)
+                for one in (anova.sum_of_squares, anova.mean_square)
+            ),
             number(float(anova.f[index, k])),
             probability(float(anova.p_value[index, k])),
             words(anova.error_term[k]),
@@ -263,14 +269,17 @@ def share_text(value: float) -> str:
 
 
 _MISSING = 1e-3
+_LARGE = 1e9
+"""From here on a column of squares has powers of ten in every row, not in some."""
 
 
 def _to_compute_with(value: float, spread: float, unit: Shown) -> Cell:
     """Return a coefficient of seven digits and its uncertainty of two."""
     if not np.isfinite(value):
         return Cell(NOT_GIVEN, is_number=True)
-    half = f" ± {spread * unit.factor:.2g}" if np.isfinite(spread) else ""
-    return Cell(f"{value * unit.factor:.7g}{half}", repr(value), is_number=True)
+    half = f" ± {number_text(spread * unit.factor, 2)}" if np.isfinite(spread) else ""
+    text = f"{number_text(value * unit.factor, 7)}{half}"
+    return Cell(text, repr(value), is_number=True)
 
 
 def _fixed(value: float, factor: float, places: int) -> Cell:

@@ -12,7 +12,17 @@ import numpy as np
 from reduction.record import Floats
 from reduction.report.style import faded, plot_text, shorten
 
-__all__ = ["Figure", "Trace", "axis", "band", "line", "make_figure", "plain_numbers", "script_json"]
+__all__ = [
+    "Figure",
+    "Trace",
+    "axis",
+    "band",
+    "line",
+    "make_figure",
+    "named_axis",
+    "plain_numbers",
+    "script_json",
+]
 
 Trace = dict[str, Any]
 _DIGITS = 6
@@ -137,6 +147,17 @@ def band(
 def axis(label: str, **more: Any) -> dict[str, Any]:
     """Return an axis with its title; the unit is part of the label."""
     return {"title": {"text": label}, "hoverformat": ".4~g", **more}
+
+
+def named_axis(label: str, names: Sequence[str]) -> dict[str, Any]:
+    """Return an axis of names, one at each whole number, its title clear of them."""
+    return {
+        "title": {"text": label, "standoff": 12},
+        "tickvals": list(range(len(names))),
+        "ticktext": [plot_text(name, _TITLE_LENGTH) for name in names],
+        "showgrid": False,
+        "zeroline": False,
+    }
 
 
 def make_figure(

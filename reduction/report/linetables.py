@@ -8,14 +8,24 @@ import numpy as np
 
 from reduction.line.product import REASONS
 from reduction.report.experimentview import ExperimentView, response_unit
-from reduction.report.htmltable import Cell, Table, make_table, measured, number, probability, words
-from reduction.report.style import Shown, shown
+from reduction.report.htmltable import (
+    NOT_GIVEN,
+    Cell,
+    Table,
+    count,
+    make_table,
+    measured,
+    number,
+    probability,
+    words,
+)
+from reduction.report.style import Shown, shown, superscript
 from reduction.report.uncertainty import plus_minus
 from reduction.report.view import TestView
 
 __all__ = [
-    "form_quality_table", "form_table", "line_of_runs_table", "line_table", "pull_share_table",
-    "pull_table",
+    "FORM_WORDS", "form_quality_table", "form_table", "line_of_runs_table", "line_table",
+    "pull_share_table", "pull_table",
 ]  # fmt: skip
 
 _PARAMETERS = (
@@ -30,6 +40,13 @@ _CONDITIONING = (
     "Conditioning, K_0 / (E' - K_0): how many times a relative error of K_0 enters E' - K_0, on"
     " which K_1 and tau stand."
 )
+_REFUSED = "refused because"
+FORM_WORDS = {
+    "del-vecchio": "Del Vecchio",
+    "mean-load": "mean load",
+    "quadratic": "quadratic surface",
+}
+"""Names of the forms of stiffness on the page."""
 _TERMS = ("1", "T", "T²", "T³")
 
 
@@ -38,9 +55,10 @@ def line_table(view: TestView) -> Table | None:
     if "test_relaxation_time" not in view.data:
         return None
     rows = [[words(name), *_line_cells(view, k)] for k, name in enumerate(view.specimens)]
+    columns, rows = _without_refusals(["specimen", *_line_columns(view)], rows)
     return make_table(
         "The three-parameter line: a spring K_0 beside a spring K_1 in series with a dashpot.",
-        ("specimen", *_line_columns(view)), rows, synthetic=view.is_synthetic,
+        columns, rows, synthetic=view.is_synthetic,
         remarks=[_CONDITIONING, plus_minus(_FROM, left_out=_LEFT)],
     )  # fmt: skip
 
@@ -68,12 +86,12 @@ def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> T
         )
     if first is None:
         return None
-    *columns, refusal = _line_columns(first)
-    head, tail = columns, [force.label("K_1 from surfaces"), time.label("tau from surfaces")]
+    tail = [force.label("K_1 from surfaces"), time.label("tau from surfaces")]
+    columns, rows = _without_refusals(["run", *_line_columns(first), *tail], rows)
     return make_table(
         "The three-parameter line of each run; at the right K_1 and tau from surfaces of E' and E''"
         " at the same levels, which smooth over the runs.",
-        ("run", *head, refusal, *tail), rows, synthetic=view.is_synthetic, is_compact=True,
+        columns, rows, synthetic=view.is_synthetic, is_compact=True,
         remarks=[_CONDITIONING, plus_minus(_FROM, left_out=_LEFT)],
     )  # fmt: skip
 
@@ -90,7 +108,7 @@ def form_table(view: ExperimentView) -> Table | None:
             low, high = (view.array(f"stiffness_coefficient_{e}")[k, j] for e in ("low", "high"))
             rows.append(
                 [
-                    words(form),
+                    words(FORM_WORDS.get(form, form)),
                     words(str(names[k, j])),
                     measured(
                         float(view.array("stiffness_coefficient")[k, j]),
@@ -124,9 +142,13 @@ def form_quality_table(view: ExperimentView) -> Table | None:
     columns = ("n_coefficients", "r2", "adjusted_r2", "predicted_r2", "sigma", "sigma", "aicc")
     rows = [
         [
-            words(form),
+            words(FORM_WORDS.get(form, form)),
             *(
-                number(float(view.array(f"stiffness_{name}")[k]), of_strength if j == 5 else None)
+                count(float(view.array(f"stiffness_{name}")[k]))
+                if j == 0
+                else number(
+                    float(view.array(f"stiffness_{name}")[k]), of_strength if j == 5 else None
+                )
                 for j, name in enumerate(columns)
             ),
         ]
@@ -153,7 +175,7 @@ def pull_table(view: TestView) -> Table | None:
     rows = []
     for power, term in enumerate(_TERMS):
         scale = 1.0 / force.factor**power
-        per = "1" if power == 0 else f"{force.unit}-{power}"
+        per = "1" if power == 0 else superscript(f"{force.unit}-{power}")
         rows.append(
             [words(f"strain, coefficient of {term} [{per}]")]
             + [_scaled(coefficient[k, power], half[k, power], scale) for k in given]
@@ -178,9 +200,6 @@ def pull_table(view: TestView) -> Table | None:
     for text, name, unit in scalars:
         values = view.array_like(name, coefficient[:, 0])
         rows.append([words(unit.label(text))] + [number(float(values[k]), unit) for k in given])
-    said = view.texts("pull_waiting")
-    if any(said):
-        rows.append([words("waiting, as stated"), *(words(said[k]) for k in given)])
     return make_table(
         "Slow pull: strain as a cubic of tension T, and the conditions it holds for.",
         ("what, with its unit", *(view.specimens[k] for k in given)), rows,
@@ -216,7 +235,20 @@ def pull_share_table(view: TestView) -> Table | None:
 
 def _line_columns(view: TestView) -> tuple[str, ...]:
     units = [_unit(view, kind).label(text) for _, kind, text in _PARAMETERS]
-    return (*units, "conditioning [1]", "refused because")
+    return (*units, "conditioning [1]", _REFUSED)
+
+
+def _without_refusals(
+    columns: list[str], rows: list[list[Cell]]
+) -> tuple[list[str], list[list[Cell]]]:
+    """Return the table without its column of refusals where nothing was refused."""
+    place = columns.index(_REFUSED)
+    if any(row[place].text != NOT_GIVEN for row in rows):
+        return columns, rows
+    return (
+        [*columns[:place], *columns[place + 1 :]],
+        [[*row[:place], *row[place + 1 :]] for row in rows],
+    )
 
 
 def _line_cells(view: TestView, place: int) -> list[Cell]:

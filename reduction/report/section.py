@@ -59,7 +59,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Section:
-    """One test: its parts, every note under its heading, and where its numbers come from."""
+    """One test, or what ``noun`` says: its parts, its notes, and where its numbers come from."""
 
     key: str
     title: str
@@ -68,6 +68,7 @@ class Section:
     notes: tuple[tuple[str, list[str]], ...]
     provenance: tuple[tuple[str, str], ...]
     documents: tuple[tuple[str, str], ...] = field(default=())
+    noun: str = "test"
 
 
 def make_part(
@@ -90,6 +91,7 @@ def make_section(view: TestView) -> Section:
     """Return the section of one test; parts with nothing in them are left out."""
     parts = [
         make_part("Stepwise readings", draw_steps(view), [step_table(view), interval_table(view)]),
+        make_part("Slow pull", draw_pull(view), [pull_table(view), pull_share_table(view)]),
         make_part("Modulus against strain", draw_moduli(view), [segment_table([view])]),
         make_part(
             "Record",
@@ -101,18 +103,15 @@ def make_section(view: TestView) -> Section:
             "Cycle by cycle", [*draw_trends(view), *draw_cycle_curves(view)],
             [summary_table(view), slip_table(view), identity_table(view)],
         ),
+        make_part("Three-parameter line", (), [line_table(view)]),
         make_part(
             "Holds", draw_holds(view), [hold_table(view), prony_table(view)],
             refusals=refusals(view),
         ),
         make_part(
-            "Strain and splices", (), [coefficient_table(view), mark_table(view)],
-            slope_sentences(view),
+            "Strain" if view.is_rope else "Strain and splices", (),
+            [coefficient_table(view), mark_table(view)], slope_sentences(view),
         ),
-        make_part(
-            "Slow pull", draw_pull(view), [pull_table(view), pull_share_table(view)]
-        ),
-        make_part("Three-parameter line", (), [line_table(view)]),
         make_part("First loading", draw_mooney(view), [stress_table(view), elastomer_table(view)]),
         make_part("History of the specimens", (), [history_table(view)]),
     ]  # fmt: skip

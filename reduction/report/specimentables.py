@@ -108,6 +108,11 @@ def coefficient_table(view: TestView) -> Table | None:
         [words("method"), *(words(method) for method in methods)],
         *([words(name), *(column.get(name, words("")) for column in columns)] for name in names),
     ]
+    if set(methods) == {"extensometer"}:
+        return make_table(
+            "How strain was found: read off an extensometer, no splice in it.",
+            ("what, with its unit", *view.specimens), rows[:1], synthetic=view.is_synthetic,
+        )  # fmt: skip
     return make_table(
         "Position to strain of the splice-free length: method, and what it goes by.",
         ("what, with its unit", *view.specimens), rows, synthetic=view.is_synthetic,

@@ -13,6 +13,7 @@ References
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -32,6 +33,7 @@ __all__ = [
     "plot_text",
     "shorten",
     "shown",
+    "superscript",
     "symbol",
 ]
 
@@ -70,6 +72,7 @@ _PREFIXED: dict[Kind, tuple[str, float]] = {
     "area": ("mm²", 1e6),
     "energy": ("J/m", 1.0),
 }
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _INCHES_IN_A_FOOT = 12.0
 
 
@@ -132,6 +135,19 @@ def marker(index: int, *, variant: int = 0, size: int = 6) -> dict[str, Any]:
     """
     filling = FILLINGS[variant % len(FILLINGS)]
     return {"color": colour(index), "symbol": symbol(index) + filling, "size": size}
+
+
+def superscript(unit: str) -> str:
+    """Return a unit with its powers raised.
+
+    Examples
+    --------
+    >>> superscript("N Hz-2")
+    'N Hz⁻²'
+    """
+    if unit == "1":
+        return unit
+    return re.sub(r"-?\d+", lambda power: power[0].translate(_RAISED), unit)
 
 
 def faded(hex_colour: str, alpha: float) -> str:

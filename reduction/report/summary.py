@@ -128,15 +128,19 @@ def summary_sentence(tests: Sequence[TestView]) -> str:
 
 def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> Table:
     """Return what was tested: target, cycles found, status; a test without archive too."""
-    rows = [_test_row(view) for view in tests]
+    is_by_load = _is_by_load(tests)
+    rows = [_test_row(view, is_by_load=is_by_load) for view in tests]
     shown_ids = {view.id for view in tests}
     for row in statuses:
         if row.test not in shown_ids:
             empty = [words("")] * 6
             rows.append([words(row.test), *empty, words(f"{_words(row.status)}, {_NOT_SHOWN}")])
     synthetic = any_synthetic(tests)
+    force = shown("tension", tests[0].units if tests else "si")
     columns = (
-        "test", "kind", "specimens", "target strain [%]", "strain reached [%]",
+        "test", "kind", "specimens",
+        force.label("tension of the cycles") if is_by_load else "target strain [%]",
+        "strain reached [%]",
         "cycles found [1]", "samples [1]", "status",
     )  # fmt: skip
     return make_table("Tests in the order they were made.", columns, rows, synthetic=synthetic)
@@ -203,7 +207,20 @@ def _pattern(view: TestView, note: str) -> str:
     return _NUMBER.sub("#", note)
 
 
-def _test_row(view: TestView) -> list[Cell]:
+def _is_by_load(tests: Sequence[TestView]) -> bool:
+    """Return whether the tests are of ropes, which are planned by tension and not by strain."""
+    return bool(tests) and all(view.is_rope and not _target(view) for view in tests)
+
+
+def _tension(view: TestView) -> Cell:
+    mean, amplitude = view.array("mean_tension"), view.array("tension_amplitude")
+    if mean is None or amplitude is None or not np.isfinite(mean).any():
+        return words("")
+    ends = float(np.nanmean(mean - amplitude)), float(np.nanmean(mean + amplitude))
+    return span(*ends, shown("tension", view.units), places=0)
+
+
+def _test_row(view: TestView, *, is_by_load: bool) -> list[Cell]:
     strain = view.array("strain")
     reached = words("")
     mean, amplitude = view.array("mean_strain"), view.array("strain_amplitude")
@@ -222,7 +239,7 @@ def _test_row(view: TestView) -> list[Cell]:
         words(view.id),
         words(view.kind),
         words(", ".join(view.specimens)),
-        words(_target(view)),
+        _tension(view) if is_by_load else words(_target(view)),
         reached,
         count(float(view.n_cycles)),
         count(view.scalar("n_rows_kept")),

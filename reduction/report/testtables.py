@@ -25,6 +25,7 @@ def segment_table(tests: Sequence[TestView]) -> Table | None:
     if not rows:
         return None
     units = tests[0].units
+    of = "" if all(view.is_rope for view in tests) else " of the rubber"
     columns = (
         "test", "specimen", "branch", "segment",
         shown("stress", units).label("segment modulus"),
@@ -32,7 +33,7 @@ def segment_table(tests: Sequence[TestView]) -> Table | None:
         shown("tension", units).label("tension range"), "cycles [1]", "strain method",
     )  # fmt: skip
     return make_table(
-        "Elastic modulus of the rubber, piecewise linear, from trimmed branches.", columns, rows,
+        f"Elastic modulus{of}, piecewise linear, from trimmed branches.", columns, rows,
         synthetic=any_synthetic(tests), is_tall=len(rows) > 16, remarks=[plus_minus()],
     )  # fmt: skip
 
@@ -81,7 +82,12 @@ def summary_table(view: TestView) -> Table | None:
     quantities = (
         ("test_mean_strain", percent, percent.label("mean strain")),
         ("test_strain_amplitude", percent, percent.label("strain amplitude")),
+        ("test_mean_tension", force, force.label("mean tension")),
+        ("test_tension_amplitude", force, force.label("tension amplitude")),
         ("test_frequency", hertz, hertz.label("frequency")),
+        ("test_apparent_spring_constant", force, force.label("apparent spring constant")),
+        ("test_storage_spring_constant", force, force.label("E', storage spring constant")),
+        ("test_loss_spring_constant", force, force.label("E'', loss spring constant")),
         ("test_dynamic_modulus", stress, stress.label("dynamic modulus")),
         ("test_loss_factor", plain, "loss factor [1]"),
         ("test_hysteresis_energy", energy, energy.label("hysteresis energy")),
@@ -103,11 +109,15 @@ def summary_table(view: TestView) -> Table | None:
     if not given:
         return None
     rows = []
+    is_known = False
     for name, unit, label in given:
         values = view.array_like(name, np.empty(len(view.specimens)))
         half = view.array_like(f"{name}_standard_uncertainty", values)
         cells = (measured(value, u, unit) for value, u in zip(values, half, strict=True))
         rows.append([words(label), *cells])
+        is_known |= bool(np.isfinite(values).any())
+    if not is_known:
+        return None
     return make_table(
         "Means over the cycles of the test, and what changed over them.",
         ("what, with its unit", *view.specimens), rows, synthetic=view.is_synthetic,

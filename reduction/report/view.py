@@ -76,6 +76,12 @@ class TestView:
         return self.texts("specimen")
 
     @property
+    def is_rope(self) -> bool:
+        """True where no specimen is of rubber."""
+        kinds = self.texts("specimen_kind")
+        return bool(kinds) and set(kinds) <= {"rope", "wire"}
+
+    @property
     def n_cycles(self) -> int:
         """Number of whole cycles."""
         return int(self.data.sizes.get("cycle", 0))

@@ -11,17 +11,13 @@ from reduction.report.decimate import keep_extremes
 from reduction.report.experimentview import ExperimentView, response_unit
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure, plain_numbers
 from reduction.report.htmltable import number_text
+from reduction.report.linetables import FORM_WORDS
 from reduction.report.style import COLOURS, SYMBOLS, colour, plot_text, shown
 from reduction.report.view import TestView
 
-__all__ = ["draw_forms", "draw_pull", "draw_single_time"]
+__all__ = ["draw_derived", "draw_forms", "draw_pull", "draw_single_time"]
 
 _GREY = "#8C8C8C"
-_FORM_WORDS = {
-    "del-vecchio": "load, amplitude and log period",
-    "mean-load": "mean load alone",
-    "quadratic": "quadratic surface",
-}
 
 
 def draw_single_time(view: ExperimentView) -> list[Figure]:
@@ -74,9 +70,9 @@ def draw_single_time(view: ExperimentView) -> list[Figure]:
             f"{view.key}-single-time", "Relaxation time against frequency",
             "Relaxation time of each run, on logarithmic axes. One relaxation time would lie on the"
             " dotted level; dashed: as 1/f, which is a loss angle that does not change with"
-            f" frequency. Thin: the fit, tau ~ f^-n with n = {exponent:.3g} ({low:.3g} to"
-            f" {high:.3g}), one factor for each pair of loads. Bars: one standard uncertainty.",
-            data, synthetic=view.is_synthetic, height=420,
+            f" frequency. Thin: the fit, tau ~ f⁻ⁿ with n = {exponent:.4f} ({low:.4f} to"
+            f" {high:.4f}), one factor for each pair of loads. Bars: one standard uncertainty.",
+            data, synthetic=view.is_synthetic, height=420, is_wide=True,
             xaxis=axis("frequency [Hz]", type="log", **_decade_ticks(reach)),
             yaxis=axis(unit.label("relaxation time"), type="log", **span),
         )
@@ -97,27 +93,71 @@ def draw_forms(view: ExperimentView) -> list[Figure]:
         if np.isfinite(fitted[k]).any()
     }
     rows["quadratic"] = view.per_run("apparent_spring_constant_fitted") * unit.factor
-    everything = np.concatenate([measured, *rows.values()])
+    known = np.isfinite(measured)
+    everything = np.concatenate([measured[known], *(values[known] for values in rows.values())])
     ends = np.array([np.nanmin(everything), np.nanmax(everything)])
-    data = [line(ends, ends, name="equal", colour=_GREY, dash="dot", showlegend=False)]
+    force = shown("tension", view.units)
+    tension = view.per_run("run_mean_tension") * force.factor
+    span = np.array([np.nanmin(tension), np.nanmax(tension)])
+    equal, missed = (
+        [line(x, y, name="equal", colour=_GREY, dash="dot", showlegend=False)]
+        for x, y in ((ends, ends), (span, np.zeros(2)))
+    )
     for place, (name, values) in enumerate(rows.items()):
-        data.append(
-            {
-                "type": "scatter", "mode": "markers", "name": _FORM_WORDS.get(name, name),
-                "x": plain_numbers(measured), "y": plain_numbers(values),
-                "text": [plot_text(run) for run in view.runs],
-                "marker": {"size": 8, "color": COLOURS[place], "symbol": SYMBOLS[place]},
-            }
-        )  # fmt: skip
+        equal.append(_by_form(view, place, name, measured, values))
+        missed.append(_by_form(view, place, name, tension, measured - values))
     return [
         make_figure(
             f"{view.key}-forms", "Stiffness forms of mooring codes",
             "Apparent spring constant by each form against the measured one, a point a run;"
             " dotted: equal.",
-            data, synthetic=view.is_synthetic, height=400,
+            equal, synthetic=view.is_synthetic, height=400,
             xaxis=axis(unit.label("measured")), yaxis=axis(unit.label("by the form")),
-        )
+        ),
+        make_figure(
+            f"{view.key}-forms-missed", "What the forms miss",
+            "Measured less form, against the mean tension: what bends here is the curve that a"
+            " form of straight lines has no room for.",
+            missed, synthetic=view.is_synthetic, height=400,
+            xaxis=axis(force.label("mean tension")),
+            yaxis=axis(unit.label("measured less form")),
+        ),
     ]  # fmt: skip
+
+
+def draw_derived(view: ExperimentView) -> list[Figure]:
+    """Draw K_1 and tau from surfaces of E' and E'' against those of the runs' own loops."""
+    found = []
+    for name, symbol in (("dissipation_spring_constant", "K_1"), ("relaxation_time", "tau")):
+        unit = response_unit(name, view.units)
+        own = view.per_run(f"{name}_measured") * unit.factor
+        smooth = view.per_run(f"derived_{name}") * unit.factor
+        known = np.isfinite(own) & np.isfinite(smooth)
+        if not known.any():
+            continue
+        both = np.concatenate([own[known], smooth[known]])
+        ends = np.array([both.min(), both.max()])
+        data = [
+            line(ends, ends, name="equal", colour=_GREY, dash="dot", showlegend=False),
+            {
+                "type": "scatter", "mode": "markers", "name": "runs", "showlegend": False,
+                "x": plain_numbers(own[known]), "y": plain_numbers(smooth[known]),
+                "text": [plot_text(view.runs[k]) for k in np.flatnonzero(known)],
+                "marker": {"size": 8, "color": COLOURS[0]},
+            },
+        ]  # fmt: skip
+        found.append(
+            make_figure(
+                f"{view.key}-derived-{name}", f"{symbol} from surfaces of E' and E''",
+                f"{symbol} from smooth surfaces of E' and E'' against {symbol} of the loops of each"
+                " run; dotted: equal. A run off the line is one that its neighbours do not bear"
+                " out.",
+                data, synthetic=view.is_synthetic, height=400,
+                xaxis=axis(unit.label(f"{symbol} of the loops")),
+                yaxis=axis(unit.label(f"{symbol} from surfaces")),
+            )
+        )  # fmt: skip
+    return found
 
 
 def draw_pull(view: TestView) -> list[Figure]:
@@ -168,6 +208,15 @@ def draw_pull(view: TestView) -> list[Figure]:
         ),
     )  # fmt: skip
     return [figure for figure in figures if figure.has_data]
+
+
+def _by_form(view: ExperimentView, place: int, name: str, x: Floats, y: Floats) -> Trace:
+    return {
+        "type": "scatter", "mode": "markers", "name": FORM_WORDS.get(name, name),
+        "x": plain_numbers(x), "y": plain_numbers(y),
+        "text": [plot_text(run) for run in view.runs],
+        "marker": {"size": 8, "color": COLOURS[place], "symbol": SYMBOLS[place]},
+    }  # fmt: skip
 
 
 def _logged(view: TestView, place: int, to_x: float, to_y: float) -> list[Trace]:

@@ -6,7 +6,15 @@ import numpy as np
 
 from reduction.record import Floats
 from reduction.report.experimentview import ExperimentView, in_words, response_unit
-from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
+from reduction.report.figure import (
+    Figure,
+    Trace,
+    axis,
+    line,
+    make_figure,
+    named_axis,
+    plain_numbers,
+)
 from reduction.report.style import COLOURS, plot_text
 from reduction.surface.confounding import alias_matrix, half_normal_coordinates
 
@@ -81,8 +89,7 @@ def _bars(
         " all of them at once. Dummies are columns that no factor uses, and show the scatter.",
         data, synthetic=view.is_synthetic, height=400,
         xaxis=axis(unit.label("size of the effect"), rangemode="tozero"),
-        yaxis=axis("column of the plan [1]", tickvals=list(range(order.size)),
-                   ticktext=[plot_text(labels[k]) for k in order], showgrid=False, zeroline=False),
+        yaxis=named_axis("column of the plan [1]", [labels[k] for k in order]),
         barmode="overlay",
     )  # fmt: skip
 

@@ -9,7 +9,15 @@ from scipy.special import ndtri, stdtrit
 
 from reduction.record import Bools, Floats, Integers
 from reduction.report.experimentview import ExperimentView, in_words, response_unit
-from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
+from reduction.report.figure import (
+    Figure,
+    Trace,
+    axis,
+    line,
+    make_figure,
+    named_axis,
+    plain_numbers,
+)
 from reduction.report.style import COLOURS, Shown, plot_text
 from reduction.surface.product import ResponseSurfaces
 
@@ -71,8 +79,7 @@ def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
     )  # fmt: skip
     is_wide = bool(size[chosen].max() > _WIDE * critical.min())
     labels = [
-        plot_text(f"{term_words(surfaces.exponents[k], view.factors)} {surfaces.labels[k]}", 60)
-        for k in chosen
+        f"{term_words(surfaces.exponents[k], view.factors)} {surfaces.labels[k]}" for k in chosen
     ]
     scale = {"type": "log"} if is_wide else {"rangemode": "tozero"}
     return [
@@ -83,8 +90,7 @@ def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
             f"{'; the axis is logarithmic' if is_wide else ''}.",
             data, synthetic=view.is_synthetic, height=380, barmode="overlay",
             xaxis=axis("|t| [1]", **scale),
-            yaxis=axis("term [B]", tickvals=plain_numbers(height), ticktext=labels,
-                       showgrid=False, zeroline=False),
+            yaxis=named_axis("term [B]", labels),
         )
     ]  # fmt: skip
 

@@ -79,7 +79,10 @@ def draw_surface(
                 "xaxis": axis(view.factor_label(planes.across[0])),
                 "yaxis": axis(view.factor_label(planes.across[1])),
                 "zaxis": axis(unit.label(words).replace(" ", "<br>", 1)),
-                "camera": {"eye": {"x": -1.55, "y": -1.75, "z": 0.95}},
+                "camera": {
+                    "eye": {"x": -1.4, "y": -1.58, "z": 0.8},
+                    "center": {"x": 0, "y": 0, "z": -0.15},
+                },
                 "aspectmode": "cube",
             },
         )
@@ -151,7 +154,6 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
     grid = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
     n_middle = (grid == 0).sum(axis=1)
     grid = grid[n_middle != 2]  # no middle of a face
-    is_corner = (grid == 0).sum(axis=1) == 0
     coded = np.empty_like(grid)
     coded[:, order] = grid
     at = evaluate_surfaces(surfaces, coded, units="coded")
@@ -159,7 +161,7 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
     if not np.isfinite(value).any():
         return []
     place = _projected(grid)
-    data = [*_edges(), *_cube_points(place, value, is_corner)]
+    data = [*_edges(), *_cube_points(place, value, at.above_leverage[index])]
     ends = [
         f"{in_words(view.factors[k])} {number_text(view.levels(k)[0], 3)} to"
         f" {number_text(view.levels(k)[2], 3)} {view.factor_units[k].unit}"
@@ -169,8 +171,8 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
         make_figure(
             f"{view.key}-{name}-cube", f"{words.capitalize()} on the cube of the levels",
             f"Value of the surface of the {words}{_by(name)} at the corners, edges and centre"
-            f" [{unit.unit}]: to the right {ends[0]}, upward {ends[1]}, away {ends[2]}. Full"
-            " markers: where the design has its runs; open ones, the corners, have no run near.",
+            f" [{unit.unit}]: to the right {ends[0]}, upward {ends[1]}, away {ends[2]}. Open"
+            " markers: the runs say less there than at the worst of them.",
             data, synthetic=view.is_synthetic, height=430,
             xaxis={
                 **axis(f"{view.factor_label(order[0])}, low to high"),
@@ -313,13 +315,13 @@ def _edges() -> list[Trace]:
     ]
 
 
-def _cube_points(place: Floats, value: Floats, is_corner: Bools) -> list[Trace]:
+def _cube_points(place: Floats, value: Floats, is_thin: Bools) -> list[Trace]:
     traces: list[Trace] = []
-    for own, looks in ((~is_corner, "circle"), (is_corner, "circle-open")):
+    for own, looks in ((~is_thin, "circle"), (is_thin, "circle-open")):
         traces.append(
             {
                 "type": "scatter", "mode": "markers+text", "showlegend": False,
-                "name": "corners" if looks == "circle-open" else "edges and centre",
+                "name": "runs say little" if looks == "circle-open" else "runs say much",
                 "x": plain_numbers(place[own, 0]), "y": plain_numbers(place[own, 1]),
                 "text": [number_text(one, _DIGITS) for one in value[own]],
                 "textposition": "top center", "textfont": {"size": 11}, "hoverinfo": "text",
