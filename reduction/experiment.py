@@ -15,6 +15,7 @@ from reduction.record import Floats, freeze_arrays
 from reduction.surface.cautions import Caution
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.screening import ScreeningEffects
+from reduction.surface.select import ReducedSurfaces
 from reduction.surface.stiffness_product import FormQuality, StiffnessForm
 
 __all__ = ["ExperimentResult", "RunTable"]
@@ -118,6 +119,8 @@ class ExperimentResult:
     derived_dissipation_spring_constant, derived_relaxation_time : ndarray, shape (n_runs,)
         K_1 and tau from surfaces of E' and E'' at the levels of each run, beside those of its
         own loops; NaN where refused. [N], [s]
+    reduced : ReducedSurfaces or None
+        Subsets of the terms of ``surfaces``, where they were asked for.
     cautions : tuple of Caution
         Of the runs as reached.
     notes : tuple of str
@@ -139,6 +142,7 @@ class ExperimentResult:
     single_time: SingleTimeCheck | None
     derived_dissipation_spring_constant: Floats
     derived_relaxation_time: Floats
+    reduced: ReducedSurfaces | None = None
     cautions: tuple[Caution, ...] = ()
     notes: tuple[str, ...] = ()
 

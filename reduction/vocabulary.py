@@ -653,6 +653,22 @@ RESPONSE_PATTERNS = (
     Quantity(
         "<response>_covariance_factor", "1", "covariance of two coded coefficients over sigma**2"
     ),
+    Quantity(
+        "<response>_reduced_coefficient",
+        "<unit>",
+        "coefficient, coded units, of the terms that AICc keeps; 0 where it does not",
+    ),
+    Quantity(
+        "<response>_reduced_coefficient_engineering",
+        "<unit>",
+        "coefficient, of the kept terms, of the factors as numbers of their SI units",
+    ),
+    Quantity("<response>_reduced_is_kept", "1", "whether AICc keeps the term"),
+    Quantity(
+        "<response>_reduced_sigma", "<unit>", "standard deviation of a run about the kept terms"
+    ),
+    Quantity("<response>_reduced_aicc", "1", "corrected Akaike criterion of the kept terms"),
+    Quantity("<response>_full_aicc", "1", "corrected Akaike criterion of all terms"),
     Quantity("<response>_transform", "", "scale the surface was fitted on"),
     Quantity("<response>_transform_exponent", "1", "exponent of Box and Cox; 1 none, 0 logarithm"),
     Quantity("<response>_transform_exponent_low", "1", "lower end of the interval of the exponent"),

@@ -8,6 +8,7 @@ from reduction.provenance import Source, Step
 from reduction.surface.cautions import Caution
 from reduction.surface.designs import box_behnken, plackett_burman
 from reduction.surface.screening import screening_effects
+from reduction.surface.select import reduce_terms
 from reduction.surface.stiffness import (
     compare_stiffness_forms,
     fit_del_vecchio_stiffness,
@@ -125,6 +126,7 @@ def surface_experiment(
         single_time=single,
         derived_dissipation_spring_constant=np.linspace(1e4, 2e4, len(coded)),
         derived_relaxation_time=np.linspace(1.0, 2.0, len(coded)),
+        reduced=None if treatment == "random" else reduce_terms(surfaces),
         cautions=(
             Caution("slack", "the minimum tension of run 2 reaches zero", "Raise it.", (2,)),
             Caution("no-repeats", "no run is repeated", "Add centre runs."),

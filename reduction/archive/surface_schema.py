@@ -135,6 +135,12 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
             stated(f"{name}_{what}", _R, _CHECK)
             for what in ("studentized_residual", "deleted_residual")
         ),
+        measured(f"{name}_reduced_coefficient", _T),
+        stated(f"{name}_reduced_coefficient_engineering", _T, "see the coded one"),
+        flag(f"{name}_reduced_is_kept", _T, _NO_YES),
+        stated(f"{name}_reduced_sigma", _E, _SPREAD),
+        stated(f"{name}_reduced_aicc", _E, _CRITERION),
+        stated(f"{name}_full_aicc", _E, _CRITERION),
         stated(f"{name}_block_effect", ("experiment", "block"), _NOT_EVALUATED),
         stated(f"{name}_block_standard_deviation", _E, _SPREAD),
         flag(f"{name}_block_at_boundary", _E, _NO_YES),

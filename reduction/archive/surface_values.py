@@ -17,6 +17,7 @@ from reduction.surface.product import (
     ResponseSurfaces,
 )
 from reduction.surface.screening import ScreeningEffects
+from reduction.surface.select import ReducedSurfaces
 from reduction.units import combined_unit
 from reduction.vocabulary import SURFACE_NAMES
 
@@ -99,6 +100,8 @@ def experiment_values(result: ExperimentResult) -> Values:
         values |= _shared_values(result.surfaces, result.factor_units)
         for index, name in enumerate(result.surfaces.response_names):
             values |= _surface_values(result.surfaces, index, name)
+            if result.reduced is not None:
+                values |= _reduced_values(result.reduced, index, name)
     if result.screening is not None:
         values |= _effect_values(result.screening, result.response_names)
     if result.single_time is not None:
@@ -226,6 +229,23 @@ def _surface_values(surfaces: ResponseSurfaces, index: int, name: str) -> Values
         f"{name}_refusal": np.array(FIT_REASONS[int(surfaces.reason[index])]),
         f"{name}_lack_of_fit_refusal": np.array(LACK_OF_FIT_REASONS[int(lack.reason[index])]),
         f"{name}_stationary_refusal": np.array(STATIONARY_REASONS[int(canonical.reason[index])]),
+    }
+
+
+def _reduced_values(reduced: ReducedSurfaces, index: int, name: str) -> Values:
+    """The terms that are kept of one surface."""
+    infinite = np.isinf(reduced.full_criterion[index])
+    return {
+        f"{name}_reduced_coefficient": reduced.coefficient[index],
+        f"{name}_reduced_coefficient_standard_uncertainty": (
+            reduced.coefficient_standard_uncertainty[index]
+        ),
+        f"{name}_reduced_coefficient_engineering": reduced.coefficient_engineering[index],
+        f"{name}_reduced_is_kept": reduced.is_kept[index],
+        f"{name}_reduced_sigma": reduced.sigma[index],
+        f"{name}_reduced_aicc": reduced.criterion[index],
+        # infinite says that the runs are too few for the correction
+        f"{name}_full_aicc": np.array(np.nan if infinite else reduced.full_criterion[index]),
     }
 
 

@@ -266,4 +266,5 @@ def _fit(plan: ExperimentPlan, rows: list[_Row]) -> ExperimentResult:
         response_names=plan.responses,
         transform=plan.transform,
         specimens_as=plan.specimens_as,
+        term_reduction=plan.term_reduction,
     )

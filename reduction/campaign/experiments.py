@@ -165,6 +165,7 @@ def plan_experiment(
         responses=section.responses,
         transform={key: value for key, value in section.transform.items() if value != "none"},
         specimens_as=section.specimens_as,
+        term_reduction=section.term_reduction,
     )
 
 

@@ -210,6 +210,8 @@ class ExperimentSection(_Section):
     transform: dict[Response, Literal["none", "log", "box-cox"]] = Field(default_factory=dict)
     specimens_as: Literal["blocks", "random"] = "blocks"
     """How several specimens of one line enter: a mean of each, or a draw from many."""
+    term_reduction: Literal["none", "aicc"] = "none"
+    """Beside the full surfaces, those with the terms that AICc keeps."""
 
 
 class CampaignFile(_Section):

@@ -80,6 +80,7 @@ class ExperimentPlan:
     responses: tuple[str, ...]
     transform: dict[str, str]
     specimens_as: Literal["blocks", "random"]
+    term_reduction: Literal["none", "aicc"] = "none"
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from reduction.surface.levels import FactorLevels
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.runsheet import RunSheet
 from reduction.surface.screening import ScreeningEffects, screening_effects
+from reduction.surface.select import ReducedSurfaces, reduce_terms
 from reduction.surface.stiffness import (
     compare_stiffness_forms,
     fit_del_vecchio_stiffness,
@@ -55,6 +56,7 @@ def fit_experiment(
     response_names: tuple[str, ...],
     transform: Mapping[str, str],
     specimens_as: Literal["blocks", "random"],
+    term_reduction: Literal["none", "aicc"] = "none",
 ) -> ExperimentResult:
     """Everything that the runs of one experiment say together.
 
@@ -76,6 +78,8 @@ def fit_experiment(
         ``log`` or ``box-cox`` by response.
     specimens_as : {"blocks", "random"}
         How several specimens enter.
+    term_reduction : {"none", "aicc"}
+        Whether terms are left out too, beside the full surfaces.
 
     Returns
     -------
@@ -91,6 +95,7 @@ def fit_experiment(
     forms: tuple[StiffnessForm, ...] = ()
     quality: FormQuality | None = None
     single: SingleTimeCheck | None = None
+    reduced: ReducedSurfaces | None = None
     derived = (np.full(len(runs.run), np.nan),) * 2
     names = tuple(one.name for one in factors)
     try:
@@ -106,6 +111,9 @@ def fit_experiment(
         notes.append(f"refused: {what}: {error}")
     if surfaces is not None:
         notes += surfaces.notes
+        if term_reduction == "aicc":
+            reduced, remarks = _reduced(surfaces)
+            notes += remarks
         forms, quality, remarks = _stiffness(runs, surfaces, response_names)
         notes += remarks
         derived, remarks = _derived(runs, line, names, low, high)
@@ -129,6 +137,7 @@ def fit_experiment(
         single_time=single,
         derived_dissipation_spring_constant=derived[0],
         derived_relaxation_time=derived[1],
+        reduced=reduced,
         cautions=_cautions(runs, factors),
         notes=tuple(dict.fromkeys(notes)),
     )
@@ -165,6 +174,14 @@ def _surfaces(
         block_treatment="fixed" if specimens_as == "blocks" else "random",
         transforms=scales,
     )
+
+
+def _reduced(surfaces: ResponseSurfaces) -> tuple[ReducedSurfaces | None, list[str]]:
+    try:
+        reduced = reduce_terms(surfaces)
+    except _REFUSALS as error:
+        return None, [f"refused: reduction of terms: {error}"]
+    return reduced, list(reduced.notes)
 
 
 def _stiffness(
