@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from reduction.record import Floats
 from reduction.report.experimentview import ExperimentView, in_words, response_unit
 from reduction.report.figures.surfacechecks import term_words
 from reduction.report.htmltable import (
@@ -18,6 +17,7 @@ from reduction.report.htmltable import (
     number,
     number_text,
     probability,
+    share_text,
     words,
 )
 from reduction.report.style import Shown, shown, superscript
@@ -26,12 +26,18 @@ from reduction.surface.product import ResponseSurfaces
 
 __all__ = [
     "anova_table", "caution_table", "coefficient_table", "effect_table", "quality_table",
-    "run_table", "share_text",
+    "run_table",
 ]  # fmt: skip
 
 _OF_RUNS = "scatter of the runs about the surface"
 _NOT_OF_RUNS = "what all runs share: calibration, gauge length, the one line that was tested"
+_PRINTED = (
+    "F as CG-D-39-80 prints it counts the mean among the terms and in the error (10 and 4 degrees"
+    " of freedom for fifteen runs); it stands here to be compared with the report, no more."
+)
 _SHARE = Shown("%RBS", 100.0)
+_LARGE = 1e9
+"""From here on a column of squares has powers of ten in every row, not in some."""
 
 
 def run_table(view: ExperimentView) -> Table:
@@ -48,7 +54,7 @@ def run_table(view: ExperimentView) -> Table:
         rows.append(
             [
                 words(run),
-                words(_coded(plan[k])),
+                words(_coded(plan[k, : len(view.factors)])),
                 *(number(level[k, j], unit) for j, unit in enumerate(view.factor_units)),
                 *(
                     _fixed(view.per_run(name)[k], load.factor / divisor[k], 1 if is_share else 0)
@@ -127,21 +133,19 @@ def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table:
                 number(float(surfaces.printed_f[k])),
             ]
         )
-    columns = (
+    remarks = [_PRINTED]
+    columns: tuple[str, ...] = (
         "response", "r² [1]", "adjusted r² [1]", "predicted r² [1]",
         "standard deviation of a run, s [its unit]", "F of all terms [1]", "degrees of freedom",
         "p of F [1]", "F of lack of fit [1]", "p of lack of fit [1]",
         "F as CG-D-39-80 prints it [1]",
     )  # fmt: skip
+    if not np.isfinite(surfaces.printed_f).any():
+        columns, rows, remarks = columns[:-1], [row[:-1] for row in rows], []
     return make_table(
         "Quality of each surface. p: probability of such an F if the terms were nil, or if the"
         " surface fitted.",
-        columns, rows, synthetic=view.is_synthetic, is_compact=True,
-        remarks=[
-            "F as CG-D-39-80 prints it counts the mean among the terms and in the error (10 and 4"
-            " degrees of freedom for fifteen runs); it stands here to be compared with the report"
-            " and tests nothing."
-        ],
+        columns, rows, synthetic=view.is_synthetic, is_compact=True, remarks=remarks,
     )  # fmt: skip
 
 
@@ -253,26 +257,6 @@ def effect_table(view: ExperimentView, name: str) -> Table | None:
     )  # fmt: skip
 
 
-def share_text(value: float) -> str:
-    """Return a share of a whole with the first digits by which it misses the whole.
-
-    Examples
-    --------
-    >>> share_text(0.9735), share_text(0.9999808)
-    ('0.974', '0.99998')
-    """
-    if not np.isfinite(value):
-        return NOT_GIVEN
-    missing = abs(1 - value)
-    digits = 3 if missing > _MISSING else min(8, int(np.ceil(-np.log10(max(missing, 1e-8)))))
-    return f"{value:.{digits}f}"
-
-
-_MISSING = 1e-3
-_LARGE = 1e9
-"""From here on a column of squares has powers of ten in every row, not in some."""
-
-
 def _to_compute_with(value: float, spread: float, unit: Shown) -> Cell:
     """Return a coefficient of seven digits and its uncertainty of two."""
     if not np.isfinite(value):
@@ -290,7 +274,7 @@ def _fixed(value: float, factor: float, places: int) -> Cell:
     return Cell(text, repr(float(value)), is_number=True)
 
 
-def _coded(levels: Sequence[float]) -> str:
+def _coded(levels: Floats) -> str:
     return ", ".join("0" if level == 0 else f"{level:+g}" for level in levels)
 
 

@@ -56,7 +56,11 @@ class ExperimentView:
     @property
     def is_synthetic(self) -> bool:
         """True where no specimen was ever pulled."""
-        return str(self.data.attrs.get("synthetic", "")).lower() == "yes"
+        return self.attribute("synthetic").lower() == "yes"
+
+    def attribute(self, name: str) -> str:
+        """Global attribute as text; empty where there is none."""
+        return str(self.data.attrs.get(name, ""))
 
     @cached_property
     def sizes(self) -> dict[str, int]:

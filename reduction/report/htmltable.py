@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import floor, isfinite, log10
+from math import ceil, floor, isfinite, log10
 
 from reduction.report.style import Shown
 
@@ -22,6 +22,7 @@ __all__ = [
     "number",
     "number_text",
     "probability",
+    "share_text",
     "span",
     "words",
 ]
@@ -30,6 +31,7 @@ NOT_GIVEN = "\N{EN DASH}"
 _MOST_DECIMALS = 12
 _LEAST_LEADING = 2.0
 _LEAST_PROBABILITY = 1e-4
+_MISSING = 1e-3
 _NOISE = 1e-12
 """A sum of numbers of order one that ought to vanish ends at 1e-16 or so, in percent at 1e-14."""
 
@@ -169,6 +171,21 @@ def probability(value: float) -> Cell:
         return Cell(NOT_GIVEN, is_number=True)
     text = "<0.0001" if value < _LEAST_PROBABILITY else f"{value:.4f}"
     return Cell(text, _exact(value), is_number=True)
+
+
+def share_text(value: float) -> str:
+    """Return a share of a whole with the first digits by which it misses the whole.
+
+    Examples
+    --------
+    >>> share_text(0.9735), share_text(0.9999808)
+    ('0.974', '0.99998')
+    """
+    if not isfinite(value):
+        return NOT_GIVEN
+    missing = abs(1 - value)
+    digits = 3 if missing > _MISSING else min(8, ceil(-log10(max(missing, 1e-8))))
+    return f"{value:.{digits}f}"
 
 
 def span(low: float, high: float, unit: Shown, *, places: int) -> Cell:

@@ -23,6 +23,7 @@ from reduction.errors import ArchiveError
 from reduction.report.designtables import design_tables
 from reduction.report.experimentsection import make_experiment_section
 from reduction.report.experimentview import ExperimentView
+from reduction.report.experimentwords import experiment_findings
 from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.campaign import (
     draw_all_moduli,
@@ -78,8 +79,8 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     """
     paths = sorted(test_archives(processed), key=lambda path: natural_order(path.stem))
     statuses = _read_statuses(processed / "status.csv")
-    of_outcomes = processed / "outcomes.nc"
-    if not paths and not statuses and not of_outcomes.is_file():
+    of_outcomes, of_surfaces = processed / "outcomes.nc", processed / "surfaces.nc"
+    if not (paths or statuses or of_outcomes.is_file() or of_surfaces.is_file()):
         raise ArchiveError(
             "there is nothing to report on",
             found=f"no archive and no status.csv in {processed}",
@@ -112,7 +113,7 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
             ordered.insert(0, make_outcome_section(outcomes))
         except ArchiveError as error:
             unreadable[of_outcomes.name] = str(error)
-    experiments = _experiments(processed / "surfaces.nc", by_id, units, unreadable)
+    experiments = _experiments(of_surfaces, by_id, units, unreadable)
     html = _render(
         tests, outcomes, experiments, ordered, statuses, unreadable, units, processed.name
     )
@@ -124,7 +125,7 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
 def _render(
     tests: Sequence[TestView],
     outcomes: OutcomeView | None,
-    experiments: Sequence[Section],
+    experiments: Sequence[tuple[ExperimentView, Section]],
     sections: Sequence[Section],
     statuses: Sequence[Status],
     unreadable: dict[str, str],
@@ -136,7 +137,9 @@ def _render(
     )
     room = files("reduction.report")
     template = environment.from_string((room / "templates" / "page.html").read_text("utf-8"))
-    faults = find_faults(tests, statuses, unreadable)
+    views = [view for view, _ in experiments]
+    of_experiments = [one for view in views for one in experiment_findings(view)]
+    faults = find_faults(tests, statuses, unreadable, of_experiments)
     comparisons = [
         make_part("All tests in one figure", draw_all_moduli(tests)),
         make_part("Ratios of moduli", draw_ratios(tests)),
@@ -145,16 +148,20 @@ def _render(
         make_part("Static against dynamic", draw_static_dynamic(tests)),
     ]
     intervals = [interval_table(view) for view in tests]
-    first = tests[0] if tests else outcomes
+    speakers: list[TestView | OutcomeView | ExperimentView] = [*tests, *views]
+    speakers += [] if outcomes is None else [outcomes]
+    first = speakers[0] if speakers else None
     return template.render(
         title=(first.attribute("title") if first else "") or f"Campaign {folder}",
         campaign=first.attribute("campaign") if first else folder,
         summary=summary_sentence(tests) or ("" if outcomes is None else f"{outcomes.summary}."),
         institution=first.attribute("institution").rstrip(".") if first else "",
         references=first.attribute("references") if first else "",
-        synthetic=any_synthetic(tests) or (outcomes is not None and outcomes.is_synthetic),
+        synthetic=any_synthetic(tests)
+        or (outcomes is not None and outcomes.is_synthetic)
+        or any(view.is_synthetic for view in views),
         has_tests=bool(tests or statuses),
-        tiles=_tiles(tests, outcomes, statuses, faults),
+        tiles=_tiles(tests, outcomes, views, statuses, faults),
         specimens=specimen_table(tests, units),
         specimen_notes=specimen_notes(tests),
         tests=test_table(tests, statuses),
@@ -163,7 +170,7 @@ def _render(
         intervals=[table for table in intervals if table is not None],
         faults=faults,
         comparisons=[part for part in comparisons if part.figures],
-        experiments=experiments,
+        experiments=[section for _, section in experiments],
         sections=sections,
         units="US customary" if units == "us" else "SI",
         version=__version__,
@@ -176,6 +183,7 @@ def _render(
 def _tiles(
     tests: Sequence[TestView],
     outcomes: OutcomeView | None,
+    experiments: Sequence[ExperimentView],
     statuses: Sequence[Status],
     faults: Sequence[Finding],
 ) -> list[Tile]:
@@ -183,6 +191,9 @@ def _tiles(
     found = tiles(tests, statuses, faults)
     if not (tests or statuses):
         found = [one for one in found if one.target == "wrong"]
+    if experiments:
+        noun = "experiment" if len(experiments) == 1 else "experiments"
+        found.insert(0, Tile(f"{len(experiments):,}", noun, experiments[0].key))
     if outcomes is None:
         return found
     size = len(outcomes.outcomes)
@@ -192,18 +203,18 @@ def _tiles(
 
 def _experiments(
     path: Path, tests: Mapping[str, TestView], units: UnitSystem, unreadable: dict[str, str]
-) -> list[Section]:
-    """Return a section for each experiment of the campaign; none where it has none."""
+) -> list[tuple[ExperimentView, Section]]:
+    """Return each experiment of the campaign with its section; none where it has none."""
     if not path.is_file():
         return []
     try:
         with open_archive(path) as data:
-            return [
-                make_experiment_section(
-                    ExperimentView(f"experiment-{index}", data, index, units), tests
-                )
-                for index in range(data.sizes["experiment"])
+            loaded = data.load()
+            views = [
+                ExperimentView(f"experiment-{index}", loaded, index, units)
+                for index in range(loaded.sizes["experiment"])
             ]
+            return [(view, make_experiment_section(view, tests)) for view in views]
     except ArchiveError as error:
         unreadable[path.name] = str(error)
         return []

@@ -10,9 +10,9 @@ from typing import Any
 from reduction.report.figure import Figure
 from reduction.report.figures.elastomers import draw_mooney
 from reduction.report.figures.holds import draw_holds
-from reduction.report.figures.lines import draw_pull
 from reduction.report.figures.loops import draw_loops
 from reduction.report.figures.moduli import draw_cycle_curves, draw_moduli
+from reduction.report.figures.pull import draw_pull
 from reduction.report.figures.record import draw_record, draw_tension_position
 from reduction.report.figures.stepwise import draw_steps
 from reduction.report.figures.trends import draw_trends

@@ -60,7 +60,10 @@ class Tile:
 
 
 def find_faults(
-    tests: Sequence[TestView], statuses: Sequence[Status], unreadable: Mapping[str, str]
+    tests: Sequence[TestView],
+    statuses: Sequence[Status],
+    unreadable: Mapping[str, str],
+    others: Sequence[Finding] = (),
 ) -> list[Finding]:
     """Return failures, then warnings, notes and refusals; the same text of many tests once.
 
@@ -72,6 +75,8 @@ def find_faults(
         Rows of status.csv.
     unreadable : mapping of str to str
         File name to message, of the files that could not be read.
+    others : sequence of Finding
+        What is no test's, to stand behind those of tests that are as serious.
     """
     gathered: dict[tuple[Severity, str], list[tuple[str, str]]] = {}
     for severity, test, pattern, text in _all_faults(tests, statuses, unreadable):
@@ -82,7 +87,7 @@ def find_faults(
         more = f" (and {len(texts) - 1} more like it)" if len(texts) > 1 else ""
         names = tuple(dict.fromkeys(test for test, _ in own))
         found.append(Finding(severity, names, texts[0] + more))
-    return sorted(found, key=lambda one: _ORDER.index(one.severity))
+    return sorted([*found, *others], key=lambda one: _ORDER.index(one.severity))
 
 
 def all_notes(view: TestView) -> list[str]:

@@ -48,9 +48,11 @@ def confounding_words(view: ExperimentView) -> list[str]:
         return ["No interaction of two factors stands in a main effect: the columns are clear."]
     largest = float(of_factors.max())
     whole = "the whole of" if largest > _FULL else f"up to {largest:.2g} of"
+    numbers = sorted({int(number) for number in present.sum(axis=1)})
+    many = " to ".join(map(str, dict.fromkeys([numbers[0], numbers[-1]])))
     return [
-        f"Confounding: each main effect holds {whole} {int(present.sum(axis=1).min())} to"
-        f" {int(present.sum(axis=1).max())} interactions of two other factors, plus or minus. A"
+        f"Confounding: each main effect holds {whole} {many} interactions of two other factors,"
+        " plus or minus. A"
         " factor that looks active may be a sum of interactions, and one that looks idle may be"
         " hidden by them: what comes out here is for a second experiment to confirm."
     ]
