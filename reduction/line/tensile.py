@@ -28,6 +28,7 @@ _FALLEN = 0.5
 _FEWEST_SAMPLES = 3
 # readings within this many standard deviations of the greatest may be the peak
 _PEAK_FACTOR = 2.0
+_LAST_STEPS = 9
 
 
 @dataclass(frozen=True)
@@ -37,10 +38,10 @@ class TensilePull:
     Parameters
     ----------
     peak_tension, peak_tension_standard_uncertainty : ndarray
-        Greatest tension, and the noise of one reading. [N]
+        Greatest tension; the noise of one reading and what the line gains between two. [N]
     strain_at_peak, strain_at_peak_standard_uncertainty : ndarray
-        And half the range over which the tension is not told from its greatest, over root
-        three. [1]
+        The same of strain, and half the range over which the tension is not told from its
+        greatest, over root three. [1]
     is_break : ndarray of bool
         True where the line broke.
     peak_tension_over_strength, peak_tension_over_strength_standard_uncertainty : ndarray
@@ -182,7 +183,9 @@ def tensile_pull(
             )
         peak = int(np.nanargmax(load))
         noise = reading_noise(load[: peak + 1])
-        numbers[:, row] = load[peak], noise, *_strain_there(load, stretch, peak, noise)
+        # it broke somewhere between its greatest reading and the next, which shows it parted
+        numbers[:2, row] = load[peak], np.hypot(noise, _gain(load[: peak + 1]) / np.sqrt(12))
+        numbers[2:, row] = _strain_there(load, stretch, peak, noise)
         begin, reached = np.nanmin(place[: peak + 1]), np.nanmax(place[: peak + 1])
         parting = parting_sample(
             place, load, last=peak, least_position=reached - _GIVEN_BACK * (reached - begin),
@@ -209,11 +212,20 @@ def tensile_pull(
     )
 
 
+def _gain(series: Floats) -> float:
+    """What a series gains from reading to reading at its end, noise evened out."""
+    steps = np.diff(series[np.isfinite(series)][-_LAST_STEPS - 1 :])
+    return float(np.abs(np.median(steps))) if steps.size else 0.0
+
+
 def _strain_there(load: Floats, stretch: Floats, peak: int, noise: float) -> tuple[float, float]:
     """Strain at the peak, and what is not known of it where the top of the curve is flat."""
+    rise = stretch[: peak + 1]
     top = np.flatnonzero(load[: peak + 1] >= load[peak] - _PEAK_FACTOR * noise)
-    there = stretch[top][np.isfinite(stretch[top])]
+    there = rise[top][np.isfinite(rise[top])]
     if not there.size:
         return np.nan, np.nan
+    flat = (there.max() - there.min()) / 2 / np.sqrt(3)
+    spread = np.sqrt(flat**2 + reading_noise(rise) ** 2 + _gain(rise) ** 2 / 12)
     # where the reading at the peak itself is missing, the nearest one before it
-    return float(there[-1]), float((there.max() - there.min()) / 2 / np.sqrt(3))
+    return float(there[-1]), float(spread)

@@ -42,6 +42,9 @@ _DRIFT_NOTED = 0.01
 _SIGNIFICANT = 3.0
 # a first valley this far from the others, over the range, makes its cycle another one
 _UNEQUAL_VALLEY = 0.05
+# cycles whose amplitude differs by this share, or mean by an amplitude, are of another level
+_OTHER_LEVEL = 0.3
+_FEWEST_OF_LEVEL = 3
 # upper part of the stroke, in which a line that is sound is taut
 _TOP = 0.25
 
@@ -108,7 +111,7 @@ def rope_step(
             loops, last_cycles=settings.last_cycles, rated_break_strength=strength
         )
         bedding = _bedding_in(loops, strength) if kind == "bedding-in" else None
-        notes += _of_cycles(dynamic, names, settings)
+        notes += _of_cycles(dynamic, names, settings) + _of_levels(loops, dynamic, names)
         if kind == "bedding-in":
             notes += _of_first_cycle(loops, names)
         step = replace(step, bedding_in=bedding, dynamic=dynamic)
@@ -193,6 +196,22 @@ def _of_cycles(
             notes.append(
                 f"{name}: the dynamic stiffness has not settled: it changes by {share:+.1%} over "
                 f"its last {used} cycles"
+            )
+    return notes
+
+
+def _of_levels(loops: Loops, dynamic: DynamicStiffness, names: Sequence[str]) -> list[str]:
+    """Cycles of another level than those that count: a step is one level."""
+    notes = []
+    for row, name in enumerate(names):
+        mean, amplitude = dynamic.mean_tension[row, 0], dynamic.tension_amplitude[row, 0]
+        shift = np.abs(loops.mean_tension[row] - mean) > amplitude
+        other = np.abs(loops.tension_amplitude[row] / amplitude - 1) > _OTHER_LEVEL
+        count = int(np.count_nonzero(shift | other))
+        if count >= _FEWEST_OF_LEVEL:
+            notes.append(
+                f"{name}: {count} of {shift.size} cycles are of another level than the last ones, "
+                "of which the dynamic stiffness is; give each level as a step"
             )
     return notes
 

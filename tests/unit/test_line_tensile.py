@@ -63,6 +63,13 @@ def test_the_noise_of_a_reading_and_a_flat_top_are_uncertainties():
     )
 
 
+def test_a_slow_log_does_not_know_what_came_between_two_readings():
+    position, load, strain = pull(after=20.0, n=41)  # 125 N and 1/320 of strain a reading
+    found = tensile_pull(position, load, strain, rated_break_strength=1e4)
+    assert found.peak_tension_standard_uncertainty == pytest.approx([125 / np.sqrt(12)])
+    assert found.strain_at_peak_standard_uncertainty == pytest.approx([1 / 320 / np.sqrt(12)])
+
+
 def test_without_strain_there_is_none_at_the_peak():
     position, load, strain = pull(after=20.0)
     found = tensile_pull(position, load, strain * np.nan, rated_break_strength=1e4)

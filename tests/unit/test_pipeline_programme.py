@@ -81,6 +81,12 @@ def test_fewer_cycles_than_asked_for_are_named():
     assert note == "line: dynamic stiffness from 12 cycles; rope.last_cycles asks for 50"
 
 
+def test_a_step_of_two_levels_is_named():
+    load = np.concatenate([cycles(12), cycles(12, start=200.0, low=200.0, high=600.0)])
+    (note,) = step_of(record(load), "cyclic").notes
+    assert note.startswith("line: 12 of 24 cycles are of another level than the last ones")
+
+
 def test_a_first_cycle_that_begins_lower_is_named():
     load = cycles(12)
     load[:31] = np.concatenate([np.full(20, 60.0), np.linspace(60, 300, 11)])
