@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NoReturn
 
@@ -14,7 +14,10 @@ from reduction.record import Specimen
 from reduction.surface.levels import FactorLevels, LevelBasis
 from reduction.units import Dimension, parse_quantity
 
-__all__ = ["parse_factor", "plan_experiment"]
+__all__ = ["NEED_PULL", "agree_on_pulls", "parse_factor", "plan_experiment"]
+
+NEED_PULL = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
+"""Responses that rest on the quasi-static spring constant."""
 
 _DIMENSIONS: dict[str, Dimension] = {
     "frequency": "frequency",
@@ -110,7 +113,8 @@ def plan_experiment(
     ------
     SettingsError
         If a run, a pull or a specimen is not in the campaign or of the wrong kind, the
-        levels do not pair up with the factors, or a share has no break strength.
+        levels do not pair up with the factors or lie beyond -1 and 1, a response stands
+        twice or only under ``transform``, or a share has no break strength.
     """
 
     def refuse(problem: str, *, found: str | None = None, needed: str | None = None) -> NoReturn:
@@ -120,6 +124,7 @@ def plan_experiment(
         factors = tuple(parse_factor(key, levels) for key, levels in section.factors.items())
     except SettingsError as error:
         raise SettingsError(f"{path}: experiment '{name}': {error}") from error
+    _check_responses(section, refuse)
     runs: dict[str, tuple[float, ...]] = {}
     for run, coded in section.runs.items():
         product, kind = _resolve(run, tests) or refuse(
@@ -133,6 +138,13 @@ def plan_experiment(
             refuse(
                 f"run '{run}' has {len(coded)} coded levels", needed=f"{len(factors)}, one a factor"
             )
+        # not (a <= 1) also catches NaN
+        beyond = [level for level in coded if not abs(level) <= 1]
+        if beyond:
+            refuse(
+                f"run '{run}' is planned beyond the levels of its factors",
+                found=f"coded {beyond[0]:g}", needed="coded levels from -1 to 1",
+            )  # fmt: skip
         runs[product] = coded
     if len({len(coded) for coded in runs.values()}) > 1:
         refuse("the runs differ in the number of coded levels")
@@ -167,6 +179,57 @@ def plan_experiment(
         specimens_as=section.specimens_as,
         term_reduction=section.term_reduction,
     )
+
+
+def _check_responses(section: ExperimentSection, refuse: Callable[..., NoReturn]) -> None:
+    """Each response once, and a transform for no other."""
+    listed = ", ".join(section.responses)
+    if len(set(section.responses)) < len(section.responses):
+        refuse("a response stands twice", found=listed, needed="each response once")
+    others = [name for name in section.transform if name not in section.responses]
+    if others:
+        refuse(
+            "a transform is for a response that is not asked for", found=", ".join(others),
+            needed=f"one of responses: {listed}",
+        )  # fmt: skip
+
+
+def agree_on_pulls(
+    path: Path, experiments: Mapping[str, ExperimentPlan], tests: Mapping[str, TestPlan]
+) -> None:
+    """Refuse a run of two experiments that name two slow pulls for one specimen.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        campaign.toml, for the messages.
+    experiments : mapping of str to ExperimentPlan
+        Of the campaign.
+    tests : mapping of str to TestPlan
+        Of the campaign.
+
+    Raises
+    ------
+    SettingsError
+        If a run would have two quasi-static spring constants.  An experiment that names no
+        pull is another answer too, where it asks for a response that rests on one.
+    """
+    first: dict[tuple[str, str], tuple[str, str]] = {}
+    for name, plan in experiments.items():
+        asks = not set(NEED_PULL).isdisjoint(plan.responses)
+        for run in plan.runs:
+            for specimen in tests[run.partition(".")[0]].specimens:
+                pull = plan.quasi_static.get(specimen, "")
+                if not pull and not asks:
+                    continue
+                other, before = first.setdefault((run, specimen), (name, pull))
+                if before != pull:
+                    raise SettingsError(
+                        f"{path}: run '{run}' is in two experiments that do not name one slow "
+                        f"pull of '{specimen}'",
+                        found=f"{before or 'none'} in '{other}', {pull or 'none'} in '{name}'",
+                        needed="the same quasi_static in both: a run has one K_0",
+                    )
 
 
 def _resolve(run: str, tests: Mapping[str, TestPlan]) -> tuple[str, str] | None:

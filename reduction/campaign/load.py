@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from reduction.archive.products import OF_CAMPAIGN
-from reduction.campaign.experiments import plan_experiment
+from reduction.campaign.experiments import agree_on_pulls, plan_experiment
 from reduction.campaign.faults import in_toml, quantity_of
 from reduction.campaign.marks import read_marks
 from reduction.campaign.model import (
@@ -280,6 +280,11 @@ def load_campaign(path: Path) -> Campaign:
         attributes["synthetic"] = "yes"
     specimens = {name: specimen_of(path, name, section) for name, section in file.specimens.items()}
     results, outcomes = outcomes_of(path, _results_file(path, file), specimens)
+    experiments = {
+        name: plan_experiment(path, name, section, tests=plans, specimens=specimens)
+        for name, section in file.experiments.items()
+    }
+    agree_on_pulls(path, experiments, plans)
     return Campaign(
         path=path,
         id=file.campaign.id,
@@ -288,10 +293,7 @@ def load_campaign(path: Path) -> Campaign:
         layouts=file.layouts,
         tests=plans,
         marks=marks,
-        experiments={
-            name: plan_experiment(path, name, section, tests=plans, specimens=specimens)
-            for name, section in file.experiments.items()
-        },
+        experiments=experiments,
         results=results,
         outcomes=outcomes,
     )

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign.experiments import parse_factor, plan_experiment
+from reduction.campaign.experiments import agree_on_pulls, parse_factor, plan_experiment
 from reduction.campaign.load import load_campaign
 from reduction.campaign.model import ExperimentSection
 from reduction.campaign.plan import StepPlan, TestPlan
@@ -119,6 +119,19 @@ def test_dummy_columns_are_for_screening_alone():
         ({"quasi_static": {"line": "Q9"}}, "slow pull of 'line' is no test of the campaign"),
         ({"quasi_static": {"line": "R1"}}, "'R1' is no slow pull; found cyclic"),
         ({"quasi_static": {"other": "Q"}}, "the slow pull 'Q' does not pull 'other'"),
+        (
+            {"runs": {"R1": (0, -7)}},
+            "run 'R1' is planned beyond the levels.*; found coded -7; needed",
+        ),
+        ({"runs": {"R1": (0, float("nan"))}}, "planned beyond the levels.*; found coded nan"),
+        (
+            {"responses": ("hysteresis_energy", "loss_factor", "hysteresis_energy")},
+            "a response stands twice; found hysteresis_energy, loss_factor, hysteresis_energy",
+        ),
+        (
+            {"responses": ("loss_factor",), "transform": {"relaxation_time": "log"}},
+            "a transform is for a response that is not asked for; found relaxation_time; needed",
+        ),
         ({"factors": {"frequency": ("1 Hz", "x")}}, "experiment 'nylon': a value is not a number"),
     ],
 )
@@ -140,3 +153,33 @@ def test_the_campaign_of_the_synthetic_line_is_the_design_that_it_says():
     assert len(found.runs) == 15
     assert len(edges) == 12
     assert all(sorted(map(abs, run)) == [0, 1, 1] for run in edges)
+
+
+def agree(first, second):
+    tests = TESTS | {"Q2": plan_of("Q2", "quasi-static")}
+    both = {
+        name: plan_experiment(
+            Path("campaign.toml"), name,
+            ExperimentSection(**({"kind": "box-behnken", "factors": LOADS} | section)),
+            tests=tests, specimens=SPECIMENS,
+        )
+        for name, section in (("one", first), ("two", second))
+    }  # fmt: skip
+    agree_on_pulls(Path("campaign.toml"), both, tests)
+
+
+def test_a_run_of_two_experiments_has_one_slow_pull():
+    of_q = {"runs": {"R1": (0, 0), "R2": (1, 0)}, "quasi_static": {"line": "Q"}}
+    of_q2 = {"runs": {"R1": (0, 0), "P-7/dynamic 1": (1, 0)}, "quasi_static": {"line": "Q2"}}
+    with pytest.raises(SettingsError, match="run 'R1' is in two.*; found Q in 'one', Q2 in 'two'"):
+        agree(of_q, of_q2)
+    with pytest.raises(SettingsError, match="found Q in 'one', none in 'two'; needed the same"):
+        agree(of_q, of_q2 | {"quasi_static": {}})
+    agree(of_q, of_q2 | {"quasi_static": {"line": "Q"}})
+    # a pull for each experiment, where they share no run
+    agree(of_q, of_q2 | {"runs": {"P-7/dynamic 1": (0, 0)}})
+
+
+def test_an_experiment_that_needs_no_pull_shares_runs_with_one_that_does():
+    of_q = {"runs": {"R1": (0, 0)}, "quasi_static": {"line": "Q"}}
+    agree({"runs": {"R1": (0, 0)}, "responses": ("hysteresis_energy",)}, of_q)
