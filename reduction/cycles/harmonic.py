@@ -1,7 +1,9 @@
-r"""Fundamental of a series over each cycle, at the cycle's own frequency.
+r"""Fundamental of a series over each cycle, at the frequency of the cycles around it.
 
-.. math:: y(t) \approx \bar y + a \cos \omega t + b \sin \omega t, \qquad
-          \omega = 2\pi / (t_\text{last} - t_\text{first})
+.. math:: y(t) \approx \bar y + a \cos \omega t + b \sin \omega t
+
+by least squares over the samples of the cycle, weighted by time.  Noise and sampling put a turn
+a sample early or late, so that a cycle's own duration is no period; the mean over twenty is.
 
 References
 ----------
@@ -20,6 +22,8 @@ from reduction.cycles.energy import sums_over_cycles
 from reduction.errors import DataError
 from reduction.record import Floats, Integers, freeze_arrays
 
+_AROUND = 10  # cycles on either side whose durations make the period of one
+
 __all__ = ["CycleBasis", "cycle_basis", "fundamental", "mean_drift", "part_means"]
 
 
@@ -27,15 +31,20 @@ __all__ = ["CycleBasis", "cycle_basis", "fundamental", "mean_drift", "part_means
 class CycleBasis:
     """Cosine and sine of each sample's phase in its cycle, times its share of the cycle.
 
-    ``share`` (twice the trapezoid's weight over the period), ``cosine`` and ``sine`` have
-    shape (n_samples,); ``end_share`` is the share of the last sample of each cycle, whose
-    phase is a whole turn; ``first`` and ``last`` are the cycles they were made for.
+    ``share`` (twice the trapezoid's weight over the duration), ``cosine`` and ``sine`` have
+    shape (n_samples,); ``end_share`` is the share of the last sample of each cycle,
+    ``end_cosine`` and ``end_sine`` the same times those of its phase.  ``inverse``, shape
+    (n_cycles, 3, 3), turns sums of a series over share, cosine and sine into its mean and
+    its two amplitudes; ``first`` and ``last`` are the cycles they were made for.
     """
 
     share: Floats
     cosine: Floats
     sine: Floats
     end_share: Floats
+    end_cosine: Floats
+    end_sine: Floats
+    inverse: Floats
     first: Integers
     last: Integers
 
@@ -87,17 +96,43 @@ def cycle_basis(time: Floats, first: Integers, last: Integers) -> CycleBasis:
     lengths = np.column_stack([last - first, gaps]).ravel()
     nothing = np.zeros(first.size)
     begin = int(first[0]) if first.size else time.size
-    rate = np.repeat(np.column_stack([2 * np.pi / period, nothing]).ravel(), lengths)
+    turn_rate = 2 * np.pi / _mean_period(time, first, last)
     phase = time[begin:] - np.repeat(np.column_stack([time[first], nothing]).ravel(), lengths)
-    phase *= rate
-    rate *= weight[begin:]
-    rate /= 2 * np.pi
+    phase *= np.repeat(np.column_stack([turn_rate, nothing]).ravel(), lengths)
     share, cosine, sine = np.zeros_like(time), np.zeros_like(time), np.zeros_like(time)
-    share[begin:] = rate
-    np.multiply(np.cos(phase), rate, out=cosine[begin:])
-    np.multiply(np.sin(phase, out=phase), rate, out=sine[begin:])
+    rate = np.repeat(np.column_stack([1 / period, nothing]).ravel(), lengths)
+    np.multiply(rate, weight[begin:], out=share[begin:])
+    bare = np.cos(phase), np.sin(phase, out=phase)
+    np.multiply(bare[0], share[begin:], out=cosine[begin:])
+    np.multiply(bare[1], share[begin:], out=sine[begin:])
     end_share = (time[last] - time[last - 1]) / period
-    return CycleBasis(share, cosine, sine, end_share, first, last)
+    end_phase = turn_rate * period
+    end = end_share * np.cos(end_phase), end_share * np.sin(end_phase)
+    gram = np.empty((first.size, 3, 3))
+    gram[:, 0, 0] = sums_over_cycles(share, first, last) + end_share
+    for row, (weighted, at_end) in enumerate(zip((cosine, sine), end, strict=True), start=1):
+        gram[:, 0, row] = gram[:, row, 0] = sums_over_cycles(weighted, first, last) + at_end
+        products = weighted[begin:] * bare[0]
+        gram[:, row, 1] = gram[:, 1, row] = sums_over_cycles(
+            products, first - begin, last - begin
+        ) + at_end * np.cos(end_phase)
+    gram[:, 2, 2] = gram[:, 0, 0] - gram[:, 1, 1]
+    return CycleBasis(
+        share, cosine, sine, end_share, *end, np.linalg.inv(gram).astype(np.float64), first, last
+    )
+
+
+def _mean_period(time: Floats, first: Integers, last: Integers) -> Floats:
+    """Mean duration of up to 21 cycles that touch, around each cycle. [s]."""
+    breaks = np.flatnonzero(last[:-1] != first[1:]) + 1
+    place = np.arange(first.size)
+    run = np.searchsorted(breaks, place, side="right")
+    starts = np.concatenate([[0], breaks])
+    stops = np.append(breaks, first.size) - 1
+    low = np.maximum(place - _AROUND, starts[run])
+    high = np.minimum(place + _AROUND, stops[run])
+    mean: Floats = (time[last[high]] - time[first[low]]) / (high - low + 1)
+    return mean
 
 
 def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats, Floats]:
@@ -133,10 +168,18 @@ def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats, Floa
     [3.] [-1.] [7.]
     """
     first, last = basis.first, basis.last
-    at_end = values[last] * basis.end_share
-    cosine = sums_over_cycles(values * basis.cosine, first, last) + at_end
-    sine = sums_over_cycles(values * basis.sine, first, last)
-    mean = (sums_over_cycles(values * basis.share, first, last) + at_end) / 2
+    sums = np.stack(
+        [
+            sums_over_cycles(values * weights, first, last) + values[last] * at_end
+            for weights, at_end in (
+                (basis.share, basis.end_share),
+                (basis.cosine, basis.end_cosine),
+                (basis.sine, basis.end_sine),
+            )
+        ],
+        axis=-1,
+    )
+    mean, cosine, sine = np.einsum("cij,cj->ic", basis.inverse, sums)
     return cosine, sine, mean
 
 

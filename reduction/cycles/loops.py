@@ -134,6 +134,7 @@ def _derive(
     cycles: Cycles,
     ends: Floats,
     *,
+    waveform: Waveform,
     noise: float,
     strain_noise: float,
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
@@ -146,11 +147,17 @@ def _derive(
         mean_drift(np.stack([row[f"{name}_{part}"] for part in ("rise", "turn", "fall")]), ends)
         for name in ("force", "strain")
     )
-    # between a turn and the next, half a period, a drift adds half of itself to the range
-    amplitude = (peak - valley - np.abs(force_drift) / 2) / 2
-    strain_amplitude = (row["high"] - row["low"] - np.abs(strain_drift) / 2) / 2
     force_sin = row["force_sine"] + force_drift / np.pi
     strain_sin = row["strain_sine"] + strain_drift / np.pi
+    if waveform == "sinusoidal":
+        mean, mean_strain = row["force_mean"], row["strain_mean"]
+        amplitude = np.hypot(force_cos, force_sin)
+        strain_amplitude = np.hypot(strain_cos, strain_sin)
+    else:
+        mean, mean_strain = (peak + valley) / 2, (row["high"] + row["low"]) / 2
+        # between a turn and the next, half a period, a drift adds half of itself to the range
+        amplitude = (peak - valley - np.abs(force_drift) / 2) / 2
+        strain_amplitude = (row["high"] - row["low"] - np.abs(strain_drift) / 2) / 2
     energy = without_drift(
         row["energy"],
         end_tension=row["force_end"],
@@ -172,12 +179,20 @@ def _derive(
         u_part = np.sqrt(2 / n_samples) * both / np.sqrt(square)
         u_energy = row["strain_step_norm"] * both
         u_extreme = np.hypot(noise, _missed_turn(amplitude, n_samples))
-        u_half = u_extreme / np.sqrt(2)
-        u_strain = np.hypot(strain_noise, _missed_turn(strain_amplitude, n_samples)) / np.sqrt(2)
+        if waveform == "sinusoidal":
+            u_half, u_strain = np.sqrt(2 / n_samples) * noise, np.sqrt(2 / n_samples) * strain_noise
+            u_apparent = u_part
+        else:
+            u_half = u_extreme / np.sqrt(2)
+            u_strain = np.hypot(strain_noise, _missed_turn(strain_amplitude, n_samples))
+            u_strain /= np.sqrt(2)
+            # a missed turn takes the same share off both amplitudes; only noise is left
+            u_apparent = apparent * np.hypot(noise / amplitude, strain_noise / strain_amplitude)
+            u_apparent /= np.sqrt(2)
         values = {
-            "mean_tension": (peak + valley) / 2,
+            "mean_tension": mean,
             "tension_amplitude": amplitude,
-            "mean_strain": (row["high"] + row["low"]) / 2,
+            "mean_strain": mean_strain,
             "strain_amplitude": strain_amplitude,
             "peak_tension": peak,
             "valley_tension": valley,
@@ -195,10 +210,7 @@ def _derive(
             "strain_amplitude": u_strain,
             "peak_tension": u_extreme,
             "valley_tension": u_extreme,
-            # a missed turn takes the same share off both amplitudes; only noise is left
-            "apparent_spring_constant": apparent
-            * np.hypot(noise / amplitude, strain_noise / strain_amplitude)
-            / np.sqrt(2),
+            "apparent_spring_constant": u_apparent,
             "hysteresis_energy": u_energy,
             "storage_spring_constant": u_part,
             "loss_spring_constant": u_part,
@@ -258,14 +270,16 @@ def close_loops(
 
     Notes
     -----
-    Extremes are the logged ones: noise makes a peak read high by about one to two
-    standard deviations of a reading, and a slow log misses the turn by up to half a
-    sample.  Uncertainties are of one cycle: the noise of a reading (`reading_noise`)
+    Means and amplitudes of a sinusoidal test are those of its fundamental, whose range they
+    are: the turn of a slow log lies between two samples, earlier in tension than in strain.
+    Peaks and valleys, and of other waves means and amplitudes, are of the logged extremes:
+    noise makes a peak read high by about one to two standard deviations of a reading, and a
+    slow log misses the turn by up to half a sample.  Uncertainties are of one cycle: the noise of a reading (`reading_noise`)
     carried through and, for extremes, the turn between two samples; nothing else.  K_ap
     by amplitudes is one of three readings of "slope of the loop"; for an ellipse it is
     hypot(K', K''), and K' itself is the slope of the regression of tension on strain.  An
     open loop is closed by a straight line and freed of its drift (`without_drift`), and
-    so are the amplitudes: half the range less a quarter of the drift.  A
+    so are the amplitudes of other waves: half the range less a quarter of the drift.  A
     cycle that lacks up to a tenth of its readings has them bridged by straight lines; one
     that lacks more is NaN throughout.
 
@@ -314,6 +328,7 @@ def close_loops(
             measured[index],
             cycles,
             ends,
+            waveform=waveform,
             noise=reading_noise(force),
             strain_noise=reading_noise(stretch),
         )

@@ -189,7 +189,7 @@ def test_an_uncertain_rest_spring_is_noted():
     line = identify_cycles(
         loops_of(*series(4)),
         quasi_static_spring_constant=[rest],
-        quasi_static_standard_uncertainty=[0.05 * rest],
+        quasi_static_standard_uncertainty=[0.1 * rest],
     )
     assert any("uncertainty of K_0 is more than 30% of K_1" in note for note in line.notes)
 

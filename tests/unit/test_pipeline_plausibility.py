@@ -28,7 +28,9 @@ def notes_of(triangle):
         )
         return plausibility_notes(
             stretch, specimens=("new",), slack_tension=20.0, waveform=waveform, cycles=one,
-            loops=close_loops(0.1 * np.arange(strain.size), load, stretch, one), curves=curves,
+            loops=close_loops(
+                0.1 * np.arange(strain.size), load, stretch, one, waveform=waveform
+            ), curves=curves,
             is_snap=snap,
         )  # fmt: skip
 
@@ -84,3 +86,9 @@ def test_a_test_without_cycles_is_judged_by_its_strain_alone():
         slack_tension=20.0, waveform="triangular", cycles=None, loops=None, curves=None,
     )  # fmt: skip
     assert [note.split(":")[0] for note in notes] == ["new"]
+
+
+def test_a_triangle_declared_sinusoidal_asks_for_the_waveform(notes_of):
+    # the fundamental of a triangle is 8 / pi^2 of its half range, 23 % below it
+    (note,) = notes_of(waveform="sinusoidal")
+    assert note.startswith("new: declared sinusoidal, but half the range of tension is +23% off")
