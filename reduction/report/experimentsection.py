@@ -4,14 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from reduction.report.experimenttables import (
-    anova_table,
-    caution_table,
-    coefficient_table,
-    effect_table,
-    quality_table,
-    run_table,
-)
+from reduction.report.experimenttables import caution_table, effect_table, run_table
 from reduction.report.experimentview import ExperimentView, in_words
 from reduction.report.experimentwords import (
     block_words,
@@ -33,6 +26,7 @@ from reduction.report.linetables import (
 )
 from reduction.report.section import Part, Section, make_part, provenance_of
 from reduction.report.surfacegrid import make_planes, negative_inside
+from reduction.report.surfacetables import anova_table, coefficient_table, quality_table
 from reduction.report.view import TestView
 from reduction.surface.product import (
     FIT_REASONS,

@@ -17,6 +17,7 @@ from reduction.report.htmltable import (
     measured,
     number,
     probability,
+    span,
     words,
 )
 from reduction.report.style import Shown, shown, superscript
@@ -105,7 +106,9 @@ def form_table(view: ExperimentView) -> Table | None:
         for j in range(names.shape[1]):
             if not names[k, j]:
                 continue
-            low, high = (view.array(f"stiffness_coefficient_{e}")[k, j] for e in ("low", "high"))
+            low, high = (
+                float(view.array(f"stiffness_coefficient_{e}")[k, j]) for e in ("low", "high")
+            )
             rows.append(
                 [
                     words(FORM_WORDS.get(form, form)),
@@ -189,13 +192,7 @@ def pull_table(view: TestView) -> Table | None:
     )
     rows += [
         [words(force.label("range of use"))]
-        + [
-            Cell(
-                f"{low[k] * force.factor:,.0f} to {high[k] * force.factor:,.0f}",
-                f"{low[k]!r} {high[k]!r}", is_number=True,
-            )
-            for k in given
-        ]
+        + [span(low[k], high[k], force, places=0) for k in given]
     ]  # fmt: skip
     for text, name, unit in scalars:
         values = view.array_like(name, coefficient[:, 0])

@@ -31,6 +31,7 @@ from reduction.report.figures.campaign import (
     draw_ratios,
     draw_static_dynamic,
 )
+from reduction.report.htmltable import Table
 from reduction.report.outcomesection import make_outcome_section
 from reduction.report.outcomeview import OutcomeView, view_outcomes
 from reduction.report.section import Section, make_part, make_section
@@ -44,6 +45,7 @@ from reduction.report.summary import (
     test_table,
     tiles,
 )
+from reduction.report.surfacetables import answer_table
 from reduction.report.testtables import segment_table
 from reduction.report.view import Status, TestView, any_synthetic, natural_order
 from reduction.units import UnitSystem
@@ -165,6 +167,7 @@ def _render(
         specimens=specimen_table(tests, units),
         specimen_notes=specimen_notes(tests),
         tests=test_table(tests, statuses),
+        answers=[table for view in views for table in _answers(view)],
         designs=design_tables(tests),
         segments=segment_table(tests),
         intervals=[table for table in intervals if table is not None],
@@ -178,6 +181,11 @@ def _render(
         script=(room / "static" / "page.js").read_text("utf-8"),
         plotly=get_plotlyjs(),
     )
+
+
+def _answers(view: ExperimentView) -> list[Table]:
+    table = None if view.surfaces is None else answer_table(view, view.surfaces)
+    return [] if table is None else [table]
 
 
 def _tiles(

@@ -13,14 +13,13 @@ from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
 from reduction.vocabulary import RESPONSES
 
-__all__ = ["HELD", "Planes", "lowest_in_box", "make_planes", "negative_inside", "runs_on_plane"]
+__all__ = ["HELD", "Planes", "extremes_in_box", "make_planes", "negative_inside", "runs_on_plane"]
 
 POINTS = 31
 """Points along each side of a plane: finer is not seen, and makes the page heavy."""
 HELD = (-1.0, 0.0, 1.0)
 """Coded levels of the held factor, one plane each. [1]"""
 _MOST_POINTS = 20000
-_NEVER_NEGATIVE = RESPONSES
 _NEAR = 0.5
 """A run belongs to a plane where its held factor is nearer to it than to the next one. [1]"""
 
@@ -80,23 +79,29 @@ def runs_on_plane(view: ExperimentView, planes: Planes, level: float) -> Bools:
     return np.asarray(on_plane & (np.abs(coded[:, others]) < _NEAR).all(axis=1))
 
 
-def lowest_in_box(surfaces: ResponseSurfaces) -> tuple[Floats, Floats]:
-    """Return the least value of each surface within the levels, and where it is, coded."""
+def extremes_in_box(surfaces: ResponseSurfaces) -> tuple[Floats, Floats, Floats]:
+    """Return least and greatest value of each surface within the levels, and where it is least.
+
+    The place is coded; the values are of the response itself.
+    """
     n_factors = surfaces.coded.shape[1]
     n_side = max(2, min(21, int(_MOST_POINTS ** (1 / n_factors))))
     points = np.array(list(product(np.linspace(-1, 1, n_side), repeat=n_factors)))
     value = evaluate_surfaces(surfaces, points, units="coded").value
-    place = np.argmin(np.where(np.isfinite(value), value, np.inf), axis=1)
-    return value[np.arange(len(value)), place], points[place]
+    known = np.isfinite(value)
+    row = np.arange(len(value))
+    low = np.argmin(np.where(known, value, np.inf), axis=1)
+    high = np.argmax(np.where(known, value, -np.inf), axis=1)
+    return value[row, low], value[row, high], points[low]
 
 
 def negative_inside(surfaces: ResponseSurfaces) -> dict[str, tuple[float, Floats]]:
     """Return least value and its place of each surface that goes below zero and cannot be."""
-    least, place = lowest_in_box(surfaces)
+    least, _, place = extremes_in_box(surfaces)
     return {
         name: (float(least[index]), place[index])
         for index, name in enumerate(surfaces.response_names)
-        if name in _NEVER_NEGATIVE and least[index] < 0
+        if name in RESPONSES and least[index] < 0
     }
 
 

@@ -1,0 +1,211 @@
+"""Tables of the surfaces of an experiment: the answer, quality, coefficients, ANOVA."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reduction.report.experimentview import ExperimentView, in_words, response_unit
+from reduction.report.figures.surfacechecks import term_words
+from reduction.report.figures.surfaces import base_response
+from reduction.report.htmltable import (
+    NOT_GIVEN,
+    Cell,
+    Table,
+    count,
+    make_table,
+    measured,
+    number,
+    number_text,
+    probability,
+    share_text,
+    words,
+)
+from reduction.report.style import Shown, superscript
+from reduction.report.surfacegrid import extremes_in_box
+from reduction.report.uncertainty import plus_minus
+from reduction.surface.bands import evaluate_surfaces
+from reduction.surface.product import ResponseSurfaces
+
+__all__ = ["NOT_OF_RUNS", "anova_table", "answer_table", "coefficient_table", "quality_table"]
+
+_PRINTED = (
+    "F as CG-D-39-80 prints it counts the mean among the terms and in the error (10 and 4 degrees"
+    " of freedom for fifteen runs); it stands here to be compared with the report, no more."
+)
+_OF_RUNS = "scatter of the runs about the surface"
+NOT_OF_RUNS = "what all runs share: calibration, gauge length, the one line that was tested"
+"""What no scatter of runs has in it."""
+_LARGE = 1e9
+"""From here on a column of squares has powers of ten in every row, not in some."""
+
+
+def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | None:
+    """Return each response in the middle of the tested range, and from where to where it goes.
+
+    Of a response that another surface holds above zero, the one that falls below is left out.
+    """
+    least, greatest, _ = extremes_in_box(surfaces)
+    middle = evaluate_surfaces(surfaces, np.zeros((1, len(view.factors))), units="coded")
+    bent = {base_response(one) for one in surfaces.response_names if one != base_response(one)}
+    rows = []
+    for k, name in enumerate(surfaces.response_names):
+        base = base_response(name)
+        if not np.isfinite(middle.value[k, 0]) or (name in bent and least[k] < 0):
+            continue
+        unit = response_unit(base, view.units)
+        low, high = (float(end) for end in middle.confidence_interval[k, 0])
+        ends = " to ".join(number_text(end * unit.factor, 5) for end in (low, high))
+        rows.append(
+            [
+                words(unit.label(f"{in_words(base)}{_ON_SCALE.get(surfaces.transform[k], '')}")),
+                number(float(middle.value[k, 0]), unit, digits=5),
+                Cell(ends if np.isfinite(low) else NOT_GIVEN, f"{low!r} {high!r}", is_number=True),
+                number(float(least[k]), unit),
+                number(float(greatest[k]), unit),
+            ]
+        )
+    if not rows:
+        return None
+    middles = ", ".join(
+        f"{in_words(name)} {number_text(view.levels(place)[1], 3)} {view.factor_units[place].unit}"
+        for place, name in enumerate(view.factors)
+    )
+    return make_table(
+        f"Experiment {view.name}: each response by its surface, in the middle of the tested range"
+        f" ({middles}) and over all of it.",
+        ("response", "in the middle", f"{100 * middle.confidence:g} % interval",
+         "least in the range", "greatest in the range"),
+        rows, synthetic=view.is_synthetic,
+        remarks=["The interval is of the surface, by the scatter of the runs about it. Not in it:"
+                 f" {NOT_OF_RUNS}."],
+    )  # fmt: skip
+
+
+_ON_SCALE = {"log": ", by its logarithm", "box-cox": ", by its Box-Cox transform"}
+
+
+def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table:
+    """Return how well the surface of each response fits."""
+    lack = surfaces.lack_of_fit
+    rows = []
+    for k, name in enumerate(surfaces.response_names):
+        unit = response_unit(name, view.units)
+        freedom = f"{len(surfaces.term_names) - 1}, {surfaces.degrees_of_freedom[k]}"
+        rows.append(
+            [
+                words(unit.label(in_words(name))),
+                *(
+                    Cell(share_text(float(one[k])), repr(float(one[k])), is_number=True)
+                    for one in (surfaces.r2, surfaces.adjusted_r2, surfaces.predicted_r2)
+                ),
+                number(float(surfaces.sigma[k]), unit),
+                number(float(surfaces.overall_f[k])),
+                words(freedom),
+                probability(float(surfaces.overall_p_value[k])),
+                number(float(lack.f[k])),
+                probability(float(lack.p_value[k])),
+                number(float(surfaces.printed_f[k])),
+            ]
+        )
+    remarks = [_PRINTED]
+    columns: tuple[str, ...] = (
+        "response", "r² [1]", "adjusted r² [1]", "predicted r² [1]",
+        "standard deviation of a run, s [its unit]", "F of all terms [1]", "degrees of freedom",
+        "p of F [1]", "F of lack of fit [1]", "p of lack of fit [1]",
+        "F as CG-D-39-80 prints it [1]",
+    )  # fmt: skip
+    if not np.isfinite(surfaces.printed_f).any():
+        columns, rows, remarks = columns[:-1], [row[:-1] for row in rows], []
+    return make_table(
+        "Quality of each surface. p: probability of such an F if the terms were nil, or if the"
+        " surface fitted.",
+        columns, rows, synthetic=view.is_synthetic, is_compact=True, remarks=remarks,
+    )  # fmt: skip
+
+
+def coefficient_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> Table:
+    """Return the coefficients of a surface, coded and in the units of the factors."""
+    name = surfaces.response_names[index]
+    unit = response_unit(name, view.units)
+    rows = []
+    for k, label in enumerate(surfaces.labels):
+        powers = surfaces.exponents[k]
+        engineering = view.coefficient_unit(name, tuple(powers.tolist()))
+        rows.append(
+            [
+                words(label),
+                words(term_words(powers, view.factors)),
+                measured(
+                    float(surfaces.coefficient[index, k]),
+                    float(surfaces.coefficient_standard_uncertainty[index, k]), unit,
+                ),
+                number(float(surfaces.t[index, k])),
+                probability(float(surfaces.p_value[index, k])),
+                _to_compute_with(
+                    float(surfaces.coefficient_engineering[index, k]),
+                    float(surfaces.coefficient_engineering_standard_uncertainty[index, k]),
+                    engineering,
+                ),
+                words(superscript(engineering.unit)),
+            ]
+        )  # fmt: skip
+    base = f"{in_words(name)}: coefficients of the surface"
+    in_units = ", ".join(
+        f"{in_words(factor)} in {one.unit}"
+        for factor, one in zip(view.factors, view.factor_units, strict=True)
+    )
+    return make_table(
+        f"{base[0].upper()}{base[1:]}, for coded levels and for levels in units.",
+        ("", "term", unit.label("coefficient, coded"), "t [1]", "p [1]",
+         "coefficient, in units", "its unit"),
+        rows, synthetic=view.is_synthetic,
+        remarks=[
+            f"In units: {in_units}. Digits enough to compute with; the errors of coefficients in"
+            " units go together, so that a value of the surface is far better known than the sum of"
+            " theirs.",
+            plus_minus(_OF_RUNS, left_out=NOT_OF_RUNS),
+        ],
+    )  # fmt: skip
+
+
+def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> Table:
+    """Return the analysis of variance of a surface."""
+    anova, name = surfaces.anova, surfaces.response_names[index]
+    unit = response_unit(name, view.units)
+    square = Shown(_squared(unit.unit), unit.factor**2)
+    is_large = bool(np.nanmax(anova.sum_of_squares[index]) * square.factor >= _LARGE)
+    rows = [
+        [
+            words(source),
+            count(float(anova.degrees_of_freedom[index, k])),
+            *(
+                Cell(f"{one[index, k] * square.factor:.3e}", repr(float(one[index, k])), True)
+                if is_large
+                else number(float(one[index, k]), square)
+                for one in (anova.sum_of_squares, anova.mean_square)
+            ),
+            number(float(anova.f[index, k])),
+            probability(float(anova.p_value[index, k])),
+            words(anova.error_term[k]),
+        ]
+        for k, source in enumerate(anova.source)
+    ]
+    return make_table(
+        f"{in_words(name).capitalize()}: analysis of variance, each source after those above it.",
+        ("source", "degrees of freedom [1]", square.label("sum of squares"),
+         square.label("mean square"), "F [1]", "p [1]", "tested against"),
+        rows, synthetic=view.is_synthetic,
+    )  # fmt: skip
+
+
+def _to_compute_with(value: float, spread: float, unit: Shown) -> Cell:
+    """Return a coefficient of seven digits and its uncertainty of two."""
+    if not np.isfinite(value):
+        return Cell(NOT_GIVEN, is_number=True)
+    half = f" ± {number_text(spread * unit.factor, 2)}" if np.isfinite(spread) else ""
+    text = f"{number_text(value * unit.factor, 7)}{half}"
+    return Cell(text, repr(value), is_number=True)
+
+
+def _squared(unit: str) -> str:
+    return unit if unit == "1" else f"({unit})²" if " " in unit or "/" in unit else f"{unit}²"

@@ -1,0 +1,177 @@
+"""Figures of an experiment: each is one that plotly takes, synthetic where the data are."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import plotly.graph_objects as go
+import pytest
+from experiment_views import law_experiment, view_of
+from experiments import screening_experiment, surface_experiment
+
+from reduction.line.single import check_single_time
+from reduction.report.experimentsection import make_experiment_section
+from reduction.report.figures.cube import draw_cube
+from reduction.report.figures.lines import draw_derived, draw_forms, draw_single_time
+from reduction.report.figures.screening import draw_effects
+from reduction.report.figures.surfacechecks import draw_checks, draw_pareto, term_words
+from reduction.report.figures.surfaces import draw_contours, draw_surface
+from reduction.report.surfacegrid import make_planes
+from reduction.surface.surfaces import fit_surfaces
+
+EVERYTHING = (
+    surface_experiment(),
+    surface_experiment("blocks", seed=9, specimens=("a", "b"), treatment="random", missing=(2,)),
+    screening_experiment(),
+)
+
+
+def law(frequency, mean, amplitude):
+    return 1000 + 50 * frequency + 200 * mean - 30 * amplitude + 40 * mean**2
+
+
+def figures_of(parts):
+    for part in parts:
+        yield from part.figures
+        if part.folded is not None:
+            yield from part.folded.figures
+
+
+@pytest.fixture(scope="module")
+def lawful():
+    return view_of(law_experiment({"apparent_spring_constant": law}, noise=1e-6))
+
+
+@pytest.mark.parametrize("index", range(3))
+@pytest.mark.parametrize("units", ["si", "us"])
+def test_every_figure_is_one_that_plotly_takes_and_says_it_is_synthetic(index, units):
+    view = view_of(*EVERYTHING, index=index, units=units)
+    figures = list(figures_of(make_experiment_section(view, {}).parts))
+    assert len(figures) >= 4
+    assert len({figure.key for figure in figures}) == len(figures)
+    for figure in figures:
+        document = json.loads(figure.json())
+        go.Figure(document)
+        assert figure.has_data, figure.key
+        assert figure.layout["title"]["subtitle"]["text"] == "SYNTHETIC DATA"
+        assert figure.label.startswith("Synthetic data. ")
+        assert all("name" in trace and "y" in trace for trace in figure.data), figure.key
+
+
+def test_data_that_are_measured_are_not_called_synthetic():
+    view = view_of(surface_experiment(), synthetic="no")
+    section = make_experiment_section(view, {})
+    tables = [table for part in section.parts for table in part.tables]
+    assert not any(figure.synthetic for figure in figures_of(section.parts))
+    assert not any("SYNTHETIC" in table.caption for table in tables)
+
+
+def test_the_surface_in_space_has_its_runs_with_their_distances(lawful):
+    (figure,) = draw_surface(lawful, lawful.surfaces, 0, make_planes(lawful, lawful.surfaces))
+    surface, stems, runs = figure.data
+    assert np.shape(surface["z"]) == (31, 31)
+    assert len(runs["z"]) == 7
+    assert stems["z"][0] == pytest.approx(runs["z"][0])
+    assert stems["z"][2] is None
+    assert "mean tension [N]" in figure.label
+
+
+def test_contours_share_a_scale_and_veil_where_the_runs_say_less(lawful):
+    figures = draw_contours(lawful, lawful.surfaces, 0, make_planes(lawful, lawful.surfaces))
+    assert len({(f.data[0]["zmin"], f.data[0]["zmax"]) for f in figures}) == 1
+    veiled = ["runs say little" in [trace["name"] for trace in f.data] for f in figures]
+    assert veiled == [True, False, True]
+    assert ["Grey" in f.caption for f in figures] == veiled
+    middle = figures[1].data[-1]
+    assert [text for text in middle["text"] if "," in text] == ["R13, R14, R15"]
+
+
+def test_the_cube_has_the_law_at_corners_edges_and_centre(lawful):
+    (figure,) = draw_cube(lawful, lawful.surfaces, 0)
+    full, thin = figure.data[2:]
+    assert len(full["x"]) == 13
+    assert len(thin["x"]) == 8
+    shown = sorted(float(text.replace(",", "")) for text in thin["text"])
+    corners = [law(f, m, a) for f in (-1, 1) for m in (-1, 1) for a in (-1, 1)]
+    assert shown == pytest.approx(sorted(corners), abs=0.6)
+
+
+def test_terms_stand_by_size_with_the_critical_t_of_five_degrees_of_freedom(lawful):
+    (figure,) = draw_pareto(lawful, lawful.surfaces, 0)
+    limit = figure.data[-1]
+    assert limit["x"][0] == pytest.approx(2.571, abs=5e-4)  # tabled t, 5 and 0.975
+    size = {y: x for trace in figure.data[:-1] for x, y in zip(trace["x"], trace["y"], strict=True)}
+    in_order = [size[y] for y in sorted(size)]
+    assert in_order == sorted(in_order)
+    assert figure.layout["yaxis"]["ticktext"][-1] == "mean tension B6"
+    assert term_words(np.array([1, 0, 1]), lawful.factors) == "frequency by tension amplitude"
+
+
+def test_residuals_stand_in_the_order_in_which_the_tests_were_made(lawful):
+    backward = {name: 15 - k for k, name in enumerate(lawful.runs)}
+    for order, first in ((backward, 15), ({}, 1)):
+        figure = next(
+            one for one in draw_checks(lawful, lawful.surfaces, 0, order) if "order" in one.key
+        )
+        assert figure.data[1]["x"][0] == first
+        assert ("in the order the tests were made" in figure.caption) == bool(order)
+
+
+def test_a_response_without_a_surface_has_a_reason_and_no_figure():
+    result = law_experiment({"apparent_spring_constant": law, "relaxation_time": law})
+    runs = result.runs
+    few = runs.response.copy()
+    few[1, 5:] = np.nan
+    refit = law_experiment({"apparent_spring_constant": law})
+    del refit
+
+    surfaces = fit_surfaces(
+        runs.level, few, factor_names=result.factor_names, response_names=result.response_names,
+        low=result.low, high=result.high, run_names=runs.names,
+    )  # fmt: skip
+    view = view_of(replace(result, runs=replace(runs, response=few), surfaces=surfaces))
+    (part,) = [p for p in make_experiment_section(view, {}).parts if p.heading == "Relaxation time"]
+    assert part.figures == ()
+    assert part.sentences == ("No surface: fewer runs with a value than terms.",)
+
+
+def test_lines_of_one_time_and_of_inverse_frequency_cross_in_the_middle_of_the_runs():
+    plain = surface_experiment()
+    time = 2 + np.zeros(15)
+    runs = replace(plain.runs, response=np.vstack([
+        time if name == "relaxation_time" else row
+        for name, row in zip(plain.response_names, plain.runs.response, strict=True)
+    ]))  # fmt: skip
+    noise = 1 + 1e-3 * np.cos(np.arange(15))
+    check = check_single_time(runs.frequency, time * noise, 1 / time)
+    (figure,) = draw_single_time(view_of(replace(plain, runs=runs, single_time=check)))
+    level, falling = figure.data[:2]
+    assert level["y"] == pytest.approx([2, 2])
+    ratio = falling["x"][1] / falling["x"][0]
+    assert falling["y"][0] / falling["y"][1] == pytest.approx(ratio, rel=1e-4)
+    assert figure.layout["xaxis"]["type"] == figure.layout["yaxis"]["type"] == "log"
+
+
+def test_forms_stand_beside_the_quadratic_surface_and_derived_beside_measured():
+    view = view_of(surface_experiment())
+    against, missed = draw_forms(view)
+    names = [trace["name"] for trace in against.data[1:]]
+    assert names == ["Del Vecchio", "mean load", "quadratic surface"]
+    quadratic = view.array("apparent_spring_constant_residual")
+    assert missed.data[-1]["y"] == pytest.approx(quadratic, rel=1e-4, abs=1e-6 * quadratic.max())
+    assert [figure.key.rsplit("-", 1)[1] for figure in draw_derived(view)] == [
+        "dissipation_spring_constant", "relaxation_time",
+    ]  # fmt: skip
+    nothing = view_of(screening_experiment())
+    assert draw_forms(nothing) == draw_derived(nothing) == draw_single_time(nothing) == []
+
+
+def test_effects_have_the_least_that_counts_and_a_half_normal_plot():
+    view = view_of(screening_experiment())
+    bars, half_normal = draw_effects(view, "apparent_spring_constant")
+    least = view.scalar("apparent_spring_constant_minimum_significant_effect")
+    line = next(trace for trace in bars.data if trace["name"].startswith("least at"))
+    assert line["x"] == pytest.approx([least, least], rel=1e-5)
+    assert line["name"] == "least at 90 %"
+    points = [x for trace in half_normal.data[1:] for x in trace["x"]]
+    assert len(points) == 11
