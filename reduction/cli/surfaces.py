@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import product
 from pathlib import Path
 from typing import cast
 
@@ -14,9 +13,9 @@ from reduction.cli.outcome import Outcome
 from reduction.cli.surfaceanswers import effects_document, frame, surface_document
 from reduction.cli.surfacetables import show_effects, show_surfaces
 from reduction.errors import DataError, FitError
-from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.designs import Design
-from reduction.surface.drift import Drift, drift_over_order
+from reduction.surface.doubts import drifting_responses, negative_surfaces
+from reduction.surface.drift import drift_over_order
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.screening import ScreeningEffects, screening_effects
 from reduction.surface.surfaces import fit_surfaces
@@ -24,8 +23,6 @@ from reduction.units import UnitSystem
 
 __all__ = ["fit_runs"]
 
-_DRIFTS = 0.05
-"""A p below this is worth a word."""
 _NEAR_A_LEVEL = 0.1
 """Coded distance from -1 or 1 at which a level of a screening is still that level."""
 
@@ -51,8 +48,8 @@ def fit_runs(path: Path, spec_path: Path | None, *, outcome: Outcome) -> None:
         *runs.notes,
         *surfaces.notes,
         *_unstated(runs),
-        *_negative(surfaces),
-        *_drifting(surfaces, drift),
+        *negative_surfaces(surfaces),
+        *drifting_responses(surfaces, drift),
     )
     show_surfaces(surfaces, runs, notes, outcome, units)
     documents = {
@@ -116,27 +113,3 @@ def _unstated(runs: RunSeries) -> list[str]:
         if not unit
     ]
     return [f"without a unit, numbers as in the table: {', '.join(bare)}"] if bare else []
-
-
-def _negative(surfaces: ResponseSurfaces) -> list[str]:
-    """Surfaces that fall below zero among the levels, over runs that are all above it."""
-    grid = np.array(list(product((-1.0, 0.0, 1.0), repeat=surfaces.coded.shape[1])))
-    lowest = evaluate_surfaces(surfaces, grid, units="coded").value.min(axis=1)
-    measured = np.where(surfaces.transform_exponent == 1, 1.0, np.nan)[:, None] * (
-        surfaces.fitted + surfaces.residual
-    )
-    return [
-        f"the surface of {name} goes below zero among the levels, where no run does: "
-        'transform = "log" keeps it above'
-        for name, low, values in zip(surfaces.response_names, lowest, measured, strict=True)
-        if low < 0 and np.isfinite(values).any() and np.nanmin(values) > 0
-    ]
-
-
-def _drifting(surfaces: ResponseSurfaces, drift: Drift) -> list[str]:
-    return [
-        f"{name} drifts over the order of the runs beyond its surface: {slope:+.3g} a run "
-        f"(p {p:.2g})"
-        for name, slope, p in zip(surfaces.response_names, drift.slope, drift.p_value, strict=True)
-        if p < _DRIFTS
-    ]

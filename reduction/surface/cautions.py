@@ -9,6 +9,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -32,6 +33,7 @@ CautionKind = Literal[
 ]
 
 NEAR_ZERO = 1e-9  # of the peak: 12 % less 12 % is zero though its last bit may not be
+MEASURED_SLACK = 0.01  # of the peak, as in reduction.line.loops
 CONFOUNDED = 0.5
 
 
@@ -61,21 +63,26 @@ def _numbers(sheet: RunSheet, chosen: Bools) -> tuple[int, ...]:
     return tuple(int(number) for number in sheet.run[chosen])
 
 
-def _named(runs: tuple[int, ...]) -> str:
-    return f"run {runs[0]}" if len(runs) == 1 else f"runs {', '.join(map(str, runs))}"
+def _named(runs: tuple[int, ...], names: Mapping[int, str]) -> str:
+    listed = ", ".join(names[run] for run in runs)
+    return f"run {listed}" if len(runs) == 1 else f"runs {listed}"
 
 
-def _slack(sheet: RunSheet) -> list[Caution]:
-    chosen = sheet.minimum_tension <= NEAR_ZERO * sheet.peak_tension
+def _slack(sheet: RunSheet, names: Mapping[int, str], *, is_measured: bool) -> list[Caution]:
+    share_of_peak = MEASURED_SLACK if is_measured else NEAR_ZERO
+    chosen = sheet.minimum_tension <= share_of_peak * sheet.peak_tension
     runs = _numbers(sheet, chosen)
     if not runs:
         return []
     least = float(np.min(sheet.minimum_tension[chosen]))
-    goes = (
-        f"falls below zero, to {least:.4g} N"
-        if least < -NEAR_ZERO * float(np.max(sheet.peak_tension))
-        else "reaches zero"
-    )
+    rounding = NEAR_ZERO * float(np.max(sheet.peak_tension))
+    if least < -rounding:
+        goes = f"falls below zero, to {least:.4g} N"
+    elif least <= rounding:
+        goes = "reaches zero"
+    else:
+        goes = f"falls to {least:.4g} N, which is no tension to a load cell"
+    when = "" if is_measured else " in every cycle"
     highest = float(np.max(sheet.peak_share[chosen]))
     share = (
         f"; its peak is {100 * highest:.4g} % of the break strength, and nylon failed by such "
@@ -86,7 +93,7 @@ def _slack(sheet: RunSheet) -> list[Caution]:
     return [
         Caution(
             "slack",
-            f"the minimum tension of {_named(runs)} {goes}: the line goes slack in every cycle "
+            f"the minimum tension of {_named(runs, names)} {goes}: the line goes slack{when} "
             f"and snaps taut{share}",
             "Give the amplitude as a fraction of the mean tension, or raise the lowest mean.",
             runs,
@@ -95,7 +102,10 @@ def _slack(sheet: RunSheet) -> list[Caution]:
 
 
 def _over(
-    sheet: RunSheet, load_limit: float | None, peak_share_limit: float | None
+    sheet: RunSheet,
+    names: Mapping[int, str],
+    load_limit: float | None,
+    peak_share_limit: float | None,
 ) -> list[Caution]:
     found = []
     if load_limit is not None:
@@ -104,8 +114,8 @@ def _over(
             found.append(
                 Caution(
                     "load-over-limit",
-                    f"the peak tension of {_named(runs)} is above the limit of {load_limit:.4g} N, "
-                    f"up to {float(np.max(sheet.peak_tension)):.4g} N",
+                    f"the peak tension of {_named(runs, names)} is above the limit of "
+                    f"{load_limit:.4g} N, up to {float(np.max(sheet.peak_tension)):.4g} N",
                     "Lower the levels, or take a machine and a cell for the load.",
                     runs,
                 )
@@ -116,8 +126,8 @@ def _over(
             found.append(
                 Caution(
                     "share-over-limit",
-                    f"the peak tension of {_named(runs)} is above {100 * peak_share_limit:.4g} % "
-                    f"of the rated break strength, up to "
+                    f"the peak tension of {_named(runs, names)} is above "
+                    f"{100 * peak_share_limit:.4g} % of the rated break strength, up to "
                     f"{100 * float(np.max(sheet.peak_share)):.4g} %",
                     "Lower the levels: the line may creep, heat or break in these runs.",
                     runs,
@@ -134,7 +144,7 @@ def _over(
     return found
 
 
-def _repeats(sheet: RunSheet) -> list[Caution]:
+def _repeats(sheet: RunSheet, names: Mapping[int, str]) -> list[Caution]:
     _, group, count = np.unique(sheet.coded, axis=0, return_inverse=True, return_counts=True)
     group = group.ravel()
     if count.max() == 1:
@@ -153,7 +163,7 @@ def _repeats(sheet: RunSheet) -> list[Caution]:
             found.append(
                 Caution(
                     "pure-error-excludes-drift",
-                    f"{_named(runs)} are one run repeated without another between: their "
+                    f"{_named(runs, names)} are one run repeated without another between: their "
                     "scatter leaves out what the line goes through over the test, and the test "
                     "of lack of fit is too sharp",
                     "Spread the repeats over the order (repeats = spread).",
@@ -188,6 +198,8 @@ def find_cautions(
     *,
     load_limit: float | None = None,
     peak_share_limit: float | None = None,
+    run_names: Sequence[str] | None = None,
+    is_measured: bool = False,
 ) -> tuple[Caution, ...]:
     """What to know of a run sheet before the first run.
 
@@ -199,6 +211,10 @@ def find_cautions(
         Greatest tension that machine, cell or laboratory allow; None: not looked at. [N]
     peak_share_limit : float, optional
         Greatest peak as a share of the rated break strength; None: not looked at. [1]
+    run_names : sequence of str, length n_runs, optional
+        What the messages call the runs of the sheet; None: their numbers.
+    is_measured : bool
+        The tensions were measured, where a slack line reads up to 1 % of its peak.
 
     Returns
     -------
@@ -209,7 +225,7 @@ def find_cautions(
     Raises
     ------
     SettingsError
-        If a limit is not above zero.
+        If a limit is not above zero, or the names do not fit the runs.
 
     Notes
     -----
@@ -237,6 +253,12 @@ def find_cautions(
             raise SettingsError(
                 f"{name} is not above zero", found=f"{limit:g}", needed="a limit above zero"
             )
+    labels = tuple(str(run) for run in sheet.run) if run_names is None else tuple(run_names)
+    if len(labels) != sheet.n_runs:
+        raise SettingsError(
+            "the names do not fit the runs", found=str(len(labels)), needed=str(sheet.n_runs)
+        )
+    names = dict(zip(sheet.run.tolist(), labels, strict=True))
     if np.isnan(sheet.peak_tension).any():
         loads = [
             Caution(
@@ -247,5 +269,6 @@ def find_cautions(
             )
         ]
     else:
-        loads = _slack(sheet) + _over(sheet, load_limit, peak_share_limit)
-    return tuple(loads + _repeats(sheet) + _order(sheet))
+        loads = _slack(sheet, names, is_measured=is_measured)
+        loads += _over(sheet, names, load_limit, peak_share_limit)
+    return tuple(loads + _repeats(sheet, names) + _order(sheet))

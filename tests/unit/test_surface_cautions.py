@@ -131,3 +131,25 @@ def test_screening_of_the_report_keeps_three_per_cent_and_is_not_slack():
 def test_a_limit_of_nothing_is_refused(name):
     with pytest.raises(SettingsError, match=f"{name} is not above zero; found 0"):
         find_cautions(sheet(), **{name: 0.0})
+
+
+def test_runs_are_called_by_their_names_where_those_are_given():
+    plan = sheet()
+    names = [f"A{number:02d}" for number in plan.run]
+    kinds = {caution.kind: caution for caution in find_cautions(plan, run_names=names)}
+    assert "of run A11 reaches zero" in kinds["slack"].message
+    assert "runs A13, A14, A15 are one run" in kinds["pure-error-excludes-drift"].message
+    assert kinds["slack"].runs == (11,)
+
+
+def test_names_that_do_not_fit_the_runs_are_refused():
+    with pytest.raises(SettingsError, match="the names do not fit the runs; found 1; needed 15"):
+        find_cautions(sheet(), run_names=["A"])
+
+
+def test_a_measured_minimum_near_zero_is_slack_and_a_planned_one_is_not():
+    # 12 less 11.9 % of 10 kN is 10 N under a peak of 2390 N
+    near = sheet(FactorLevels("tension_amplitude", 0.05, 0.119, "rated_break_strength"))
+    assert "slack" not in found(near)
+    message = found(near, is_measured=True)["slack"].message
+    assert "run 11 falls to 10 N" in message and "every cycle" not in message

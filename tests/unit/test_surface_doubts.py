@@ -1,0 +1,53 @@
+"""Doubts of fitted surfaces: below zero where no run is, drift over the runs."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.surface.designs import box_behnken
+from reduction.surface.doubts import drifting_responses, negative_surfaces
+from reduction.surface.drift import drift_over_order
+from reduction.surface.surfaces import fit_surfaces
+
+CODED = box_behnken(3).coded
+
+
+def fitted(values, transforms="none"):
+    return fit_surfaces(
+        CODED, np.atleast_2d(values), units="coded", factor_names=["f", "T", "a"],
+        response_names=["energy"], low=[0] * 3, high=[1] * 3, transforms=transforms,
+    )  # fmt: skip
+
+
+def test_a_surface_that_falls_below_zero_in_a_corner_is_named_and_its_logarithm_is_not():
+    # a plane of 2.1 less the sum of the factors: 0.1 at the least run, -0.9 in the corner
+    plane = 2.1 - CODED.sum(axis=1)
+    (words,) = negative_surfaces(fitted(plane))
+    assert words.startswith("the surface of energy goes below zero")
+    assert negative_surfaces(fitted(plane + 1)) == ()
+    assert negative_surfaces(fitted(plane, transforms="log")) == ()
+
+
+def test_runs_below_zero_are_no_doubt_of_their_surface():
+    assert negative_surfaces(fitted(1 - CODED.sum(axis=1))) == ()
+
+
+def test_a_drift_is_named_with_its_slope_and_its_absence_is_silent():
+    rng = np.random.default_rng(4)
+    order = rng.permutation(15)
+    noise = rng.normal(0, 0.01, 15)
+    still, moving = fitted(3 + noise), fitted(3 + noise + 0.5 * order)
+    (words,) = drifting_responses(moving, drift_over_order(moving, order))
+    assert float(words.partition(": ")[2].split()[0]) == pytest.approx(0.5, abs=0.01)
+    assert drifting_responses(still, drift_over_order(still, order)) == ()
+
+
+def test_a_drift_of_other_surfaces_is_refused():
+    one = fitted(CODED[:, 0] + 3)
+    other = drift_over_order(one, np.arange(15))
+    two = fit_surfaces(
+        CODED, [CODED[:, 0], CODED[:, 1]], units="coded", factor_names=["f", "T", "a"],
+        response_names=["x", "y"], low=[0] * 3, high=[1] * 3,
+    )  # fmt: skip
+    with pytest.raises(DataError, match="the drift is not that of the surfaces; found 1 resp"):
+        drifting_responses(two, other)
