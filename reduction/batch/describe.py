@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from reduction.batch.pulls import pull_tests
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.line.product import SlowPull
@@ -91,10 +92,12 @@ def settings_json(
         },
     }
     if pulls is not None:
+        test_of = pull_tests(campaign, plan.id)
         document["quasi_static"] = {
             name: None
             if pull is None
             else {
+                "test": test_of[name],
                 "strain_coefficient": pull.strain_coefficient.tolist(),
                 "tension_low": pull.tension_low,
                 "tension_high": pull.tension_high,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Collection
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,8 @@ from reduction import __version__
 from reduction.archive.open import open_archive
 from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.archive.write import write_archive
+from reduction.batch.planned import same_logs
+from reduction.batch.waiting import waiting_in_words
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.errors import ArchiveError, FitError
 from reduction.experiment import ExperimentResult, RunTable
@@ -45,9 +47,15 @@ class ExperimentStatus:
 
 
 def write_experiments(
-    campaign: Campaign, folder: Path, *, failed: Collection[str], is_partial: bool, command: str
+    campaign: Campaign,
+    folder: Path,
+    *,
+    failed: Collection[str],
+    waiting: Mapping[str, str],
+    raw_sha256: Mapping[str, str],
+    command: str,
 ) -> list[ExperimentStatus]:
-    """Fit every experiment of a campaign and write them as one archive.
+    """Fit the experiments of a campaign of which no run waits, and write them as one archive.
 
     Parameters
     ----------
@@ -57,8 +65,10 @@ def write_experiments(
         Of the campaign's archives, of which one is made.
     failed : collection of str
         Tests whose archive, where there is one, is of an earlier run and not used.
-    is_partial : bool
-        Whether some tests were not asked for: then nothing is fitted while runs wait.
+    waiting : mapping of str to str
+        Runs that were not asked for and have to be reduced first, with the reason.
+    raw_sha256 : mapping of str to str
+        Hashes of the raw files by run.
     command : str
         For the product's ``command`` attribute.
 
@@ -74,17 +84,22 @@ def write_experiments(
     """
     if not campaign.experiments:
         return []
-    waiting = {
-        name: [run for run in plan.runs if not (folder / f"{run}.nc").exists()]
-        for name, plan in campaign.experiments.items()
+    held = {
+        name: waiting_in_words(waiting, plan.runs) for name, plan in campaign.experiments.items()
     }
-    if is_partial and any(waiting.values()):
-        return [
-            ExperimentStatus(name, "no_work", 0, f"not fitted: {len(runs)} of its runs wait")
-            for name, runs in waiting.items()
-        ]
+    ready = {name: plan for name, plan in campaign.experiments.items() if not held[name]}
+    path = folder / "surfaces.nc"
+    kept = "; surfaces.nc is of an earlier run" if path.exists() and not ready else ""
+    statuses = {
+        name: ExperimentStatus(name, "no_work", 0, f"not fitted: {words}{kept}")
+        for name, words in held.items()
+    }
+    if not ready:
+        return list(statuses.values())
     results, sources = fit_experiments(
-        campaign, lambda run: None if run in failed else folder / f"{run}.nc"
+        replace(campaign, experiments=ready),
+        lambda run: None if run in failed else folder / f"{run}.nc",
+        raw_sha256=raw_sha256,
     )
     dataset = surfaces_to_dataset(
         results,
@@ -93,13 +108,14 @@ def write_experiments(
         sources=sources,
         steps=[Step("surfaces", _in_one_line(result)) for result in results],
         settings_json=json.dumps(
-            {name: asdict(plan) for name, plan in campaign.experiments.items()}, sort_keys=True
+            {name: asdict(plan) for name, plan in ready.items()}, sort_keys=True
         ),
         version=__version__,
         command=command,
     )
-    write_archive(dataset, folder / "surfaces.nc")
-    return [_status(result) for result in results]
+    write_archive(dataset, path)
+    statuses |= {result.name: _status(result) for result in results}
+    return list(statuses.values())
 
 
 def _in_one_line(result: ExperimentResult) -> str:
@@ -118,7 +134,10 @@ def _status(result: ExperimentResult) -> ExperimentStatus:
 
 
 def fit_experiments(
-    campaign: Campaign, archive_of: Callable[[str], Path | None]
+    campaign: Campaign,
+    archive_of: Callable[[str], Path | None],
+    *,
+    raw_sha256: Mapping[str, str],
 ) -> tuple[list[ExperimentResult], tuple[Source, ...]]:
     """Fit every experiment of a campaign.
 
@@ -128,6 +147,8 @@ def fit_experiments(
         With its experiments.
     archive_of : callable
         Path of a run's archive by the run's id, which need not exist; None for a run that failed.
+    raw_sha256 : mapping of str to str
+        Hashes of the raw files by run.
 
     Returns
     -------
@@ -149,7 +170,8 @@ def fit_experiments(
                 content = path.read_bytes()
                 digest = hashlib.sha256(content).hexdigest()
                 sources[path.name] = Source(path.name, digest, len(content))
-        results.append(_fit(plan, rows))
+        result = _fit(plan, rows)
+        results.append(replace(result, notes=(*result.notes, *same_logs(plan, raw_sha256))))
     return results, tuple(sources.values())
 
 

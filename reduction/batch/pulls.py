@@ -13,7 +13,7 @@ from reduction.pipeline.rope import PullConditions, pull_specimens
 from reduction.strain.model import StrainModel
 from reduction.units import parse_quantity
 
-__all__ = ["fit_pulls", "pull_conditions", "pulls_of"]
+__all__ = ["fit_pulls", "pull_conditions", "pull_tests", "pulls_of"]
 
 Pulls = Mapping[tuple[str, str], SlowPull]
 
@@ -89,10 +89,22 @@ def fit_pulls(
     return pulls
 
 
+def pull_tests(campaign: Campaign, run: str) -> dict[str, str]:
+    """Test of the slow pull by specimen, as the experiments say that the run is in.
+
+    A campaign is loaded only where they agree.
+    """
+    return {
+        specimen: test
+        for plan in campaign.experiments.values()
+        if run in plan.runs
+        for specimen, test in plan.quasi_static.items()
+    }
+
+
 def pulls_of(campaign: Campaign, survey: Survey, pulls: Pulls) -> list[SlowPull | None] | None:
     """Slow pull of each specimen of a run; None where the test is a run of no experiment."""
-    plans = [plan for plan in campaign.experiments.values() if survey.plan.id in plan.runs]
-    if not plans:
+    if not any(survey.plan.id in plan.runs for plan in campaign.experiments.values()):
         return None
-    test_of = {name: test for plan in plans for name, test in plan.quasi_static.items()}
+    test_of = pull_tests(campaign, survey.plan.id)
     return [pulls.get((test_of.get(name, ""), name)) for name in survey.plan.specimens]

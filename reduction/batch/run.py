@@ -4,22 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from reduction import __version__
 from reduction.archive.dataset import to_dataset
 from reduction.archive.products import test_archives
 from reduction.archive.write import write_archive, write_whole
-from reduction.batch.describe import describe, settings_json
+from reduction.batch.basis import basis_of
+from reduction.batch.describe import describe
 from reduction.batch.experiments import ExperimentStatus, write_experiments
-from reduction.batch.history import history_of, history_remarks
 from reduction.batch.models import fit_strain_models
 from reduction.batch.outcome import note_message, status_row
-from reduction.batch.pulls import fit_pulls, pull_conditions, pulls_of
+from reduction.batch.pulls import fit_pulls, pull_conditions
 from reduction.batch.results import write_outcomes
-from reduction.batch.standing import failed_beside, standing_product
+from reduction.batch.standing import standing_product
 from reduction.batch.status import Status, TestStatus, read_status, status_csv
 from reduction.batch.survey import Survey, as_reduction_error, located_again, survey_campaign
+from reduction.batch.waiting import waiting_runs
 from reduction.campaign.plan import Campaign
 from reduction.errors import SettingsError
 from reduction.line.product import SlowPull
@@ -217,8 +219,15 @@ def run_campaign(
     surveys = survey_campaign(campaign, progress=progress)
     chosen = _selected(surveys, tests)
     models, errors = fit_strain_models(campaign, surveys)
-    slow_pulls = fit_pulls(campaign, surveys, models)
     failed = [entry.plan.id for entry in surveys if entry.error or entry.plan.id in errors]
+    basis = partial(
+        basis_of,
+        campaign,
+        surveys=surveys,
+        models=models,
+        pulls=fit_pulls(campaign, surveys, models),
+        failed=failed,
+    )
     statuses: list[TestStatus] = []
     for survey in chosen:
         name = survey.plan.id
@@ -230,25 +239,22 @@ def run_campaign(
         try:
             if error is not None:
                 raise error
-            history = history_of(survey, surveys, models)
-            pulls = pulls_of(campaign, survey, slow_pulls)
-            of_test = [
-                models[name, entry] for entry in survey.plan.specimens if (name, entry) in models
-            ]
-            settings = settings_json(campaign, survey, of_test, history, pulls)
-            beside = failed_beside(survey, surveys, failed)
-            remarks = history_remarks(survey, surveys, models)
+            now = basis(survey)
             standing = (
                 None
                 if force
-                else standing_product(path, survey, settings, remarks=remarks, failed=beside)
+                else standing_product(
+                    path, survey, now.settings, remarks=now.remarks, failed=now.failed
+                )
             )
             if standing is not None:
                 status: Status = "unchanged"
                 message = "; ".join(filter(None, [standing.remark, note_message(standing.notes)]))
             else:
-                product = reduce_survey(campaign, survey, of_test, history, settings, pulls)
-                product = replace(product, notes=(*product.notes, *remarks))
+                product = reduce_survey(
+                    campaign, survey, now.models, now.history, now.settings, now.pulls
+                )
+                product = replace(product, notes=(*product.notes, *now.remarks))
                 write_archive(to_dataset(product, version=__version__, command=command), path)
                 notes = product.all_notes()
                 status = "reduced_with_notes" if notes else "reduced"
@@ -261,9 +267,21 @@ def run_campaign(
         statuses.append(
             status_row(campaign, survey, status, error=error, message=message, seconds=seconds)
         )
-    now_failed = {status.test for status in statuses if status.status == "failed"}
+    now_failed = {status.test for status in statuses if status.status == "failed"}.union(failed)
+    runs = {run for plan in campaign.experiments.values() for run in plan.runs}
+    asked = {survey.plan.id for survey in chosen}
+    left_out = [entry for entry in surveys if entry.plan.id in runs - asked - now_failed]
     experiments = write_experiments(
-        campaign, folder, failed=now_failed.union(failed), is_partial=bool(tests), command=command
+        campaign,
+        folder,
+        failed=now_failed,
+        waiting=waiting_runs(folder, left_out, basis),
+        raw_sha256={
+            entry.plan.id: "\n".join(source.sha256 for source in entry.sources)
+            for entry in surveys
+            if entry.plan.id in runs
+        },
+        command=command,
     )
     outcomes = write_outcomes(campaign, folder, command=command)
     if progress is not None:

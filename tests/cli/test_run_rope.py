@@ -215,5 +215,7 @@ def test_an_experiment_waits_for_runs_that_were_not_asked_for(tmp_path):
         tests=["R01", "Q01"],
     )  # fmt: skip
     assert part.exit_status == 0
-    assert part.experiments[0].message == "not fitted: 14 of its runs wait"
+    assert part.experiments[0].message == (
+        "not fitted: 14 of its runs not reduced yet (R02, R03, R04, R05, ..)"
+    )
     assert not (part.processed / "surfaces.nc").exists()

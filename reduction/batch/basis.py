@@ -1,0 +1,79 @@
+"""What the product of one test rests on beside its log: history, models, slow pulls, settings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from reduction.batch.describe import settings_json
+from reduction.batch.history import history_of, history_remarks
+from reduction.batch.pulls import pulls_of
+from reduction.batch.standing import failed_beside
+from reduction.batch.survey import Survey
+from reduction.campaign.plan import Campaign
+from reduction.line.product import SlowPull
+from reduction.product import History
+from reduction.strain.model import StrainModel
+
+__all__ = ["Basis", "basis_of"]
+
+
+@dataclass(frozen=True)
+class Basis:
+    """What a test's product rests on now; ``settings`` is all of it as JSON.
+
+    ``remarks`` is what the campaign leaves open about the test, ``failed`` the other tests
+    of its specimens that failed.
+    """
+
+    history: History | None
+    models: tuple[StrainModel, ...]
+    pulls: list[SlowPull | None] | None
+    settings: str
+    remarks: tuple[str, ...]
+    failed: tuple[Survey, ...]
+
+
+def basis_of(
+    campaign: Campaign,
+    survey: Survey,
+    surveys: Sequence[Survey],
+    *,
+    models: Mapping[tuple[str, str], StrainModel],
+    pulls: Mapping[tuple[str, str], SlowPull],
+    failed: Sequence[str],
+) -> Basis:
+    """Gather what one test rests on.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    survey : Survey
+        The test.
+    surveys : sequence of Survey
+        All tests of the campaign.
+    models : mapping of (test, specimen) to StrainModel
+        How position becomes strain.
+    pulls : mapping of (test, specimen) to SlowPull
+        Every slow pull that an experiment names.
+    failed : sequence of str
+        Ids of the tests that failed in the first pass.
+
+    Returns
+    -------
+    basis : Basis
+        As it stands in this run.
+    """
+    history = history_of(survey, surveys, models)
+    of_run = pulls_of(campaign, survey, pulls)
+    names = [(survey.plan.id, specimen) for specimen in survey.plan.specimens]
+    of_test = tuple(models[name] for name in names if name in models)
+    return Basis(
+        history=history,
+        models=of_test,
+        pulls=of_run,
+        settings=settings_json(campaign, survey, of_test, history, of_run),
+        remarks=tuple(history_remarks(survey, surveys, models)),
+        failed=failed_beside(survey, surveys, failed),
+    )
