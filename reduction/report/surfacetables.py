@@ -25,6 +25,7 @@ from reduction.report.surfacegrid import extremes_in_box
 from reduction.report.uncertainty import plus_minus
 from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
+from reduction.vocabulary import QUANTITIES
 
 __all__ = ["NOT_OF_RUNS", "anova_table", "answer_table", "coefficient_table", "quality_table"]
 
@@ -150,6 +151,15 @@ def coefficient_table(view: ExperimentView, surfaces: ResponseSurfaces, index: i
             ]
         )  # fmt: skip
     base = f"{in_words(name)}: coefficients of the surface"
+    scale = in_words(name).split(" of ")[0]
+    of_numbers = (
+        [
+            f"The {scale} is of the {in_words(base_response(name))} as a number of"
+            f" {superscript(QUANTITIES[base_response(name)].unit)}, whatever units the page shows."
+        ]
+        if name != base_response(name)
+        else []
+    )
     in_units = ", ".join(
         f"{in_words(factor)} in {one.unit}"
         for factor, one in zip(view.factors, view.factor_units, strict=True)
@@ -160,6 +170,7 @@ def coefficient_table(view: ExperimentView, surfaces: ResponseSurfaces, index: i
          "coefficient, in units", "its unit"),
         rows, synthetic=view.is_synthetic,
         remarks=[
+            *of_numbers,
             f"In units: {in_units}. Digits enough to compute with; the errors of coefficients in"
             " units go together, so that a value of the surface is far better known than the sum of"
             " theirs.",

@@ -87,6 +87,15 @@ def test_coefficients_in_units_give_the_surface_back(units):
     assert texts(table)[2][:2] == ["B3", "mean tension²"]
 
 
+def test_coefficients_of_a_logarithm_say_of_which_number_whatever_the_page_shows():
+    laws = {"hysteresis_energy": lambda f, m, a: np.exp(0.5 * a - 2 * m - f)}
+    view = view_of(law_experiment(laws, transforms=[("hysteresis_energy", "log")]), units="us")
+    assert "as a number of J m⁻¹" in coefficient_table(view, view.surfaces, 1).remarks[0]
+    assert not any(
+        "as a number" in text for text in coefficient_table(view, view.surfaces, 0).remarks
+    )
+
+
 def test_a_column_of_squares_has_powers_of_ten_in_every_row_or_in_none():
     small = view_of(law_experiment({"relaxation_time": lambda f, m, a: 5 + f + m}, noise=0.05))
     large = view_of(
