@@ -17,6 +17,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from reduction.batch.experiments import ExperimentStatus
+from reduction.batch.planned import experiments_found
 from reduction.batch.results import results_found
 from reduction.batch.run import check_campaign as check_tests
 from reduction.batch.run import run_campaign as run_tests
@@ -125,6 +126,32 @@ def _say_results(outcome: Outcome, results: dict[str, Any] | None) -> None:
         outcome.say(f"  {quantity}: {', '.join(listed)}")
 
 
+def _say_experiments(
+    outcome: Outcome, experiments: list[dict[str, Any]], units: UnitSystem
+) -> None:
+    """Runs, slow pulls and what would go slack, before anything is run."""
+    force, factor = display_unit("N", units)
+    for one in experiments:
+        outcome.say(
+            f"experiment {one['id']}: {one['kind']} of {', '.join(one['factors'])}; "
+            f"{len(one['runs_found'])} of {len(one['runs'])} runs found"
+        )
+        if one["runs_failed"]:
+            outcome.say(f"  failed: {', '.join(one['runs_failed'])}")
+        for pull in one["quasi_static"]:
+            states = {True: "", False: ", which failed", None: ", which was not asked for"}
+            said = states[pull["found"]]
+            outcome.say(f"  slow pull of {pull['specimen']}: {pull['test']}{said}")
+        for slack in one["slack_runs"]:
+            least = factor * slack["planned_minimum_tension"]["value"]
+            outcome.say(
+                f"  {slack['run']} {slack['specimen']}: planned minimum tension {least:.4g} "
+                f"{force}: the line goes slack in every cycle"
+            )
+        for note in one["notes"]:
+            outcome.say(f"  {note}")
+
+
 def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> None:
     """Read and validate everything, print what was found, write nothing."""
     units = cast("UnitSystem", outcome.units)
@@ -144,10 +171,13 @@ def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> N
         outcome.show(lines)
     results = results_found(campaign)
     _say_results(outcome, results)
+    experiments = experiments_found(campaign, statuses)
+    _say_experiments(outcome, experiments, units)
     outcome.answer(
         {
             "campaign": campaign.id,
             "tests": [test.document() for test in statuses],
+            "experiments": experiments,
             "results": results,
         }
     )

@@ -1,0 +1,162 @@
+"""Experiments of a campaign beside its tests: what a check lists, and what a part of a run fits."""
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from reduction.archive.open import open_archive
+from reduction.batch.run import run_campaign
+from reduction.campaign.load import load_campaign
+
+RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
+KEPT = ("R01", "R02", "R03", "Q01")
+
+
+def run(folder, tests=()):
+    """Two experiments over three runs: too few for a surface, enough to see what is fitted."""
+    whole = load_campaign(folder / "raw" / "campaign.toml")
+    plan = whole.experiments["nylon"]
+    one = replace(plan, name="one", runs={name: plan.runs[name] for name in ("R01", "R02")})
+    two = replace(
+        plan, name="two", runs={"R03": plan.runs["R03"]}, quasi_static={},
+        responses=("hysteresis_energy",),
+    )  # fmt: skip
+    few = replace(
+        whole, tests={name: whole.tests[name] for name in KEPT},
+        experiments={"one": one, "two": two},
+    )  # fmt: skip
+    done = run_campaign(
+        few, processed=folder / "p", reports=folder / "r", clock=lambda: 0.0, tests=tests
+    )
+    return done, {one.id: one for one in done.experiments}
+
+
+@pytest.fixture(scope="module")
+def complete(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("experiments")
+    shutil.copytree(RAW, folder / "raw")
+    run(folder)
+    return folder
+
+
+@pytest.fixture
+def folder(complete, tmp_path):
+    shutil.copytree(complete, tmp_path / "again")
+    return tmp_path / "again"
+
+
+def other_pull(folder):
+    """A line that is ten per cent stiffer."""
+    path = folder / "raw" / "Q01.csv"
+    lines = path.read_text().splitlines()
+    header = next(place for place, line in enumerate(lines) if line.startswith("time_s"))
+    place = lines[header].split(",").index("load_lbf")
+    for number in range(header + 1, len(lines)):
+        cells = lines[number].split(",")
+        cells[place] = repr(1.1 * float(cells[place]))
+        lines[number] = ",".join(cells)
+    path.write_text("\n".join(lines) + "\n")
+
+
+def pull_of(done, name):
+    with open_archive(done.processed / f"{name}.nc") as archive:
+        return json.loads(archive.attrs["settings"])["quasi_static"]["line-1"]
+
+
+def test_a_changed_pull_does_not_fit_runs_that_hold_the_one_before(folder):
+    other_pull(folder)
+    done, said = run(folder, ["Q01"])
+    assert said["one"].status == "no_work"
+    assert said["one"].message == (
+        "not fitted: 2 of its runs made with another slow pull than the one that stands now "
+        "(R01, R02)"
+    )
+    # the experiment beside it waits for nothing
+    assert said["two"].status == "failed"
+    with open_archive(done.processed / "surfaces.nc") as archive:
+        assert archive["experiment"].to_numpy().tolist() == ["two"]
+    before = pull_of(done, "R01")
+    assert before["test"] == "Q01"
+    done, said = run(folder, ["R01"])
+    assert said["one"].message.startswith("not fitted: 1 of its runs made with another slow pull")
+    done, said = run(folder, ["R02"])
+    assert said["one"].status == "failed"  # as a fit: two runs
+    # the whole pull is scaled, and so is its range of use
+    now = pull_of(done, "R01")
+    assert now["tension_high"] == pytest.approx(1.1 * before["tension_high"], rel=0.01)
+
+
+def test_a_changed_log_that_was_not_asked_for_is_waited_for(folder):
+    log = folder / "raw" / "R03.csv"
+    log.write_text("".join(log.read_text().splitlines(keepends=True)[:-1]))
+    _, said = run(folder, ["R01"])
+    assert said["two"].message == (
+        "not fitted: 1 of its runs made from other logs, settings or software (R03)"
+    )
+    assert said["one"].status != "no_work"
+
+
+def test_where_all_wait_what_stands_is_of_an_earlier_run(folder):
+    other_pull(folder)
+    (folder / "p" / "nylon-synthetic" / "R03.nc").unlink()
+    done, said = run(folder, ["Q01"])
+    assert said["two"].message == (
+        "not fitted: 1 of its runs not reduced yet (R03); surfaces.nc is of an earlier run"
+    )
+    assert done.exit_status == 0
+
+
+def test_runs_with_one_log_are_told(folder):
+    shutil.copy(folder / "raw" / "R01.csv", folder / "raw" / "R02.csv")
+    done, _ = run(folder)
+    with open_archive(done.processed / "surfaces.nc") as archive:
+        notes = archive["note"].to_numpy().tolist()
+    assert any("R01 and R02 have the same log, byte for byte" in note for note in notes)
+
+
+def test_a_check_lists_runs_pulls_and_what_would_go_slack(command):
+    done = command("check", RAW / "campaign.toml", "--json")
+    assert done.returncode == 0, done.stderr
+    (found,) = json.loads(done.stdout)["experiments"]
+    assert (found["id"], found["kind"]) == ("nylon", "box-behnken")
+    assert found["runs"] == found["runs_found"] == [f"R{number:02d}" for number in range(1, 16)]
+    assert found["runs_failed"] == [] and found["notes"] == []
+    assert found["quasi_static"] == [{"specimen": "line-1", "test": "Q01", "found": True}]
+    # CG-D-39-80 Table 2: 12 % less 12 % of the break strength
+    assert found["slack_runs"] == [
+        {
+            "run": "R05",
+            "specimen": "line-1",
+            "planned_minimum_tension": {"value": 0.0, "unit": "N"},
+        }
+    ]
+
+
+def test_a_check_says_what_failed_and_what_is_copied(command, tmp_path):
+    shutil.copytree(RAW, tmp_path / "raw")
+    (tmp_path / "raw" / "Q01.csv").unlink()
+    shutil.copy(tmp_path / "raw" / "R01.csv", tmp_path / "raw" / "R02.csv")
+    (tmp_path / "raw" / "R04.csv").unlink()
+    path = tmp_path / "raw" / "campaign.toml"
+    path.write_text(path.read_text().replace('"5 %RBS", "12 %RBS"', '"5 %RBS", "13 %RBS"'))
+    done = command("check", path, "--units", "us")
+    assert done.returncode == 3
+    said = [line.strip() for line in done.stdout.splitlines()]
+    assert (
+        "experiment nylon: box-behnken of frequency, mean_tension, tension_amplitude; "
+        "14 of 15 runs found"
+    ) in said
+    assert "failed: R04" in said
+    assert "slow pull of line-1: Q01, which failed" in said
+    # 12 less 13 % of 6400 lbf
+    assert "R05 line-1: planned minimum tension -64 lbf: the line goes slack in every cycle" in said
+    assert any(line.startswith("R01 and R02 have the same log, byte for byte") for line in said)
+
+
+def test_a_check_of_a_part_says_what_it_did_not_look_at(command):
+    done = command("check", RAW / "campaign.toml", "--test", "R05")
+    assert "; 1 of 15 runs found" in done.stdout
+    assert "slow pull of line-1: Q01, which was not asked for" in done.stdout
