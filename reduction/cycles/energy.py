@@ -199,7 +199,7 @@ def without_drift(
     mean_tension : array_like, shape (n_cycles,)
         Mean over time. [N]
     tension_drift : array_like, shape (n_cycles,)
-        Change over the cycle, from `reduction.cycles.harmonic.mean_drift`. [N]
+        Change over the cycle, from `reduction.cycles.drift.mean_drift`. [N]
     end_strain, mean_strain, strain_drift : array_like, shape (n_cycles,)
         The same of strain. [1]
 

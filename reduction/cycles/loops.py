@@ -12,8 +12,15 @@ from typing import Literal
 
 import numpy as np
 
+from reduction.cycles.drift import mean_drift, part_means
 from reduction.cycles.energy import loop_energy, sums_over_cycles, without_drift
-from reduction.cycles.harmonic import CycleBasis, cycle_basis, fundamental, mean_drift, part_means
+from reduction.cycles.harmonic import (
+    CycleBasis,
+    cycle_basis,
+    fundamental,
+    mean_period,
+    phase_turns,
+)
 from reduction.cycles.product import Cycles, Loops
 from reduction.record import Bools, Floats, Integers
 from reduction.workers import run_blocks
@@ -274,8 +281,9 @@ def close_loops(
     are: the turn of a slow log lies between two samples, earlier in tension than in strain.
     Peaks and valleys, and of other waves means and amplitudes, are of the logged extremes:
     noise makes a peak read high by about one to two standard deviations of a reading, and a
-    slow log misses the turn by up to half a sample.  Uncertainties are of one cycle: the noise of a reading (`reading_noise`)
-    carried through and, for extremes, the turn between two samples; nothing else.  K_ap
+    slow log misses the turn by up to half a sample.  Uncertainties are of one cycle: the
+    noise of a reading (`reading_noise`) carried through and, for extremes, the turn between
+    two samples; nothing else.  K_ap
     by amplitudes is one of three readings of "slope of the loop"; for an ellipse it is
     hypot(K', K''), and K' itself is the slope of the regression of tension on strain.  An
     open loop is closed by a straight line and freed of its drift (`without_drift`), and
@@ -302,7 +310,12 @@ def close_loops(
     >>> print(loops.hysteresis_energy.round(3), round(np.pi * 100 * 0.2**2, 3))
     [[12.566 12.566]] 12.566
     """
-    period = time[cycles.last] - time[cycles.first]
+    first, last = cycles.first, cycles.last
+    duration = time[last] - time[first]
+    period = mean_period(time[first], first, last, last_turn=time[last])
+    if waveform == "sinusoidal" and np.all(period > 0):
+        period = _sine_period(time, tension, cycles, period)
+        duration = period
     measured = np.empty((tension.shape[0], len(_MEASURED), cycles.n_cycles))
     # the middles of rise and fall, at least a sample apart and from either end
     middles = (cycles.branch_first + cycles.branch_last).T // 2
@@ -313,7 +326,10 @@ def close_loops(
     def measure_block(block: slice) -> None:
         low = max(int(cycles.first[block.start]) - _REACH, 0)
         high = int(cycles.last[block.stop - 1]) + _REACH + 1
-        basis = cycle_basis(time[low:high], cycles.first[block] - low, cycles.last[block] - low)
+        basis = cycle_basis(
+            time[low:high], cycles.first[block] - low, cycles.last[block] - low,
+            period=period[block],
+        )  # fmt: skip
         for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
             measured[index, :, block] = _measure(
                 force[low:high], stretch[low:high], basis, middles[:, block] - low, waveform
@@ -336,11 +352,35 @@ def close_loops(
             tables[name][index] = column
             uncertainty[name][index] = errors[name]
     tables["cycle_start_time"][:] = time[cycles.first]
-    tables["frequency"][:] = 1 / period
+    tables["frequency"][:] = 1 / duration
     # a turn is known to one sample at each end of the cycle, evenly spread
-    step = period / (cycles.last - cycles.first)
-    uncertainty["frequency"][:] = step / period**2 * np.sqrt(2 / 12)
+    step = duration / (cycles.last - cycles.first)
+    uncertainty["frequency"][:] = step / duration**2 * np.sqrt(2 / 12)
     return Loops(**tables, uncertainty=uncertainty)
+
+
+def _sine_period(time: Floats, tension: Floats, cycles: Cycles, period: Floats) -> Floats:
+    """Period of the wave in each cycle, from the phase of the fundamental of its tension.
+
+    Noise puts the turns of a log a sample early or late; the phase of a fundamental over a
+    hundred samples is known to a hundredth of one.
+    """
+    turns = np.empty(cycles.n_cycles)
+    blocks = _blocks_of_cycles(cycles)
+
+    def find(block: slice) -> None:
+        low, high = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
+        first, last = cycles.first[block] - low, cycles.last[block] - low
+        basis = cycle_basis(time[low:high], first, last, period=period[block])
+        force, _ = _filled(tension[0, low:high], first, last)
+        turns[block] = phase_turns(*fundamental(force, basis)[:2], basis, time[low:high])
+
+    run_blocks(find, blocks)
+    last_turn = np.append(turns[1:], np.nan)
+    # the last cycle of a run ends where it would go on
+    ends_run = np.append(cycles.last[:-1] != cycles.first[1:], True)
+    last_turn[ends_run] = (turns + period)[ends_run]
+    return mean_period(turns, cycles.first, cycles.last, last_turn=last_turn)
 
 
 def _blocks_of_cycles(cycles: Cycles) -> list[slice]:

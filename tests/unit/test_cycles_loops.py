@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from reduction.cycles.drift import mean_drift, part_means
 from reduction.cycles.energy import loop_energy, sums_over_cycles
-from reduction.cycles.harmonic import cycle_basis, fundamental, mean_drift, part_means
+from reduction.cycles.harmonic import cycle_basis, fundamental
 from reduction.cycles.loops import close_loops, reading_noise
 from reduction.cycles.product import Cycles
 from reduction.errors import DataError

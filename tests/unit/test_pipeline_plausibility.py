@@ -77,7 +77,7 @@ def test_little_at_a_constant_rate_asks_for_the_waveform(notes_of, share, n_note
     notes = notes_of(share=share)
     assert len(notes) == n_notes
     assert all("only 49% of the branches run at a constant rate" in note for note in notes)
-    assert notes_of(share=share, waveform="sinusoidal") == ()
+    assert notes_of(share=share, waveform="other") == ()
 
 
 def test_a_test_without_cycles_is_judged_by_its_strain_alone():
