@@ -125,6 +125,9 @@ class ExperimentResult:
         Of the runs as reached.
     notes : tuple of str
         What a reader of the numbers has to know.
+    refusal_status : int
+        Exit status of the error for which there are neither surfaces nor effects; 0 where
+        there are.
     """
 
     name: str
@@ -145,6 +148,7 @@ class ExperimentResult:
     reduced: ReducedSurfaces | None = None
     cautions: tuple[Caution, ...] = ()
     notes: tuple[str, ...] = ()
+    refusal_status: int = 0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

@@ -19,7 +19,7 @@ from reduction.archive.write import write_archive
 from reduction.batch.planned import same_logs
 from reduction.batch.waiting import waiting_in_words
 from reduction.campaign.plan import Campaign, ExperimentPlan
-from reduction.errors import ArchiveError, FitError
+from reduction.errors import ArchiveError
 from reduction.experiment import ExperimentResult, RunTable
 from reduction.pipeline.experiment import LineOfRuns, fit_experiment
 from reduction.provenance import Source, Step
@@ -124,13 +124,13 @@ def _in_one_line(result: ExperimentResult) -> str:
 
 
 def _status(result: ExperimentResult) -> ExperimentStatus:
-    """A design whose main part the runs do not carry has failed as a fit."""
+    """A design whose main part the runs do not carry has failed, as the error of it says."""
     refused = [note for note in result.notes if note.startswith("refused: ")]
     failed = result.surfaces is None and result.screening is None
     first = (refused or list(result.notes))[:1]
     message = f"{_in_one_line(result)}; {'; '.join(first)}" if first else _in_one_line(result)
     status = "failed" if failed else "fitted_with_notes" if result.notes else "fitted"
-    return ExperimentStatus(result.name, status, FitError.exit_status if failed else 0, message)
+    return ExperimentStatus(result.name, status, result.refusal_status, message)
 
 
 def fit_experiments(

@@ -98,6 +98,7 @@ def fit_experiment(
     reduced: ReducedSurfaces | None = None
     derived = (np.full(len(runs.run), np.nan),) * 2
     names = tuple(one.name for one in factors)
+    refusal_status = 0
     try:
         if kind == "plackett-burman":
             design = Design(
@@ -109,6 +110,7 @@ def fit_experiment(
     except _REFUSALS as error:
         what = "effects" if kind == "plackett-burman" else "response surfaces"
         notes.append(f"refused: {what}: {error}")
+        refusal_status = error.exit_status
     if surfaces is not None:
         notes += surfaces.notes
         if term_reduction == "aicc":
@@ -140,6 +142,7 @@ def fit_experiment(
         reduced=reduced,
         cautions=_cautions(runs, factors),
         notes=tuple(dict.fromkeys(notes)),
+        refusal_status=refusal_status,
     )
 
 

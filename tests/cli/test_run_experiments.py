@@ -10,16 +10,19 @@ import pytest
 from reduction.archive.open import open_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
+from reduction.surface.levels import FactorLevels
 
 RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
 KEPT = ("R01", "R02", "R03", "Q01")
 
 
-def run(folder, tests=()):
+def run(folder, tests=(), first_factor=None):
     """Two experiments over three runs: too few for a surface, enough to see what is fitted."""
     whole = load_campaign(folder / "raw" / "campaign.toml")
     plan = whole.experiments["nylon"]
-    one = replace(plan, name="one", runs={name: plan.runs[name] for name in ("R01", "R02")})
+    factors = (first_factor or plan.factors[0], *plan.factors[1:])
+    runs = {name: plan.runs[name] for name in ("R01", "R02")}
+    one = replace(plan, name="one", factors=factors, runs=runs)
     two = replace(
         plan, name="two", runs={"R03": plan.runs["R03"]}, quasi_static={},
         responses=("hysteresis_energy",),
@@ -160,3 +163,12 @@ def test_a_check_of_a_part_says_what_it_did_not_look_at(command):
     done = command("check", RAW / "campaign.toml", "--test", "R05")
     assert "; 1 of 15 runs found" in done.stdout
     assert "slow pull of line-1: Q01, which was not asked for" in done.stdout
+
+
+def test_runs_of_which_a_factor_never_moves_end_as_data_that_cannot_carry_a_surface(folder):
+    # as `reduction surface` ends; runs fewer than terms end with 5
+    assert run(folder)[1]["one"].exit_status == 5
+    done, said = run(folder, first_factor=FactorLevels("temperature", 278.0, 298.0))
+    assert said["one"].exit_status == 4
+    assert "temperature never moves" in said["one"].message
+    assert done.exit_status == 4
