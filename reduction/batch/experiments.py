@@ -21,7 +21,8 @@ from reduction.batch.waiting import waiting_in_words
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.errors import ArchiveError
 from reduction.experiment import ExperimentResult, RunTable
-from reduction.pipeline.experiment import LineOfRuns, fit_experiment
+from reduction.pipeline.experiment import fit_experiment
+from reduction.pipeline.runline import LineOfRuns
 from reduction.provenance import Source, Step
 from reduction.record import Floats
 from reduction.surface.levels import FactorLevels

@@ -17,7 +17,7 @@ from reduction.surface.designs import Design
 from reduction.surface.doubts import drifting_responses, negative_surfaces
 from reduction.surface.drift import drift_over_order
 from reduction.surface.product import ResponseSurfaces
-from reduction.surface.screening import ScreeningEffects, screening_effects
+from reduction.surface.screening import ScreeningEffects, screening_effects, screening_remarks
 from reduction.surface.surfaces import fit_surfaces
 from reduction.units import UnitSystem
 
@@ -96,12 +96,7 @@ def _screen(runs: RunSeries) -> tuple[ScreeningEffects, tuple[str, ...]]:
         )
     if away.any():
         notes.append(f"levels up to {away.max():.2g} coded off the plan count as those of the plan")
-    if not runs.dummy.shape[1]:
-        notes.append(
-            "no columns dummy_1, ..: the error is Lenth's, from the smaller effects themselves"
-        )
-    if runs.blocks is not None:
-        notes.append("the effects are over all blocks; differences of blocks are in their error")
+    notes += screening_remarks(runs.dummy.shape[1], runs.blocks is not None)
     design = Design("plackett-burman", near, runs.dummy)
     return screening_effects(design, runs.responses, names=runs.factor_names), tuple(notes)
 

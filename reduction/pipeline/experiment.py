@@ -2,47 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal
+from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from reduction.errors import DataError, FitError, SettingsError
 from reduction.experiment import ExperimentResult, RunTable
-from reduction.line.identify import identify_by_fundamental
-from reduction.line.single import VERDICTS, SingleTimeCheck, check_single_time
-from reduction.record import Floats, Integers
-from reduction.surface.bands import evaluate_surfaces
-from reduction.surface.cautions import Caution, find_cautions
+from reduction.line.single import SingleTimeCheck
+from reduction.pipeline.runcheck import (
+    cautions_of_runs,
+    listed,
+    missing_surfaces,
+    places_in_order,
+    remarks_of_runs,
+    require_screening_levels,
+    surface_levels_off_plan,
+)
+from reduction.pipeline.runline import (
+    REFUSALS,
+    LineOfRuns,
+    derived_line,
+    single_time_of_runs,
+    specimen_blocks,
+    stiffness_of_runs,
+)
+from reduction.record import Floats
+from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import Design
+from reduction.surface.doubts import drifting_responses, negative_surfaces
+from reduction.surface.drift import drift_over_order
 from reduction.surface.levels import FactorLevels
 from reduction.surface.product import ResponseSurfaces
-from reduction.surface.runsheet import RunSheet
-from reduction.surface.screening import ScreeningEffects, screening_effects
+from reduction.surface.screening import ScreeningEffects, screening_effects, screening_remarks
 from reduction.surface.select import ReducedSurfaces, reduce_terms
-from reduction.surface.stiffness import (
-    compare_stiffness_forms,
-    fit_del_vecchio_stiffness,
-    fit_mean_load_stiffness,
-)
 from reduction.surface.stiffness_product import FormQuality, StiffnessForm
 from reduction.surface.surfaces import fit_surfaces
 from reduction.surface.transform import Transform
 
-__all__ = ["LineOfRuns", "fit_experiment"]
+__all__ = ["fit_experiment"]
 
-_REFUSALS = (DataError, FitError, SettingsError)
 _PREFIX: dict[str, Transform] = {"log_": "log", "box_cox_": "box-cox"}
-
-
-@dataclass(frozen=True)
-class LineOfRuns:
-    """What derives K_1 and tau from surfaces of E' and E'', one entry a run. [N]."""
-
-    storage_spring_constant: Floats
-    loss_spring_constant: Floats
-    quasi_static_spring_constant: Floats
+_FROM_SLOW_PULL = {"dissipation_spring_constant", "relaxation_time", "dashpot_coefficient"}
+_SHARED = (
+    "standard errors of the surfaces of K_1 and tau are of the scatter of the runs: the error of "
+    "K_0, which all runs of one slow pull share, is not in them"
+)
 
 
 def fit_experiment(
@@ -57,6 +62,7 @@ def fit_experiment(
     transform: Mapping[str, str],
     specimens_as: Literal["blocks", "random"],
     term_reduction: Literal["none", "aicc"] = "none",
+    run_order: ArrayLike | None = None,
 ) -> ExperimentResult:
     """Everything that the runs of one experiment say together.
 
@@ -80,6 +86,8 @@ def fit_experiment(
         How several specimens enter.
     term_reduction : {"none", "aicc"}
         Whether terms are left out too, beside the full surfaces.
+    run_order : array_like, shape (n_runs,), optional
+        When each run was done, in any rising numbers; NaN where it is not stated. [1]
 
     Returns
     -------
@@ -87,9 +95,8 @@ def fit_experiment(
         A part that the runs do not carry is None, and a note says why.
     """
     low, high = (np.array([getattr(one, end) for one in factors]) for end in ("low", "high"))
-    notes = [
-        f"{run}: {remark}" for run, remark in zip(runs.names, runs.remark, strict=True) if remark
-    ]
+    notes = remarks_of_runs(runs)
+    coded = coded_from_engineering(runs.level, low=low, high=high)
     surfaces: ResponseSurfaces | None = None
     screening: ScreeningEffects | None = None
     forms: tuple[StiffnessForm, ...] = ()
@@ -101,27 +108,34 @@ def fit_experiment(
     refusal_status = 0
     try:
         if kind == "plackett-burman":
-            design = Design(
-                kind, runs.coded_plan[:, : len(factors)], runs.coded_plan[:, len(factors) :]
-            )
-            screening = screening_effects(design, runs.response, names=names)
+            screening, remarks = _screening(runs, coded, names, response_names)
+            notes += remarks
         else:
+            notes += surface_levels_off_plan(runs, coded, names)
             surfaces = _surfaces(runs, names, low, high, response_names, transform, specimens_as)
-    except _REFUSALS as error:
+    except REFUSALS as error:
         what = "effects" if kind == "plackett-burman" else "response surfaces"
         notes.append(f"refused: {what}: {error}")
         refusal_status = error.exit_status
     if surfaces is not None:
+        notes += missing_surfaces(runs, surfaces, response_names)
         notes += surfaces.notes
+        notes += negative_surfaces(surfaces)
+        drift = drift_over_order(surfaces, places_in_order(runs, run_order))
+        notes += drifting_responses(surfaces, drift)
+        if _FROM_SLOW_PULL & set(response_names):
+            notes.append(_SHARED)
         if term_reduction == "aicc":
             reduced, remarks = _reduced(surfaces)
             notes += remarks
-        forms, quality, remarks = _stiffness(runs, surfaces, response_names)
+        forms, quality, remarks = stiffness_of_runs(runs, surfaces, response_names)
         notes += remarks
-        derived, remarks = _derived(runs, line, names, low, high)
+        derived, remarks = derived_line(runs, line, names, low, high)
         notes += remarks
     if "frequency" in names and "relaxation_time" in response_names:
-        single, remarks = _single_time(runs, names.index("frequency"), response_names, line)
+        single, remarks = single_time_of_runs(
+            runs, coded, names.index("frequency"), response_names, line
+        )
         notes += remarks
     return ExperimentResult(
         name=name,
@@ -140,9 +154,34 @@ def fit_experiment(
         derived_dissipation_spring_constant=derived[0],
         derived_relaxation_time=derived[1],
         reduced=reduced,
-        cautions=_cautions(runs, factors),
+        cautions=cautions_of_runs(runs, factors, run_order),
         notes=tuple(dict.fromkeys(notes)),
         refusal_status=refusal_status,
+    )
+
+
+def _screening(
+    runs: RunTable, coded: Floats, names: tuple[str, ...], response_names: tuple[str, ...]
+) -> tuple[ScreeningEffects, list[str]]:
+    """Effects by the plan, where the runs kept to it."""
+    notes = require_screening_levels(runs, coded, names)
+    n_factors = len(names)
+    design = Design(
+        "plackett-burman", runs.coded_plan[:, :n_factors], runs.coded_plan[:, n_factors:]
+    )
+    effects = screening_effects(design, runs.response, names=names)
+    for reason in dict.fromkeys(effects.reason.tolist()):
+        if reason:
+            of = effects.reason == reason
+            missing = np.isnan(runs.response[of]).any(axis=0)
+            without = [run for run, gone in zip(runs.names, missing, strict=True) if gone]
+            responses = [one for one, taken in zip(response_names, of, strict=True) if taken]
+            notes.append(
+                f"refused: effects on {listed(responses)}: {reason}"
+                + (f"; no value of {listed(without)}" if without else "")
+            )
+    return effects, notes + screening_remarks(
+        design.dummy.shape[1], specimen_blocks(runs) is not None
     )
 
 
@@ -173,7 +212,7 @@ def _surfaces(
         low=low,
         high=high,
         run_names=runs.names,
-        blocks=runs.specimen if len(set(runs.specimen)) > 1 else None,
+        blocks=specimen_blocks(runs),
         block_treatment="fixed" if specimens_as == "blocks" else "random",
         transforms=scales,
     )
@@ -182,101 +221,6 @@ def _surfaces(
 def _reduced(surfaces: ResponseSurfaces) -> tuple[ReducedSurfaces | None, list[str]]:
     try:
         reduced = reduce_terms(surfaces)
-    except _REFUSALS as error:
+    except REFUSALS as error:
         return None, [f"refused: reduction of terms: {error}"]
     return reduced, list(reduced.notes)
-
-
-def _stiffness(
-    runs: RunTable, surfaces: ResponseSurfaces, response_names: Sequence[str]
-) -> tuple[tuple[StiffnessForm, ...], FormQuality | None, list[str]]:
-    """Forms that mooring codes ask for, fitted to the apparent spring constant."""
-    if "apparent_spring_constant" not in response_names:
-        return (), None, []
-    spring = runs.response[response_names.index("apparent_spring_constant")]
-    strengths = np.unique(runs.rated_break_strength)
-    strength = float(strengths[0]) if strengths.size == 1 and strengths[0] > 0 else None
-    loads: dict[str, Any] = {
-        "mean_tension": runs.mean_tension, "rated_break_strength": strength
-    }  # fmt: skip
-    try:
-        forms = (
-            fit_del_vecchio_stiffness(
-                spring, tension_amplitude=runs.tension_amplitude, frequency=runs.frequency,
-                load_amplitude="half-range", **loads,
-            ),
-            fit_mean_load_stiffness(spring, **loads),
-        )  # fmt: skip
-        quality = compare_stiffness_forms(
-            spring, tension_amplitude=runs.tension_amplitude, frequency=runs.frequency,
-            coded=surfaces.coded, **loads,
-        )  # fmt: skip
-    except _REFUSALS as error:
-        return (), None, [f"refused: stiffness forms of mooring codes: {error}"]
-    return forms, quality, []
-
-
-def _derived(
-    runs: RunTable, line: LineOfRuns, names: tuple[str, ...], low: Floats, high: Floats
-) -> tuple[tuple[Floats, Floats], list[str]]:
-    """K_1 and tau at the levels of each run from surfaces of E' and of the logarithm of E''."""
-    missing = np.full(len(runs.run), np.nan)
-    parts = np.array([line.storage_spring_constant, line.loss_spring_constant])
-    try:
-        smooth = fit_surfaces(
-            runs.level, parts, factor_names=names, low=low, high=high, run_names=runs.names,
-            response_names=("storage_spring_constant", "loss_spring_constant"),
-            transforms=("none", "log"),
-        )  # fmt: skip
-    except _REFUSALS as error:
-        return (missing, missing), [f"refused: K_1 and tau from surfaces of E' and E'': {error}"]
-    known = np.isfinite(runs.level).all(axis=1)
-    at_runs = evaluate_surfaces(smooth, smooth.coded[known], units="coded", outside="flag")
-    found = identify_by_fundamental(
-        storage_spring_constant=at_runs.value[0],
-        loss_spring_constant=at_runs.value[1],
-        frequency=runs.frequency[known],
-        quasi_static_spring_constant=line.quasi_static_spring_constant[known],
-    )
-    constant, time = missing.copy(), missing.copy()
-    constant[known], time[known] = found.dissipation_spring_constant, found.relaxation_time
-    return (constant, time), []
-
-
-def _single_time(
-    runs: RunTable, frequency: int, response_names: Sequence[str], line: LineOfRuns
-) -> tuple[SingleTimeCheck | None, list[str]]:
-    """Whether one relaxation time holds: runs at equal loads, as planned, are compared."""
-    place = response_names.index("relaxation_time")
-    time = runs.response[place]
-    others = np.delete(runs.coded_plan, frequency, axis=1)
-    group = [f"{one} {loads}" for one, loads in zip(runs.specimen, others.tolist(), strict=True)]
-    try:
-        check = check_single_time(
-            runs.frequency, time, line.loss_spring_constant / line.storage_spring_constant,
-            group=group,
-            relative_standard_uncertainty=runs.response_standard_uncertainty[place] / time,
-        )  # fmt: skip
-    except _REFUSALS as error:
-        return None, [f"refused: check of a single relaxation time: {error}"]
-    return check, [VERDICTS[int(check.verdict)]]
-
-
-def _cautions(runs: RunTable, factors: tuple[FactorLevels, ...]) -> tuple[Caution, ...]:
-    """What a run sheet of the runs as they were reached would warn of."""
-    order: Integers = np.arange(1, len(runs.run) + 1)
-    known = np.isfinite(runs.level).all(axis=1) & np.isfinite(runs.peak_tension)
-    sheet = RunSheet(
-        factors=factors,
-        run=order[known],
-        coded=runs.coded_plan[known, : len(factors)],
-        engineering=runs.level[known],
-        load_block=np.zeros(int(known.sum()), dtype=np.intp),
-        mean_tension=runs.mean_tension[known],
-        tension_amplitude=runs.tension_amplitude[known],
-        peak_tension=runs.peak_tension[known],
-        minimum_tension=runs.minimum_tension[known],
-        peak_share=(runs.peak_tension / runs.rated_break_strength)[known],
-        minimum_share=(runs.minimum_tension / runs.rated_break_strength)[known],
-    )
-    return find_cautions(sheet) if known.any() else ()

@@ -36,6 +36,7 @@ __all__ = [
     "EffectError",
     "ScreeningEffects",
     "screening_effects",
+    "screening_remarks",
 ]
 
 EffectError = Literal["dummy", "lenth"]
@@ -102,6 +103,38 @@ def _pseudo_standard_error(effects: Floats) -> Floats:
     small = np.where((size < 2.5 * first) | (first == 0), size, np.nan)
     second: Floats = 1.5 * np.nanmedian(small, axis=-1)
     return second
+
+
+def screening_remarks(n_dummy: int, has_blocks: bool) -> list[str]:
+    """What the error of effects rests on.
+
+    Parameters
+    ----------
+    n_dummy : int
+        Columns that no factor uses. [1]
+    has_blocks : bool
+        The runs are of several specimens.
+
+    Returns
+    -------
+    remarks : list of str
+        Empty where dummies of one specimen give the error.
+
+    Raises
+    ------
+    SettingsError
+        If the number of columns is below zero.
+
+    Examples
+    --------
+    >>> screening_remarks(6, False)
+    []
+    """
+    if n_dummy < 0:
+        raise SettingsError("a number of columns", found=str(n_dummy), needed="0 or more")
+    lenth = "no columns dummy_1, ..: the error is Lenth's, from the smaller effects themselves"
+    blocks = "the effects are over all blocks; differences of blocks are in their error"
+    return [lenth] * (n_dummy == 0) + [blocks] * has_blocks
 
 
 def screening_effects(

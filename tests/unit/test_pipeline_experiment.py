@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from reduction.experiment import RunTable
-from reduction.pipeline.experiment import LineOfRuns, fit_experiment
+from reduction.pipeline.experiment import fit_experiment
+from reduction.pipeline.runline import LineOfRuns
 from reduction.surface.designs import box_behnken, plackett_burman
 from reduction.surface.levels import FactorLevels
 
@@ -189,3 +190,175 @@ def test_specimens_drawn_from_many_keep_all_terms_with_a_note():
     result = fit(runs, line, specimens_as="random", term_reduction="aicc")
     assert result.reduced is None
     assert any("refused: reduction of terms" in note for note in result.notes)
+
+
+def changed(runs, **columns):
+    return RunTable(**{**vars(runs), **columns})
+
+
+def test_k_1_and_tau_of_each_specimen_come_from_its_own_level():
+    # half a K_1 lies between the two at rest
+    runs, line = made(specimens=("a", "b"), shift=35000.0)
+    result = fit(runs, line)
+    assert result.derived_dissipation_spring_constant == pytest.approx(DISSIPATION, rel=0.03)
+    assert result.derived_relaxation_time == pytest.approx(TIME, rel=0.05)
+
+
+def test_a_run_without_loops_still_has_k_1_and_tau_of_the_surfaces():
+    runs, line = made(specimens=("a", "b"), shift=35000.0)
+    parts = [part.copy() for part in (line.storage_spring_constant, line.loss_spring_constant)]
+    for part in parts:
+        part[3] = np.nan
+    result = fit(runs, LineOfRuns(*parts, line.quasi_static_spring_constant))
+    assert result.derived_dissipation_spring_constant[3] == pytest.approx(DISSIPATION, rel=0.05)
+
+
+def test_a_missing_run_leaves_the_stiffness_forms_and_the_single_time():
+    runs, line = made()
+    gone = {
+        name: np.where(np.arange(15) == 4, np.nan, getattr(runs, name))
+        for name in ("frequency", "mean_tension", "tension_amplitude", "rated_break_strength")
+    }
+    response, level = runs.response.copy(), runs.level.copy()
+    response[:, 4], level[4] = np.nan, np.nan
+    parts = [np.where(np.arange(15) == 4, np.nan, part) for part in vars(line).values()]
+    result = fit(changed(runs, response=response, level=level, **gone), LineOfRuns(*parts))
+    assert [form.form for form in result.stiffness_forms] == ["del-vecchio", "mean-load"]
+    assert result.single_time.exponent == pytest.approx(0.0, abs=1e-6)
+    assert not [note for note in result.notes if note.startswith("refused")]
+
+
+def test_lines_of_two_strengths_have_no_common_form():
+    runs, line = made(specimens=("a", "b"))
+    result = fit(changed(runs, rated_break_strength=np.repeat([28000.0, 30000.0], 15)), line)
+    assert result.stiffness_forms == ()
+    assert any("lines of 2 break strengths" in note for note in result.notes)
+
+
+def test_forms_over_several_specimens_say_that_they_pool_them():
+    assert any("pool the specimens" in note for note in fit(*made(specimens=("a", "b"))).notes)
+    assert not any("pool the specimens" in note for note in fit(*made()).notes)
+
+
+def test_runs_at_equal_loads_are_found_by_the_levels_reached_not_by_the_plan():
+    # a line whose tau is 1/f at each load, and a plan that two swapped runs contradict
+    runs, line = made()
+    load = 1 + 0.3 * runs.coded_plan[:, 1] + 0.2 * runs.coded_plan[:, 2]
+    response = runs.response.copy()
+    response[2] = load / runs.frequency
+    plan = runs.coded_plan.copy()
+    plan[[0, 6]] = plan[[6, 0]]
+    result = fit(changed(runs, response=response, coded_plan=plan), line)
+    assert result.single_time.exponent == pytest.approx(1.0, abs=1e-6)
+    (note,) = [note for note in result.notes if "disagree with the plan" in note]
+    assert "R1 " in note and "R7 " in note and "R2 " not in note
+
+
+def test_a_screening_whose_runs_are_swapped_has_no_effects_and_says_which():
+    design = plackett_burman(3)
+    coded = np.hstack([design.coded, design.dummy])
+    runs, line = made(coded)
+    plan = coded.copy()
+    plan[[0, 1]] = plan[[1, 0]]
+    result = fit(changed(runs, coded_plan=plan), line, kind="plackett-burman")
+    assert result.screening is None
+    (note,) = [note for note in result.notes if "refused: effects" in note]
+    assert "R1 " in note and "R2 " in note and "R3 " not in note
+
+
+def test_a_screening_whose_levels_stray_keeps_its_effects_with_a_note():
+    design = plackett_burman(3)
+    coded = np.hstack([design.coded, design.dummy])
+    near = coded.copy()
+    near[4, 0] *= 0.8
+    runs, line = made(near)
+    result = fit(changed(runs, coded_plan=coded), line, kind="plackett-burman")
+    assert result.screening is not None
+    (note,) = [note for note in result.notes if "disagree with the plan" in note]
+    assert "R5 frequency" in note
+
+
+def test_a_screening_that_misses_a_run_says_why_it_has_no_effects():
+    design = plackett_burman(3)
+    runs, line = made(np.hstack([design.coded, design.dummy]))
+    result = fit(without(runs, 3), line, kind="plackett-burman")
+    assert np.isnan(result.screening.effect).all()
+    (note,) = [note for note in result.notes if "refused: effects" in note]
+    assert "a run is missing" in note and "no value of R4" in note
+
+
+def test_a_screening_without_dummies_says_whose_error_it_has():
+    coded = plackett_burman(3).coded
+    assert any("Lenth" in note for note in fit(*made(coded), kind="plackett-burman").notes)
+
+
+def test_a_response_that_no_run_gives_is_named_with_the_reason_of_the_runs():
+    runs, line = made()
+    response = runs.response.copy()
+    response[2] = np.nan
+    reason = "K_1 and tau refused: no slow pull is named"
+    result = fit(changed(runs, response=response, remark=(reason,) * 15), line)
+    (note,) = [note for note in result.notes if note.startswith("refused: surface of")]
+    assert note.startswith("refused: surface of relaxation_time: fewer runs")
+    assert "0 runs of 15" in note and f"{reason} (15 of them)" in note
+    # and the runs themselves in one line
+    (remark,) = [note for note in result.notes if note.endswith(f": {reason}")]
+    assert remark == f"R1, R2, R3, R4, R5 and 10 more: {reason}"
+
+
+def test_the_error_of_the_slow_pull_is_said_to_be_outside_the_standard_errors():
+    said = "the error of K_0"
+    assert any(said in note for note in fit(*made()).notes)
+    other = fit(*made(), response_names=("apparent_spring_constant", "hysteresis_energy", "x"))
+    assert not any(said in note for note in other.notes)
+
+
+def test_a_surface_below_zero_is_named():
+    runs, line = made()
+    response = runs.response.copy()
+    response[1] = 2.1 - runs.coded_plan.sum(axis=1)
+    notes = fit(changed(runs, response=response), line).notes
+    assert any("surface of hysteresis_energy goes below zero" in note for note in notes)
+
+
+def test_a_drift_over_the_order_that_is_stated_is_named():
+    rng = np.random.default_rng(2)
+    runs, line = made()
+    # numbers that rise with gaps, as tests between the runs leave them
+    order = 10.0 * rng.permutation(15) + 3
+    response = runs.response.copy()
+    response[2] = TIME + 0.02 * order / 10 + rng.normal(0, 1e-3, 15)
+    drifting = changed(runs, response=response)
+    notes = fit(drifting, line, run_order=order).notes
+    (note,) = [note for note in notes if note.startswith("relaxation_time drifts over")]
+    assert float(note.partition(": ")[2].split()[0]) == pytest.approx(0.02, rel=0.05)
+    assert not any("drifts over" in note for note in fit(drifting, line).notes)
+
+
+def test_cautions_follow_the_order_that_is_stated():
+    runs, line = made()
+    # the three centre runs are last in the campaign, and were run far apart
+    order = np.arange(15.0)
+    order[[12, 13, 14]] = [-1, 6.5, 20]
+    kinds = {one.kind: one for one in fit(runs, line).cautions}
+    assert "R13, R14, R15" in kinds["pure-error-excludes-drift"].message
+    assert "it states no order" in kinds["pure-error-excludes-drift"].message
+    stated = {one.kind for one in fit(runs, line, run_order=order).cautions}
+    assert "pure-error-excludes-drift" not in stated
+
+
+def test_two_specimens_in_one_run_are_one_run_of_the_cautions():
+    levels = (*FACTORS[:2], FactorLevels("tension_amplitude", 1000.0, 3000.0))
+    result = fit(*made(specimens=("a", "b"), factors=levels), factors=levels)
+    slack = [caution for caution in result.cautions if caution.kind == "slack"]
+    assert len(slack) == 1 and len(slack[0].runs) == 1
+    assert slack[0].message.count("run R") == 1
+
+
+def test_specimens_in_tests_of_their_own_have_cautions_of_their_own():
+    runs, line = made(specimens=("a", "b"))
+    names = tuple(f"A{n}" if n <= 15 else f"B{n - 15}" for n in range(1, 31))
+    found = fit(changed(runs, run=names), line).cautions
+    repeats = [one.message for one in found if one.kind == "pure-error-excludes-drift"]
+    assert len(repeats) == 2
+    assert "A13, A14, A15" in repeats[0] and "B13, B14, B15" in repeats[1]

@@ -7,7 +7,7 @@ from scipy import stats
 from reduction.errors import DataError, SettingsError
 from reduction.surface.confounding import alias_matrix
 from reduction.surface.designs import Design, plackett_burman
-from reduction.surface.screening import screening_effects
+from reduction.surface.screening import screening_effects, screening_remarks
 
 FIVE = plackett_burman(5)
 RNG = np.random.default_rng(11)
@@ -121,3 +121,11 @@ def test_a_response_names_or_a_level_that_do_not_fit_are_refused():
         screening_effects(FIVE, np.zeros(12), names="ab")
     with pytest.raises(SettingsError, match="level of significance is not a share; found 90"):
         screening_effects(FIVE, np.zeros(12), significance=90)
+
+
+def test_the_error_of_effects_is_named_where_it_is_no_dummies_of_one_specimen():
+    assert screening_remarks(8, has_blocks=False) == []
+    lenth, blocks = screening_remarks(0, has_blocks=True)
+    assert "Lenth" in lenth and "blocks" in blocks
+    with pytest.raises(SettingsError, match="a number of columns; found -1"):
+        screening_remarks(-1, has_blocks=False)
