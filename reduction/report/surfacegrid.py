@@ -13,12 +13,24 @@ from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
 from reduction.vocabulary import RESPONSES
 
-__all__ = ["HELD", "Planes", "extremes_in_box", "make_planes", "negative_inside", "runs_on_plane"]
+__all__ = [
+    "HELD",
+    "THIN",
+    "Planes",
+    "extremes_in_box",
+    "greatest_leverage",
+    "make_planes",
+    "negative_inside",
+    "runs_on_plane",
+]
 
 POINTS = 31
 """Points along each side of a plane: finer is not seen, and makes the page heavy."""
 HELD = (-1.0, 0.0, 1.0)
 """Coded levels of the held factor, one plane each. [1]"""
+THIN = 1.02
+"""Leverage over the greatest of a run from which a point is marked: where runs reached their
+levels not quite, the very edges of the plan would be marked by a hair. [1]"""
 _MOST_POINTS = 20000
 _NEAR = 0.5
 """A run belongs to a plane where its held factor is nearer to it than to the next one. [1]"""
@@ -67,7 +79,7 @@ def make_planes(view: ExperimentView, surfaces: ResponseSurfaces) -> Planes | No
     points[..., across[1]] = side[:, None]
     at = evaluate_surfaces(surfaces, points.reshape(-1, len(names)), units="coded", outside="flag")
     shape = (len(surfaces.response_names), *points.shape[:3])
-    ratio = at.variance_factor / _greatest_leverage(surfaces)[:, None]
+    ratio = at.variance_factor / greatest_leverage(surfaces)[:, None]
     return Planes((across[0], across[1]), held, side, at.value.reshape(shape), ratio.reshape(shape))
 
 
@@ -105,7 +117,7 @@ def negative_inside(surfaces: ResponseSurfaces) -> dict[str, tuple[float, Floats
     }
 
 
-def _greatest_leverage(surfaces: ResponseSurfaces) -> Floats:
+def greatest_leverage(surfaces: ResponseSurfaces) -> Floats:
     """Largest leverage of a run that was used, by response."""
     known = np.isfinite(surfaces.coded).all(axis=1)
     at_runs = evaluate_surfaces(surfaces, surfaces.coded[known], units="coded", outside="flag")

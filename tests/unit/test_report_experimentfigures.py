@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import plotly.graph_objects as go
 import pytest
-from experiment_views import law_experiment, view_of
+from experiment_views import CODED, law_experiment, view_of
 from experiments import screening_experiment, surface_experiment
 
 from reduction.line.single import check_single_time
@@ -94,6 +94,18 @@ def test_the_cube_has_the_law_at_corners_edges_and_centre(lawful):
     shown = sorted(float(text.replace(",", "")) for text in thin["text"])
     corners = [law(f, m, a) for f in (-1, 1) for m in (-1, 1) for a in (-1, 1)]
     assert shown == pytest.approx(sorted(corners), abs=0.6)
+
+
+def test_levels_that_were_not_quite_reached_leave_no_edge_of_the_cube_open():
+    rng = np.random.default_rng(3)
+    near = view_of(
+        law_experiment(
+            {"apparent_spring_constant": law},
+            coded=CODED * (1 - 1e-3 * rng.random(CODED.shape)),
+        )
+    )
+    (figure,) = draw_cube(near, near.surfaces, 0)
+    assert [len(trace["x"]) for trace in figure.data[2:]] == [13, 8]
 
 
 def test_terms_stand_by_size_with_the_critical_t_of_five_degrees_of_freedom(lawful):

@@ -20,6 +20,7 @@ from reduction.report.figure import Figure, Trace, axis, line, make_figure, plai
 from reduction.report.figures.surfaces import base_response, scale_words
 from reduction.report.htmltable import number_text
 from reduction.report.style import COLOURS, plot_text
+from reduction.report.surfacegrid import THIN, greatest_leverage
 from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
 
@@ -51,7 +52,8 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
     if not np.isfinite(value).any():
         return []
     place = _projected(grid)
-    data = [*_edges(), *_cube_points(place, value, at.above_leverage[index])]
+    ratio = at.variance_factor[index] / greatest_leverage(surfaces)[index]
+    data = [*_edges(), *_cube_points(place, value, ratio > THIN)]
     ends = [
         f"{in_words(view.factors[k])} {number_text(view.levels(k)[0], 3)} to"
         f" {number_text(view.levels(k)[2], 3)} {view.factor_units[k].unit}"
@@ -59,7 +61,7 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
     ]
     return [
         make_figure(
-            f"{view.key}-{name}-cube", f"{words.capitalize()} on the cube of the levels",
+            f"{view.key}-{name}-cube", f"{words.capitalize()} on the cube",
             f"Value of the surface of the {words}{scale_words(name)} at corners, edges and centre"
             f" [{unit.unit}]: to the right {ends[0]}, upward {ends[1]}, away {ends[2]}. Open"
             " markers: the runs say less there than at the worst of them.",

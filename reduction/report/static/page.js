@@ -73,6 +73,10 @@
     const legend = legendHeight(data, width);
     const tall = Number(plot.dataset.height) + legend;
     plot.style.minHeight = `${tall}px`;
+    if (layout.scene && width < 420) {
+      // from farther away, or the numbers of the axes leave the figure
+      for (const axis of ["x", "y", "z"]) layout.scene.camera.eye[axis] *= 1.25;
+    }
     const shown = { ...themed(layout, legend), height: tall, showlegend: legend > 0 };
     if (printing) Object.assign(shown, { width, autosize: false });
     drawn.add(plot);
