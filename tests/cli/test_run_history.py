@@ -191,7 +191,7 @@ def test_an_earlier_test_that_is_new_and_fails_makes_the_later_ones_anew(row, co
     assert np.isnan(history(row, "B")[1]).all()
 
 
-@pytest.mark.parametrize("part", ["history_of", "settings_json", "standing_product"])
+@pytest.mark.parametrize("part", ["basis_of", "standing_product"])
 def test_a_defect_before_the_reduction_is_the_failure_of_one_test(row, command, monkeypatch, part):
     sound = getattr(reduction.batch.run, part)
 
