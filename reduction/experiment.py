@@ -46,7 +46,7 @@ class RunTable:
     rated_break_strength : ndarray, shape (n_runs,)
         Of the specimen; NaN where not stated. [N]
     remark : tuple of str, length n_runs
-        Why a run has no number; empty where it has.
+        Why a run has no number, and what its cycles do to the model; several end with ``; ``.
     """
 
     run: tuple[str, ...]

@@ -38,7 +38,8 @@ _DOUBT = re.compile(
     r"|fewer|second look|implies|imply|points off|grows|gives no|creep, not|identity leaves"
     r"|whole cycles found|not counted|is negative|falls with stretch|slack within"
     r"|only \d+% of the branches|which no specimen does|cut off|marks differ|reversals give"
-    r"|has no time|have no time|two amplitudes|is not constant|given up for|failed",
+    r"|has no time|have no time|two amplitudes|is not constant|given up for|failed"
+    r"|goes slack|drifts over the order|goes below zero",
     re.IGNORECASE,
 )
 

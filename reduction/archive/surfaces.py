@@ -154,7 +154,7 @@ def _caution_values(results: Sequence[ExperimentResult]) -> Values:
             caution.kind,
             caution.message,
             caution.hint,
-            ", ".join(result.runs.names[number - 1] for number in caution.runs),
+            ", ".join(result.runs.run[number - 1] for number in caution.runs),
         )
         for result in results
         for caution in result.cautions

@@ -7,20 +7,18 @@ import json
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from reduction import __version__
-from reduction.archive.open import open_archive
 from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.archive.write import write_archive
 from reduction.batch.planned import same_logs
+from reduction.batch.runrows import LINE, MEASURED, Row, rows_of_run
 from reduction.batch.waiting import waiting_in_words
 from reduction.campaign.plan import Campaign, ExperimentPlan
-from reduction.errors import ArchiveError
 from reduction.experiment import ExperimentResult, RunTable
+from reduction.notes import by_severity
 from reduction.pipeline.experiment import fit_experiment
 from reduction.pipeline.runline import LineOfRuns
 from reduction.provenance import Source, Step
@@ -30,11 +28,9 @@ from reduction.vocabulary import quantity
 
 __all__ = ["ExperimentStatus", "fit_experiments", "write_experiments"]
 
-_LINE = ("storage_spring_constant", "loss_spring_constant", "quasi_static_spring_constant")
-_MEASURED = ("frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
 _UNITS = {"temperature": "K", "diameter": "m"}
-# what one run and specimen gives, by name
-_Row = dict[str, Any]
+# notes of which the message tells the first: without that part there is little to read
+_MAIN_PART = ("refused: response surfaces", "refused: effects", "refused: surface of")
 
 
 @dataclass(frozen=True)
@@ -126,10 +122,12 @@ def _in_one_line(result: ExperimentResult) -> str:
 
 def _status(result: ExperimentResult) -> ExperimentStatus:
     """A design whose main part the runs do not carry has failed, as the error of it says."""
-    refused = [note for note in result.notes if note.startswith("refused: ")]
-    failed = result.surfaces is None and result.screening is None
-    first = (refused or list(result.notes))[:1]
-    message = f"{_in_one_line(result)}; {'; '.join(first)}" if first else _in_one_line(result)
+    failed = result.refusal_status != 0
+    main = [note for note in result.notes if note.startswith(_MAIN_PART)]
+    ranked = [text for _, text in by_severity(("experiment", note) for note in result.notes)]
+    # what is missing, and the worst of what else there is to know
+    said = [*main[:1], *[note for note in ranked if note not in main][:1]]
+    message = "; ".join([_in_one_line(result), *said])
     status = "failed" if failed else "fitted_with_notes" if result.notes else "fitted"
     return ExperimentStatus(result.name, status, result.refusal_status, message)
 
@@ -163,7 +161,7 @@ def fit_experiments(
         rows = [
             row
             for run, coded in plan.runs.items()
-            for row in _rows_of_run(campaign, plan, run, coded, archive_of(run))
+            for row in rows_of_run(campaign, plan, run, coded, archive_of(run))
         ]
         for run in plan.runs:
             path = archive_of(run)
@@ -176,66 +174,12 @@ def fit_experiments(
     return results, tuple(sources.values())
 
 
-def _rows_of_run(
-    campaign: Campaign, plan: ExperimentPlan, run: str, coded: tuple[float, ...], path: Path | None
-) -> list[_Row]:
-    """One row a specimen of a run; a run without an archive has one that says so."""
-    log = run.partition(".")[0]
-    specimens = campaign.tests[log].specimens
-    about = {"run": run, "coded": coded}
-    missing = {"remark": "its test failed" if path is None else "its test gave no product"}
-    try:
-        if path is None:
-            return [about | missing | {"specimen": name} for name in specimens]
-        with open_archive(path) as archive:
-            given = [str(name) for name in archive["specimen"].values]
-            return [about | _row(plan, archive, given.index(name), name) for name in specimens]
-    except ArchiveError:
-        return [about | missing | {"specimen": name} for name in specimens]
-
-
-def _row(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> _Row:
-    """What the archive of a run holds of one specimen."""
-
-    def of_test(name: str) -> float:
-        stated = archive.get(f"test_{name}")
-        return float("nan") if stated is None else float(stated.values[place])
-
-    row: _Row = {name: of_test(name) for name in (*_MEASURED, *_LINE, *plan.responses)}
-    for name in plan.responses:
-        row[f"u {name}"] = of_test(f"{name}_standard_uncertainty")
-    settings = json.loads(archive.attrs["settings"])
-    begin = int(settings["reduction"]["cycles"]["break_in_cycles"])
-    if "peak_tension" in archive:
-        row["peak"] = float(np.nanmax(archive["peak_tension"].values[place, begin:]))
-        row["least"] = float(np.nanmin(archive["valley_tension"].values[place, begin:]))
-    strength = archive.get("rated_break_strength")
-    row["strength"] = float("nan") if strength is None else float(strength.values[place])
-    needs_line = {"dissipation_spring_constant", "relaxation_time", "dashpot_coefficient"}
-    remark = ""
-    if needs_line & set(plan.responses):
-        remark = _refusal(archive, place)
-    return row | {"specimen": specimen, "remark": remark}
-
-
-def _refusal(archive: xr.Dataset, place: int) -> str:
-    """Why a run has no K_1 and tau; empty where it has."""
-    if "test_line_refusal" not in archive:
-        return "K_1 and tau refused: the quasi-static spring constant is not known"
-    flags = archive["test_line_refusal"]
-    code = int(flags.values[place])
-    meanings = dict(
-        zip(flags.attrs["flag_values"].tolist(), flags.attrs["flag_meanings"].split(), strict=True)
-    )
-    return "" if code == 0 else f"K_1 and tau refused: {meanings[code].replace('_', ' ')}"
-
-
-def _column(rows: list[_Row], name: str) -> Floats:
+def _column(rows: list[Row], name: str) -> Floats:
     return np.array([row.get(name, np.nan) for row in rows], dtype=np.float64)
 
 
 def _levels(
-    plan: ExperimentPlan, rows: list[_Row]
+    plan: ExperimentPlan, rows: list[Row]
 ) -> tuple[tuple[FactorLevels, ...], tuple[str, ...], Floats]:
     """Factors in one unit, their units, and the levels as reached, shape (n_runs, n_factors)."""
     strengths = _column(rows, "strength")
@@ -245,8 +189,8 @@ def _levels(
         name = factor.name
         coded = np.array([row["coded"][index] for row in rows])
         centre, half = (factor.low + factor.high) / 2, (factor.high - factor.low) / 2
-        unit = quantity(name).unit if name in _MEASURED else _UNITS.get(name, "1")
-        reached = _column(rows, name) if name in _MEASURED else centre + coded * half
+        unit = quantity(name).unit if name in MEASURED else _UNITS.get(name, "1")
+        reached = _column(rows, name) if name in MEASURED else centre + coded * half
         if factor.basis == "mean_tension":
             reached, unit = reached / _column(rows, "mean_tension"), "1"
         elif factor.basis == "rated_break_strength" and known.size == 1:
@@ -260,7 +204,7 @@ def _levels(
     return tuple(factors), tuple(units), np.stack(columns, axis=1)
 
 
-def _fit(plan: ExperimentPlan, rows: list[_Row]) -> ExperimentResult:
+def _fit(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
     factors, units, level = _levels(plan, rows)
     runs = RunTable(
         run=tuple(row["run"] for row in rows),
@@ -281,7 +225,7 @@ def _fit(plan: ExperimentPlan, rows: list[_Row]) -> ExperimentResult:
     )
     return fit_experiment(
         runs,
-        LineOfRuns(*(_column(rows, name) for name in _LINE)),
+        LineOfRuns(*(_column(rows, name) for name in LINE)),
         name=plan.name,
         kind=plan.kind,
         factors=factors,
@@ -290,4 +234,5 @@ def _fit(plan: ExperimentPlan, rows: list[_Row]) -> ExperimentResult:
         transform=plan.transform,
         specimens_as=plan.specimens_as,
         term_reduction=plan.term_reduction,
+        run_order=_column(rows, "order"),
     )

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.errors import FitError
 from reduction.experiment import ExperimentResult, RunTable
 from reduction.line.single import SingleTimeCheck
 from reduction.pipeline.runcheck import (
@@ -110,6 +111,8 @@ def fit_experiment(
         if kind == "plackett-burman":
             screening, remarks = _screening(runs, coded, names, response_names)
             notes += remarks
+            if not np.isfinite(screening.effect).any():
+                refusal_status = FitError.exit_status
         else:
             notes += surface_levels_off_plan(runs, coded, names)
             surfaces = _surfaces(runs, names, low, high, response_names, transform, specimens_as)

@@ -46,8 +46,8 @@ def remarks_of_runs(runs: RunTable) -> list[str]:
     """One note a remark, with the runs that have it."""
     of_remark: dict[str, list[str]] = {}
     for run, remark in zip(runs.names, runs.remark, strict=True):
-        if remark:
-            of_remark.setdefault(remark, []).append(run)
+        for part in remark.split("; ") if remark else ():
+            of_remark.setdefault(part, []).append(run)
     return [f"{listed(names)}: {remark}" for remark, names in of_remark.items()]
 
 
@@ -89,25 +89,29 @@ def require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str]
 def missing_surfaces(
     runs: RunTable, surfaces: ResponseSurfaces, response_names: Sequence[str]
 ) -> list[str]:
-    """One note a response that has no surface, with what the runs say of it."""
-    notes = []
-    for name, values, reason in zip(
-        response_names, runs.response, surfaces.reason.tolist(), strict=False
-    ):
+    """What has no surface, with what the runs say of it; one note where runs miss alike."""
+    alike: dict[tuple[int, bytes], list[int]] = {}
+    for row in range(len(response_names)):
+        reason = int(surfaces.reason[row])
         if reason in _NO_SURFACE:
-            has = np.isfinite(values)
-            notes.append(
-                f"refused: surface of {name}: {FIT_REASONS[reason]} ({int(has.sum())} runs of "
-                f"{has.size}, {len(surfaces.term_names)} terms){_causes(runs, ~has)}"
-            )
+            key = (reason, np.isfinite(runs.response[row]).tobytes())
+            alike.setdefault(key, []).append(row)
+    notes = []
+    for (reason, _), rows in alike.items():
+        has = np.isfinite(runs.response[rows[0]])
+        notes.append(
+            f"refused: surface of {', '.join(response_names[row] for row in rows)}: "
+            f"{FIT_REASONS[reason]} ({int(has.sum())} runs of {has.size}, "
+            f"{len(surfaces.term_names)} terms){_causes(runs, ~has)}"
+        )
     return notes
 
 
 def _causes(runs: RunTable, chosen: Bools) -> str:
-    """Remarks of the runs that are chosen, the most frequent first."""
-    remarks = [runs.remark[row] for row in np.flatnonzero(chosen) if runs.remark[row]]
-    often = sorted(set(remarks), key=lambda text: (-remarks.count(text), text))
-    said = [f"{text} ({remarks.count(text)} of them)" for text in often[:2]]
+    """Reasons of the runs that are chosen, which stand first in their remarks, by frequency."""
+    reasons = [runs.remark[row].split("; ")[0] for row in np.flatnonzero(chosen)]
+    often = sorted(set(filter(None, reasons)), key=lambda text: (-reasons.count(text), text))
+    said = [f"{text} ({reasons.count(text)} of them)" for text in often[:2]]
     return f": {'; '.join(said)}" if said else ""
 
 

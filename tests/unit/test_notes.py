@@ -23,6 +23,9 @@ SAID = ("specimen new", "the printed diameters contradict each other")
         ("test", "new: mean tension of the cycles is negative (-3 N); set sign = -1", "doubt"),
         ("stepwise", "1325: length 416.1 mm is 167 %; the row gives no modulus", "doubt"),
         ("test", "new: stress at 50 % not given: 1 samples within 10 % before it", "refusal"),
+        ("experiment", "R05: the line goes slack in every cycle", "doubt"),
+        ("experiment", "tau drifts over the order of the runs beyond its surface", "doubt"),
+        ("experiment", "refused: stiffness forms of mooring codes: no strength", "refusal"),
         ("cycles", "one cycle only: there is no scatter from cycle to cycle", "note"),
     ],
 )

@@ -282,7 +282,7 @@ def test_a_screening_that_misses_a_run_says_why_it_has_no_effects():
     design = plackett_burman(3)
     runs, line = made(np.hstack([design.coded, design.dummy]))
     result = fit(without(runs, 3), line, kind="plackett-burman")
-    assert np.isnan(result.screening.effect).all()
+    assert np.isnan(result.screening.effect).all() and result.refusal_status == 5
     (note,) = [note for note in result.notes if "refused: effects" in note]
     assert "a run is missing" in note and "no value of R4" in note
 
@@ -304,6 +304,18 @@ def test_a_response_that_no_run_gives_is_named_with_the_reason_of_the_runs():
     # and the runs themselves in one line
     (remark,) = [note for note in result.notes if note.endswith(f": {reason}")]
     assert remark == f"R1, R2, R3, R4, R5 and 10 more: {reason}"
+
+
+def test_a_remark_of_two_parts_is_two_notes_and_the_first_is_the_reason():
+    runs, line = made()
+    response = runs.response.copy()
+    response[2] = np.nan
+    remark = ["K_1 and tau refused: no pull"] * 15
+    remark[3] += "; the line goes slack in every cycle"
+    notes = fit(changed(runs, response=response, remark=tuple(remark)), line).notes
+    assert "R4: the line goes slack in every cycle" in notes
+    (refusal,) = [note for note in notes if note.startswith("refused: surface of")]
+    assert "slack" not in refusal and "(15 of them)" in refusal
 
 
 def test_the_error_of_the_slow_pull_is_said_to_be_outside_the_standard_errors():
