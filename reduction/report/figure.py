@@ -150,7 +150,7 @@ def axis(label: str, **more: Any) -> dict[str, Any]:
 
 
 def named_axis(label: str, names: Sequence[str]) -> dict[str, Any]:
-    """Return an axis of names, one at each whole number, its title clear of them; lines stay lines."""
+    """Return an axis of names, one at each whole number; a name may have several lines."""
     return {
         "title": {"text": label, "standoff": 12},
         "tickvals": list(range(len(names))),

@@ -79,7 +79,10 @@ def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
     )  # fmt: skip
     is_wide = bool(size[chosen].max() > _WIDE * critical.min())
     labels = [
-        f"{term_words(surfaces.exponents[k], view.factors)} {surfaces.labels[k]}" for k in chosen
+        f"{term_words(surfaces.exponents[k], view.factors)} {surfaces.labels[k]}".replace(
+            " by ", "\nby "
+        )
+        for k in chosen
     ]
     scale = {"type": "log"} if is_wide else {"rangemode": "tozero"}
     return [
@@ -134,7 +137,7 @@ def _predicted(
     )
     data = [line(ends, ends, name="equal", colour=_GREY, dash="dot", showlegend=False), points]
     return make_figure(
-        f"{view.key}-{name}-predicted", f"{in_words(name).capitalize()}: surface against measured",
+        f"{view.key}-{name}-predicted", f"{in_words(name).capitalize()}: against measured",
         "Value of the surface against the measured one, a point a run; dotted: equal. The pointer"
         " shows the residual.",
         data, synthetic=view.is_synthetic,
