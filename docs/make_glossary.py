@@ -49,8 +49,9 @@ _RESPONSES = f"""\
 In `surfaces.nc` a name is made of a response and what is said of it. `<response>` is one of
 {", ".join(f"`{name}`" for name in RESPONSES)},
 or one of them after `log_` (natural logarithm of the number in SI) or `box_cox_`; `<unit>` is its
-unit, 1 where it is transformed. In a table whose rows are of several responses the name begins
-with `response_`, and the column `unit` says what `[unit]` is."""
+unit, 1 where it is transformed; `<response unit>` is that of the response in both cases. In a
+table whose rows are of several responses the name begins with `response_`, and the columns `unit`
+and `response_unit` say what `[unit]` and `[response_unit]` are."""
 
 
 def _symbol(text: str) -> str:

@@ -583,7 +583,22 @@ _ROWS = (
     Quantity("effect_error_from", "", "what the error of the effects is from: dummy or lenth"),
     Quantity("effect_degrees_of_freedom", "1", "degrees of freedom of the error of the effects"),
     Quantity("effect_significance", "1", "level of the least significant effect, two-sided"),
+    Quantity("interaction", "1", "number of the two-factor interaction"),
+    Quantity("interaction_factor", "", "one factor of the interaction"),
+    Quantity("interaction_other_factor", "", "the other factor of the interaction"),
+    Quantity(
+        "effect_alias", "1", "share of the interaction that stands in the effect of the column"
+    ),
+    Quantity("point", "1", "number of the point: centre, points of the plan, corners"),
+    Quantity("point_name", "", "coded levels of the point"),
+    Quantity("point_kind", "", "where in the cube of the levels the point lies"),
+    Quantity("point_coded_level", "1", "coded level of the factor at the point"),
+    Quantity("point_level", "1", "level at the point, as a number of the unit of the factor"),
+    Quantity("ridge_direction", "", "the way up from the centre, or down"),
+    Quantity("ridge_radius", "1", "coded distance from the centre"),
+    Quantity("interval_confidence", "1", "confidence of the intervals at points and along ridges"),
     Quantity("response", "", "response, or its transform"),
+    Quantity("response_unit", "", "unit of the response itself, before any transform"),
     Quantity("coefficient_engineering_unit", "", "unit of the coefficient in engineering units"),
     # forms of mooring codes
     Quantity("stiffness_form", "", "form of dynamic stiffness"),
@@ -734,10 +749,79 @@ RESPONSE_PATTERNS = (
     Quantity("<response>_effect_p_value", "1", "probability of the effect if it were nil"),
     Quantity("<response>_effect_is_significant", "1", "whether the effect is above the minimum"),
     Quantity("<response>_effect_refusal", "", "why the response has no effects"),
+    Quantity("<response>_effect_size", "<unit>", "size of the effect, without its sign"),
+    Quantity(
+        "<response>_effect_half_normal_quantile",
+        "1",
+        "quantile of the size among all columns, were they noise alone",
+    ),
     Quantity("<response>_mean", "<unit>", "mean over the runs"),
     Quantity("<response>_minimum_significant_effect", "<unit>", "least significant effect"),
     Quantity(
         "<response>_simultaneous_minimum_effect", "<unit>", "least effect, all of them together"
+    ),
+    Quantity(
+        "<response>_point_value",
+        "<response unit>",
+        "value of the surface at the point; the median where it is transformed",
+    ),
+    Quantity("<response>_point_mean_value", "<response unit>", "mean response at the point"),
+    Quantity("<response>_point_variance_factor", "1", "variance of the surface over sigma**2"),
+    Quantity(
+        "<response>_point_is_above_leverage",
+        "1",
+        "whether the runs say less at the point than at the worst of them",
+    ),
+    Quantity(
+        "<response>_point_confidence_low",
+        "<response unit>",
+        "lower end of the interval of the surface at this point alone",
+    ),
+    Quantity(
+        "<response>_point_confidence_high",
+        "<response unit>",
+        "upper end of the interval of the surface at this point alone",
+    ),
+    Quantity(
+        "<response>_point_prediction_low",
+        "<response unit>",
+        "lower end of the interval of one more run there",
+    ),
+    Quantity(
+        "<response>_point_prediction_high",
+        "<response unit>",
+        "upper end of the interval of one more run there",
+    ),
+    Quantity(
+        "<response>_point_simultaneous_low",
+        "<response unit>",
+        "lower end of the interval of the surface, everywhere at once",
+    ),
+    Quantity(
+        "<response>_point_simultaneous_high",
+        "<response unit>",
+        "upper end of the interval of the surface, everywhere at once",
+    ),
+    Quantity(
+        "<response>_ridge_coded_level",
+        "1",
+        "coded level of the factor where the surface is highest, or lowest, at that distance",
+    ),
+    Quantity("<response>_ridge_level", "1", "that level as a number of the unit of the factor"),
+    Quantity(
+        "<response>_ridge_value",
+        "<response unit>",
+        "highest, or lowest, value of the surface at that distance",
+    ),
+    Quantity(
+        "<response>_ridge_simultaneous_low",
+        "<response unit>",
+        "lower end of the interval of the surface, everywhere at once",
+    ),
+    Quantity(
+        "<response>_ridge_simultaneous_high",
+        "<response unit>",
+        "upper end of the interval of the surface, everywhere at once",
     ),
 )
 """Names of what an experiment says of a response.
@@ -755,15 +839,20 @@ def _of_responses() -> Iterator[Quantity]:
     """Every pattern for every surface and for a column of several."""
     for name in (*SURFACE_NAMES, "response"):
         base = next((name.removeprefix(one) for one in _SCALES if name.startswith(one)), "")
-        unit = "1" if base else "unit" if name == "response" else SINGLE_QUANTITIES[name].unit
-        words = (base or name).replace("_", " ")
-        words = _SCALES[name.removesuffix(base)].format(words) if base else words
-        units = {"<unit>": unit, "<unit squared>": _squared(unit)}
+        # a surface of a transform is evaluated in the unit of the response itself
+        own = "response_unit" if name == "response" else SINGLE_QUANTITIES[base or name].unit
+        unit = "1" if base else "unit" if name == "response" else own
+        words = own_words = (base or name).replace("_", " ")
+        if base:
+            words = _SCALES[name.removesuffix(base)].format(own_words)
+            own_words = f"{own_words}, by the {words}"
+        units = {"<unit>": unit, "<unit squared>": _squared(unit), "<response unit>": own}
         for pattern in RESPONSE_PATTERNS:
+            of = own_words if pattern.unit == "<response unit>" else words
             yield Quantity(
                 pattern.name.replace("<response>", name),
                 units.get(pattern.unit, pattern.unit),
-                f"{words}: {pattern.long_name}",
+                f"{of}: {pattern.long_name}",
             )
 
 

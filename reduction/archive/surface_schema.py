@@ -12,6 +12,10 @@ dimension                          one entry for
 ``factor``                         each factor, from 1; ``factor_name``, ``factor_unit``
 ``run``                            each run and specimen, from 1; ``run_name``
 ``plan_column``                    each factor, then each dummy column of a screening
+``interaction``                    each two factors of a screening, from 1
+``point``                          centre, points of the plan, corners; ``point_name``
+``ridge_direction``                the way up and the way down; text coordinate
+``ridge_radius``                   each coded distance from the centre
 ``direction``                      each principal direction, curvature falling
 ``anova_row``                      each source of variation; ``anova_source``
 ``block``                          each block; ``block_name``
@@ -22,7 +26,8 @@ dimension                          one entry for
 
 Levels of factors stand as numbers beside ``factor_unit``.  The covariance of two coefficients
 is ``<response>_covariance_factor`` times the square of ``<response>_sigma``.  A surface is
-evaluated from the file by `reduction.archive.surface_read.surfaces_of`.
+evaluated from the file by `reduction.archive.surface_read.surfaces_of`.  At points and along
+ridges the numbers of a transformed response are brought back to its own unit.
 """
 
 from __future__ import annotations
@@ -47,10 +52,13 @@ _A = ("experiment", "anova_row")
 _P = ("experiment", "plan_column")
 _S = ("experiment", "stiffness_form")
 _C = ("experiment", "stiffness_form", "stiffness_term")
+_X = ("experiment", "point")
+_D = ("experiment", "ridge_direction", "ridge_radius")
 
 _TEST = "a statistic of a test"
 _COUNT = "count"
 _SETTING = "setting"
+_LEVELS = "a property of the levels"
 _PLAN = "as planned"
 _BOUND = "bound"
 _SPREAD = "is itself a measure of spread"
@@ -144,6 +152,23 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
         stated(f"{name}_block_effect", ("experiment", "block"), _NOT_EVALUATED),
         stated(f"{name}_block_standard_deviation", _E, _SPREAD),
         flag(f"{name}_block_at_boundary", _E, _NO_YES),
+        stated(f"{name}_point_value", _X, "see its intervals")
+        if is_transformed
+        else measured(f"{name}_point_value", _X),
+        *(
+            stated(f"{name}_point_{kind}_{end}", _X, _BOUND)
+            for kind in ("confidence", "prediction", "simultaneous")
+            for end in ("low", "high")
+        ),
+        stated(f"{name}_point_mean_value", _X, "see the intervals of the value"),
+        stated(f"{name}_point_variance_factor", _X, _LEVELS),
+        flag(f"{name}_point_is_above_leverage", _X, _NO_YES),
+        stated(f"{name}_ridge_coded_level", (*_D, "factor"), _NOT_EVALUATED),
+        stated(f"{name}_ridge_level", (*_D, "factor"), _NOT_EVALUATED),
+        # the runs chose the point, so that only what holds everywhere at once holds there
+        stated(f"{name}_ridge_value", _D, "see its simultaneous interval"),
+        stated(f"{name}_ridge_simultaneous_low", _D, _BOUND),
+        stated(f"{name}_ridge_simultaneous_high", _D, _BOUND),
     )
     if is_transformed:
         return
@@ -154,6 +179,8 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
         stated(f"{name}_effect_p_value", _P, _TEST),
         flag(f"{name}_effect_is_significant", _P, _NO_YES),
         label(f"{name}_effect_refusal", _E),
+        stated(f"{name}_effect_size", _P, "that of the effect"),
+        stated(f"{name}_effect_half_normal_quantile", _P, "a property of the order"),
         stated(f"{name}_mean", _E, _NOT_EVALUATED),
         stated(f"{name}_minimum_significant_effect", _E, _BOUND),
         stated(f"{name}_simultaneous_minimum_effect", _E, _BOUND),
@@ -181,12 +208,25 @@ _ROWS = chain(
     label("block_name", ("experiment", "block")),
     label("block_treatment", _E),
     stated("replicate_tolerance", _E, _SETTING),
-    stated("condition_number", _E, "a property of the levels"),
+    stated("condition_number", _E, _LEVELS),
     count("plan_column", ("plan_column",)),
     label("plan_column_name", _P),
     label("effect_error_from", _E),
     stated("effect_degrees_of_freedom", _E, _COUNT),
     stated("effect_significance", _E, _SETTING),
+    count("interaction", ("interaction",)),
+    label("interaction_factor", ("experiment", "interaction")),
+    label("interaction_other_factor", ("experiment", "interaction")),
+    stated("effect_alias", ("experiment", "interaction", "plan_column"), _LEVELS),
+    # where surfaces are evaluated
+    count("point", ("point",)),
+    label("point_name", _X),
+    label("point_kind", _X),
+    stated("point_coded_level", (*_X, "factor"), _PLAN),
+    stated("point_level", (*_X, "factor"), _PLAN),
+    label("ridge_direction", ("ridge_direction",)),
+    stated("ridge_radius", ("ridge_radius",), "exact"),
+    stated("interval_confidence", _E, _SETTING),
     # runs
     count("run", ("run",)),
     label("run_name", _R),

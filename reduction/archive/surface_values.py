@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from reduction.archive.effects import alias_values, effect_values
+from reduction.archive.surface_points import point_values, ridge_values
 from reduction.archive.values import Values, texts
 from reduction.errors import ArchiveError
 from reduction.experiment import ExperimentResult, RunTable
@@ -16,7 +18,6 @@ from reduction.surface.product import (
     STATIONARY_REASONS,
     ResponseSurfaces,
 )
-from reduction.surface.screening import ScreeningEffects
 from reduction.surface.select import ReducedSurfaces
 from reduction.units import combined_unit
 from reduction.vocabulary import SURFACE_NAMES
@@ -102,8 +103,11 @@ def experiment_values(result: ExperimentResult) -> Values:
             values |= _surface_values(result.surfaces, index, name)
             if result.reduced is not None:
                 values |= _reduced_values(result.reduced, index, name)
+        plan = result.runs.coded_plan[:, : len(result.factor_names)]
+        values |= point_values(result.surfaces, plan) | ridge_values(result.surfaces)
     if result.screening is not None:
-        values |= _effect_values(result.screening, result.response_names)
+        values |= effect_values(result.screening, result.response_names)
+        values |= alias_values(result.runs.coded_plan, result.factor_names)
     if result.single_time is not None:
         values |= _single_time_values(result.single_time)
     return values
@@ -247,31 +251,6 @@ def _reduced_values(reduced: ReducedSurfaces, index: int, name: str) -> Values:
         # infinite says that the runs are too few for the correction
         f"{name}_full_aicc": np.array(np.nan if infinite else reduced.full_criterion[index]),
     }
-
-
-def _effect_values(effects: ScreeningEffects, response_names: Sequence[str]) -> Values:
-    """Effects of the factors and then of the dummies, which are not tested."""
-    values: Values = {
-        "effect_error_from": np.array(effects.error_from),
-        "effect_degrees_of_freedom": np.array(effects.degrees_of_freedom),
-        "effect_significance": np.array(effects.significance),
-    }
-    untested = np.full(effects.dummy_effect.shape[-1], np.nan)
-    for index, name in enumerate(response_names):
-        values |= {
-            f"{name}_effect": np.append(effects.effect[index], effects.dummy_effect[index]),
-            f"{name}_effect_standard_uncertainty": effects.effect_standard_error[index],
-            f"{name}_effect_t": np.append(effects.t_value[index], untested),
-            f"{name}_effect_p_value": np.append(effects.p_value[index], untested),
-            f"{name}_effect_is_significant": np.append(
-                effects.is_significant[index], np.zeros(untested.size, dtype=bool)
-            ),
-            f"{name}_effect_refusal": np.array(str(effects.reason[index])),
-            f"{name}_mean": effects.mean[index],
-            f"{name}_minimum_significant_effect": effects.minimum_significant_effect[index],
-            f"{name}_simultaneous_minimum_effect": effects.simultaneous_minimum_effect[index],
-        }
-    return values
 
 
 def _single_time_values(check: SingleTimeCheck) -> Values:

@@ -166,6 +166,48 @@ EXPERIMENT_TABLES = (
         ("response_eigenvector",),
     ),
     _table(
+        "surface_points",
+        ("experiment", "response", "point"),
+        (
+            "point_name",
+            "point_kind",
+            "response_unit",
+            "response_point_value",
+            "response_point_mean_value",
+            *(
+                f"response_point_{kind}_{end}"
+                for kind in ("confidence", "prediction", "simultaneous")
+                for end in ("low", "high")
+            ),
+            "interval_confidence",
+            "response_point_variance_factor",
+            "response_point_is_above_leverage",
+        ),
+        ("response_point_value",),
+    ),
+    _table(
+        "point_levels",
+        ("experiment", "point", "factor"),
+        ("point_name", "factor_name", "point_coded_level", "point_level", "factor_unit"),
+        ("point_coded_level",),
+    ),
+    _table(
+        "ridge",
+        ("experiment", "response", "ridge_direction", "ridge_radius", "factor"),
+        (
+            "factor_name",
+            "response_ridge_coded_level",
+            "response_ridge_level",
+            "factor_unit",
+            "response_unit",
+            "response_ridge_value",
+            "response_ridge_simultaneous_low",
+            "response_ridge_simultaneous_high",
+            "interval_confidence",
+        ),
+        ("response_ridge_coded_level",),
+    ),
+    _table(
         "blocks",
         ("experiment", "response", "block"),
         ("block_name", "unit", "response_block_effect"),
@@ -185,8 +227,16 @@ EXPERIMENT_TABLES = (
             "response_simultaneous_minimum_effect",
             "response_mean",
             "response_effect_refusal",
+            "response_effect_size",
+            "response_effect_half_normal_quantile",
         ),
         ("effect_is_there",),
+    ),
+    _table(
+        "aliases",
+        ("experiment", "interaction", "plan_column"),
+        ("interaction_factor", "interaction_other_factor", "plan_column_name", "effect_alias"),
+        ("effect_alias",),
     ),
     _table(
         "stiffness_forms",

@@ -41,9 +41,11 @@ def by_response(archive: xr.Dataset) -> xr.Dataset:
         if f"{name}_measured" in archive or f"{name}_transform" in archive
     ]
     units = [QUANTITIES[f"{name}_sigma"].unit for name in names]
+    own_units = [QUANTITIES[f"{name}_point_value"].unit for name in names]
     stacked: dict[str, xr.Variable] = {
         "response": xr.Variable("response", np.array(names, dtype=np.str_)),
         "unit": xr.Variable("response", np.array(units, dtype=np.str_)),
+        "response_unit": xr.Variable("response", np.array(own_units, dtype=np.str_)),
     }
     for pattern in RESPONSE_PATTERNS:
         what = pattern.name.removeprefix("<response>")

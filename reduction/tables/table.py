@@ -34,6 +34,7 @@ _OF_RESPONSES = {
     for row in [
         *label("response"),
         *label("unit"),
+        *label("response_unit"),
         *label("coefficient_engineering_unit"),
         *rows_of_response("response", is_transformed=False),
     ]

@@ -6,6 +6,8 @@ from experiments import ABOUT, UNITS, screening_experiment, surface_experiment
 
 from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.surfaces import surfaces_to_dataset
+from reduction.surface.bands import evaluate_surfaces
+from reduction.surface.canonical import ridge_path
 from reduction.tables.experiments import EXPERIMENT_TABLES
 from reduction.tables.responses import by_response
 from reduction.tables.rows import table_rows
@@ -125,6 +127,62 @@ def test_an_eigenvector_has_a_row_a_factor(dataset):
     assert [row["response_eigenvalue"] for row in rows[::3]] == canonical.eigenvalue[0].tolist()
 
 
+def test_a_surface_has_a_row_a_point_with_three_intervals(dataset):
+    rows = [row for row in rows_of(dataset, "surface_points") if row["experiment"] == "half-inch"]
+    assert len(rows) == 21 * len(ONE.surfaces.response_names)
+    wanted = evaluate_surfaces(ONE.surfaces, np.zeros((1, 3)), units="coded")
+    for row in rows[::21]:
+        assert (row["point_name"], row["point_kind"]) == ("(0, 0, 0)", "centre")
+        place = ONE.surfaces.response_names.index(row["response"])
+        assert row["response_point_value"] == wanted.value[place, 0]
+        for kind in ("confidence", "prediction", "simultaneous"):
+            ends = [row[f"response_point_{kind}_{end}"] for end in ("low", "high")]
+            assert ends == getattr(wanted, f"{kind}_interval")[place, 0].tolist()
+        assert row["interval_confidence"] == 0.95
+        has_spread = row["response_point_value_standard_uncertainty"] is not None
+        assert has_spread == (ONE.surfaces.transform[place] == "none")
+    units = {row["response"]: row["response_unit"] for row in rows}
+    assert units["hysteresis_energy"] == units["log_hysteresis_energy"] == "J m-1"
+    assert {row["response_point_is_above_leverage"] for row in rows} == {"no", "yes"}
+    header = [column.header for column in BY_NAME["surface_points"].columns]
+    assert "response_point_value [response_unit]" in header
+
+
+def test_a_point_shows_its_levels(dataset):
+    rows = rows_of(dataset, "point_levels")
+    assert len(rows) == 2 * 21 * 3
+    assert [row["point_level"] for row in rows[:3]] == pytest.approx([0.3, 5950, 2125])
+    assert [row["point_coded_level"] for row in rows[60:63]] == [1, 1, 1]
+    assert [row["factor_unit"] for row in rows[:3]] == list(UNITS)
+
+
+def test_a_ridge_has_a_row_a_distance_and_factor(dataset):
+    rows = [row for row in rows_of(dataset, "ridge") if row["experiment"] == "half-inch"]
+    assert len(rows) == len(ONE.surfaces.response_names) * 2 * 11 * 3
+    path = ridge_path(
+        ONE.surfaces.coefficient, ONE.surfaces.exponents, radius=np.linspace(0, 1, 11),
+        low=ONE.low, high=ONE.high, direction="descent",
+    )  # fmt: skip
+    last = rows[63:66]
+    assert {(row["response"], row["ridge_direction"], row["ridge_radius"]) for row in last} == {
+        ("apparent_spring_constant", "descent", 1.0)
+    }
+    assert [row["response_ridge_level"] for row in last] == path.engineering[0, -1].tolist()
+    assert [row["response_ridge_coded_level"] for row in last] == path.coded[0, -1].tolist()
+    # evaluated again at the point, to the last digits
+    assert last[0]["response_ridge_value"] == pytest.approx(path.value[0, -1], rel=1e-12)
+
+
+def test_an_interaction_has_a_row_a_column(dataset):
+    rows = [row for row in rows_of(dataset, "aliases") if row["experiment"] == "screening"]
+    assert len(rows) == 10 * 11
+    assert [rows[2][name] for name in (
+        "interaction_factor", "interaction_other_factor", "plan_column_name",
+    )] == ["frequency", "mean_tension", "tension_amplitude"]  # fmt: skip
+    assert abs(rows[2]["effect_alias"]) == pytest.approx(1 / 3)
+    assert rows[0]["effect_alias"] == pytest.approx(0, abs=1e-12)
+
+
 def test_dummies_have_effects_and_no_test(dataset):
     rows = [row for row in rows_of(dataset, "screening") if row["experiment"] == "screening"][:11]
     assert [row["plan_column_name"] for row in rows][4:7] == ["duration", "dummy 1", "dummy 2"]
@@ -178,7 +236,7 @@ def test_an_archive_without_surfaces_fills_only_what_it_has():
     dataset = by_response(surfaces_to_dataset([SCREENING], **ABOUT))
     filled = {table.name for table in EXPERIMENT_TABLES if table_rows(dataset, table)}
     assert filled == {
-        "experiments", "factors", "runs", "run_levels", "run_responses", "screening",
+        "experiments", "factors", "runs", "run_levels", "run_responses", "screening", "aliases",
     }  # fmt: skip
 
 

@@ -1,0 +1,111 @@
+"""Surfaces at points that were chosen beforehand, and along the way up and down, by name."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reduction.archive.values import Values, texts
+from reduction.record import Floats
+from reduction.surface.bands import evaluate_surfaces
+from reduction.surface.canonical import ridge_path
+from reduction.surface.points import plan_points
+from reduction.surface.product import ResponseSurfaces
+
+__all__ = ["point_values", "ridge_values"]
+
+_CONFIDENCE = 0.95
+_RADIUS = np.linspace(0.0, 1.0, 11)
+
+
+def point_values(surfaces: ResponseSurfaces, plan: Floats) -> Values:
+    """Return every surface at the centre, at the points of the plan and at the corners.
+
+    Parameters
+    ----------
+    surfaces : ResponseSurfaces
+        As fitted.
+    plan : ndarray, shape (n_runs, n_factors)
+        Coded levels as planned.
+
+    Returns
+    -------
+    values : dict of str to ndarray
+        Names of `reduction.archive.surface_schema`.
+    """
+    points = plan_points(plan)
+    found = evaluate_surfaces(
+        surfaces, points.coded, units="coded", confidence=_CONFIDENCE, outside="flag"
+    )
+    values: Values = {
+        "interval_confidence": np.array(found.confidence),
+        "point": np.arange(1, len(points.name) + 1),
+        "point_name": texts(points.name),
+        "point_kind": texts(points.kind),
+        "point_coded_level": found.coded,
+        "point_level": found.engineering,
+    }
+    for index, name in enumerate(surfaces.response_names):
+        values |= {
+            f"{name}_point_value": found.value[index],
+            f"{name}_point_mean_value": found.mean_value[index],
+            f"{name}_point_variance_factor": found.variance_factor[index],
+            f"{name}_point_is_above_leverage": found.above_leverage[index],
+        }
+        if surfaces.transform[index] == "none":  # else it is on the scale of the fit
+            uncertainty = found.fitted_standard_uncertainty[index]
+            values[f"{name}_point_value_standard_uncertainty"] = uncertainty
+        for kind in ("confidence", "prediction", "simultaneous"):
+            ends = getattr(found, f"{kind}_interval")[index]
+            values[f"{name}_point_{kind}_low"] = ends[:, 0]
+            values[f"{name}_point_{kind}_high"] = ends[:, 1]
+    return values
+
+
+def ridge_values(surfaces: ResponseSurfaces) -> Values:
+    """Return the highest and the lowest points of every surface, by distance from the centre.
+
+    Parameters
+    ----------
+    surfaces : ResponseSurfaces
+        As fitted.
+
+    Returns
+    -------
+    values : dict of str to ndarray
+        Names of `reduction.archive.surface_schema`; NaN for a response without a surface.
+
+    Notes
+    -----
+    The points are found on the scale that a surface was fitted on, which rises with the response.
+    The same runs chose them: of the intervals only the simultaneous ones hold there.
+    """
+    limits = {"low": surfaces.low, "high": surfaces.high}
+    paths = [
+        ridge_path(
+            surfaces.coefficient, surfaces.exponents, radius=_RADIUS, direction=direction, **limits
+        )
+        for direction in ("ascent", "descent")
+    ]
+    coded = np.stack([path.coded for path in paths], axis=1)
+    engineering = np.stack([path.engineering for path in paths], axis=1)
+    n_responses, n_points = len(coded), 2 * _RADIUS.size
+    found = evaluate_surfaces(
+        surfaces,
+        np.nan_to_num(coded).reshape(n_responses * n_points, -1),
+        units="coded",
+        confidence=_CONFIDENCE,
+        outside="flag",
+    )
+    values: Values = {"ridge_direction": texts(("ascent", "descent")), "ridge_radius": _RADIUS}
+    for index, name in enumerate(surfaces.response_names):
+        # each surface at the points of its own ridge
+        own = (index, slice(index * n_points, (index + 1) * n_points))
+        ends = found.simultaneous_interval[own].reshape(2, _RADIUS.size, 2)
+        values |= {
+            f"{name}_ridge_coded_level": coded[index],
+            f"{name}_ridge_level": engineering[index],
+            f"{name}_ridge_value": found.value[own].reshape(2, _RADIUS.size),
+            f"{name}_ridge_simultaneous_low": ends[..., 0],
+            f"{name}_ridge_simultaneous_high": ends[..., 1],
+        }
+    return values
