@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.errors import FitError
+from reduction.errors import DataError
 from reduction.experiment import RunTable
 from reduction.record import Bools, Floats, Integers
 from reduction.surface.cautions import Caution, find_cautions
@@ -66,12 +66,12 @@ def surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str])
 
 
 def require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[str]:
-    """A note where runs of a screening strayed; `FitError` where they left their half."""
+    """A note where runs of a screening strayed; `DataError` where they left their half."""
     given = {"run_names": runs.names, "factor_names": names}
     plan = runs.coded_plan[:, : len(names)]
     wrong = levels_off_plan(coded, plan, beyond=_WRONG_HALF, **given)
     if wrong:
-        raise FitError(
+        raise DataError(
             "levels reached are not those of the plan, on which the effects rest",
             found=listed(wrong, between="; "),
             needed=f"levels within {_WRONG_HALF:g} coded of the plan",
