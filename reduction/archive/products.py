@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-__all__ = ["OF_CAMPAIGN", "test_archives"]
+__all__ = ["OF_CAMPAIGN", "archives_of_tests"]
 
 OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes")
 """Archives of a whole campaign, by their file names; no test may be called so."""
 
 
-def test_archives(folder: Path) -> list[Path]:
+def archives_of_tests(folder: Path) -> list[Path]:
     """Archives of reduced tests in a folder, by name."""
     return sorted(path for path in folder.glob("*.nc") if path.stem not in OF_CAMPAIGN)
-
-
-test_archives.__test__ = False  # type: ignore[attr-defined]  # of a tether, not of this software

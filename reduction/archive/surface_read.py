@@ -27,7 +27,7 @@ from reduction.surface.product import (
 )
 from reduction.vocabulary import RESPONSES, SURFACE_NAMES
 
-__all__ = ["surface_names", "surface_of", "surfaces_of"]
+__all__ = ["surface_names", "surfaces_of"]
 
 _LABEL_OF_DIM = {
     "factor": "factor_name",
@@ -65,11 +65,6 @@ def surface_names(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
         for name in SURFACE_NAMES
         if f"{name}_transform" in dataset and str(dataset[f"{name}_transform"].values[row])
     )
-
-
-def surface_of(dataset: xr.Dataset, experiment: str, response: str) -> ResponseSurfaces:
-    """Return one surface, as `surfaces_of`."""
-    return surfaces_of(dataset, experiment, (response,))
 
 
 def surfaces_of(

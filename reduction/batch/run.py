@@ -9,7 +9,7 @@ from pathlib import Path
 
 from reduction import __version__
 from reduction.archive.dataset import to_dataset
-from reduction.archive.products import test_archives
+from reduction.archive.products import archives_of_tests
 from reduction.archive.write import write_archive, write_whole
 from reduction.batch.basis import basis_of
 from reduction.batch.describe import describe
@@ -300,7 +300,7 @@ def run_campaign(
         if progress is not None:
             progress("report", campaign.id)
         report = write_report(folder, reports / campaign.id, units=units)
-    stray = sorted(path.name for path in test_archives(folder) if path not in ours)
+    stray = sorted(path.name for path in archives_of_tests(folder) if path not in ours)
     stray += [
         path.name
         for path, is_ours in (

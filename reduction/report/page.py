@@ -17,7 +17,7 @@ from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
 
 from reduction import __version__
 from reduction.archive.open import open_archive
-from reduction.archive.products import test_archives
+from reduction.archive.products import archives_of_tests
 from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
 from reduction.report.designtables import design_tables
@@ -79,7 +79,7 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     ArchiveError
         If the folder holds neither an archive nor a status.csv, or the disk refuses.
     """
-    paths = sorted(test_archives(processed), key=lambda path: natural_order(path.stem))
+    paths = sorted(archives_of_tests(processed), key=lambda path: natural_order(path.stem))
     statuses = _read_statuses(processed / "status.csv")
     of_outcomes, of_surfaces = processed / "outcomes.nc", processed / "surfaces.nc"
     if not (paths or statuses or of_outcomes.is_file() or of_surfaces.is_file()):

@@ -7,7 +7,7 @@ import pytest
 from experiments import ABOUT, FACTORS, HIGH, LOW, screening_experiment, surface_experiment
 
 from reduction.archive.open import open_archive
-from reduction.archive.surface_read import surface_names, surface_of, surfaces_of
+from reduction.archive.surface_read import surface_names, surfaces_of
 from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.archive.write import write_archive
 from reduction.errors import ArchiveError
@@ -88,7 +88,7 @@ def test_a_surface_is_evaluated_from_the_file_alone(archive, result):
     points = rng.uniform(LOW, HIGH, (20, 3))
     wanted = evaluate_surfaces(result.surfaces, points)
     for row, name in enumerate(result.surfaces.response_names):
-        found = evaluate_surfaces(surface_of(archive, result.name, name), points)
+        found = evaluate_surfaces(surfaces_of(archive, result.name, [name]), points)
         for field in (
             "value", "mean_value", "variance_factor", "confidence_interval",
             "prediction_interval", "simultaneous_interval", "above_leverage",
@@ -116,7 +116,7 @@ def test_a_screening_has_no_surface(archive):
 def test_a_surface_that_an_experiment_lacks_is_refused(archive):
     message = r"'short' has no such surface; found loss_factor; needed apparent_spring_constant"
     with pytest.raises(ArchiveError, match=message):
-        surface_of(archive, "short", "loss_factor")
+        surfaces_of(archive, "short", ["loss_factor"])
 
 
 def test_an_experiment_that_is_not_there_is_refused(archive, archives):
