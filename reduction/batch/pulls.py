@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from reduction.batch.survey import Survey, located_again
+from reduction.batch.survey import Survey, as_reduction_error, located_again
 from reduction.campaign.plan import Campaign
 from reduction.errors import ReductionError
 from reduction.line.product import SlowPull
@@ -50,7 +50,7 @@ def fit_pulls(
     campaign: Campaign,
     surveys: Sequence[Survey],
     models: Mapping[tuple[str, str], StrainModel],
-) -> dict[tuple[str, str], SlowPull]:
+) -> tuple[dict[tuple[str, str], SlowPull], dict[str, ReductionError]]:
     """Fit every slow pull that an experiment names.
 
     Parameters
@@ -66,9 +66,12 @@ def fit_pulls(
     -------
     pulls : dict of (test, specimen) to SlowPull
         A pull that could not be read or fitted is left out; its own test says why.
+    errors : dict of test to ReductionError
+        Pulls that could not be looked at.
     """
     named = {test for plan in campaign.experiments.values() for test in plan.quasi_static.values()}
     pulls: dict[tuple[str, str], SlowPull] = {}
+    errors: dict[str, ReductionError] = {}
     for survey in surveys:
         test = survey.plan.id
         of_test = [models.get((test, name)) for name in survey.plan.specimens]
@@ -80,13 +83,14 @@ def fit_pulls(
             position, tension = located.position, located.tension
             strain = strain_of_record(located.record, position, tension, known)
             found, _ = pull_specimens(located, strain, tension, pull_conditions(campaign, survey))
-        except Exception:
-            # even a defect here is the failure of that test alone, where it shows again
-            found = (None,) * len(of_test)
+        except Exception as error:
+            # one test's failure, even where it is a defect here
+            errors[test] = as_reduction_error(error)
+            continue
         for name, pull in zip(survey.plan.specimens, found, strict=True):
             if pull is not None:
                 pulls[test, name] = pull
-    return pulls
+    return pulls, errors
 
 
 def pull_tests(campaign: Campaign, run: str) -> dict[str, str]:

@@ -219,13 +219,15 @@ def run_campaign(
     surveys = survey_campaign(campaign, progress=progress)
     chosen = _selected(surveys, tests)
     models, errors = fit_strain_models(campaign, surveys)
+    pulls, errors_of_pulls = fit_pulls(campaign, surveys, models)
+    errors |= errors_of_pulls
     failed = [entry.plan.id for entry in surveys if entry.error or entry.plan.id in errors]
     basis = partial(
         basis_of,
         campaign,
         surveys=surveys,
         models=models,
-        pulls=fit_pulls(campaign, surveys, models),
+        pulls=pulls,
         failed=failed,
     )
     statuses: list[TestStatus] = []
