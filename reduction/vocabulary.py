@@ -150,6 +150,11 @@ _ROWS = (
     Quantity("test_storage_spring_constant", "N", "storage spring constant, mean over the test"),
     Quantity("test_loss_spring_constant", "N", "loss spring constant, mean over the test"),
     Quantity("test_loss_factor", "1", "loss factor, mean over the test"),
+    Quantity(
+        "test_slope_reading_spread",
+        "1",
+        "slope of the loop between tension extremes less that between strain extremes, over K_ap",
+    ),
     # the three-parameter line, of each cycle and from the means over the cycles of a test
     Quantity("dashpot_coefficient", "N s", "dashpot coefficient, K_1 times tau", "003 N"),
     Quantity("line_refusal", "1", "why a cycle has no K_1 and tau"),

@@ -267,6 +267,7 @@ _ROWS = chain(
             "test_storage_spring_constant",
             "test_loss_spring_constant",
             "test_loss_factor",
+            "test_slope_reading_spread",
             "peak_tension_per_decade",
             "dynamic_modulus_per_decade",
         )

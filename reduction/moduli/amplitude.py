@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_positive
 from reduction.cycles.product import Loops
+from reduction.cycles.slopes import slope_readings
 from reduction.errors import DataError
 from reduction.moduli.product import AmplitudeSummary
 from reduction.record import Floats
@@ -75,6 +76,9 @@ def summarise_amplitude(
     without its strain amplitude says little: T-1 and T-2, and T-3 and T-4, of [1]_ are
     pairs of one mean and two amplitudes.
 
+    ``slope_reading_spread`` is how far the other two readings of "slope of the loop" lie
+    apart, over K_ap (`reduction.cycles.slopes`).
+
     Uncertainty is type A: scatter over the cycles over the root of their number; of a
     single cycle, its own. Trend over the cycles is in the scatter. Cycles with NaN are
     left out.
@@ -117,6 +121,13 @@ def summarise_amplitude(
             getattr(loops, name)[:, break_in_cycles:],
             None if own is None else own[:, break_in_cycles:],
         )
+    # of a loss angle that noise turns negative there is no ellipse to read slopes from
+    tangent = np.where(means["loss_factor"] >= 0, means["loss_factor"], np.nan)
+    means["slope_reading_spread"] = slope_readings(
+        means["apparent_spring_constant"], tangent
+    ).relative_spread
+    per_tangent = tangent / np.sqrt(1 + tangent**2) * (1 + 1 / (1 + tangent**2))
+    uncertainty["slope_reading_spread"] = per_tangent * uncertainty["loss_factor"]
     means["dynamic_modulus"] = means["apparent_spring_constant"] / areas
     uncertainty["dynamic_modulus"] = uncertainty["apparent_spring_constant"] / areas
     return AmplitudeSummary(**means, uncertainty=uncertainty)

@@ -159,6 +159,7 @@ class AmplitudeSummary:
     storage_spring_constant: Floats
     loss_spring_constant: Floats
     loss_factor: Floats
+    slope_reading_spread: Floats
     uncertainty: dict[str, Floats]
 
     def __post_init__(self) -> None:

@@ -143,8 +143,9 @@ def make_curves(rng, n_specimens):
     )
 
 
-def make_hold(rng, specimen, kind="relaxation", n_terms=2):
+def make_hold(rng, specimen, start_time, kind="relaxation", n_terms=2):
     numbers = {item.name: float(array(rng)) for item in fields(HoldResult) if item.type == "float"}
+    numbers["hold_start_time"] = start_time
     return HoldResult(
         specimen=specimen,
         kind=kind,
@@ -361,9 +362,9 @@ def rich_test():
         ratios=(make_ratio(rng), make_ratio(rng)),
         elastomers=make_elastomers("new"),
         holds=(
-            make_hold(rng, "new"),
-            make_hold(rng, "used", n_terms=0),
-            make_hold(rng, "new", "creep"),
+            make_hold(rng, "new", 10.0),
+            make_hold(rng, "used", 30.0, n_terms=0),
+            make_hold(rng, "new", 20.0, "creep"),
         ),
         stress_at_strain=array(rng, 2, 2),
         stress_at_strain_standard_uncertainty=array(rng, 2, 2),
@@ -419,7 +420,7 @@ def holds_only_test():
         stage_lines=STAGE_LINES,
         settings_json="{}",
         notes=(),
-        holds=(make_hold(rng, "new", n_terms=0),),
+        holds=(make_hold(rng, "new", 10.0, n_terms=0),),
     )
 
 

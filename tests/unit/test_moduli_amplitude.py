@@ -54,3 +54,22 @@ def test_areas_that_do_not_pair_up_are_refused():
 def test_break_in_of_every_cycle_is_refused():
     with pytest.raises(DataError, match="no cycle is left after break-in; found 3 cycles"):
         summarise_amplitude(loops_of(np.ones((2, 3))), area=AREA, break_in_cycles=3)
+
+
+def test_readings_of_the_slope_of_the_loop_spread_with_the_loss_angle():
+    # at 13 degrees 1/cos - cos = 0.0519; its slope on tan by a difference
+    tangent = np.tan(np.radians(13.0))
+    fields = {name: np.full((2, 3), 50.0) for name in Loops.__dataclass_fields__}
+    fields["loss_factor"] = np.array([[tangent - 1e-3, tangent, tangent + 1e-3], [-0.1] * 3])
+    summary = summarise_amplitude(Loops(**{**fields, "uncertainty": {}}), area=AREA)
+    assert summary.slope_reading_spread[0] == pytest.approx(0.0519, abs=5e-5)
+
+    def spread(angle):
+        return 1 / np.cos(angle) - np.cos(angle)
+
+    step = 1e-6
+    slope = (spread(np.arctan(tangent + step)) - spread(np.arctan(tangent - step))) / (2 * step)
+    expected = slope * summary.uncertainty["loss_factor"][0]
+    assert summary.uncertainty["slope_reading_spread"][0] == pytest.approx(expected, rel=1e-4)
+    # tension behind strain: no ellipse to read slopes from
+    assert np.isnan(summary.slope_reading_spread[1])
