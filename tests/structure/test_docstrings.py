@@ -10,7 +10,9 @@ from numpydoc.docscrape import FunctionDoc
 
 import reduction
 
-PHYSICS = {"phases", "strain", "cycles", "moduli", "holds", "line", "surface", "outcomes"}
+PHYSICS = {
+    "phases", "strain", "cycles", "moduli", "holds", "line", "surface", "outcomes", "predict", "compare",
+}  # fmt: skip
 UNIT = re.compile(r"\[[^\]]+\]\.?$")
 
 
@@ -30,7 +32,9 @@ def test_docstring_is_complete(module, function):
     doc = FunctionDoc(function)
     named = [name for entry in doc["Parameters"] for name in entry.name.split(", ")]
     assert named == list(inspect.signature(function).parameters)
-    products = re.compile(r"Standstills|StrainModel|Cycles|Loops|Curves|Settings|Specimen|Marks")
+    products = re.compile(
+        r"Standstills|StrainModel|Cycles|Loops|Curves|Settings|Specimen|Marks|Design|Harmonics"
+    )
     for entry in [*doc["Parameters"], *doc["Returns"]]:
         text = " ".join(entry.desc)
         if "array" in entry.type or "float" in entry.type:

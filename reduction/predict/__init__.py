@@ -1,0 +1,1 @@
+"""Predictions from construction alone: stretch hose, helical armour, wave load."""
