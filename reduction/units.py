@@ -30,7 +30,7 @@ __all__ = [
 
 Dimension = Literal[
     "time", "length", "force", "strain", "stress", "area", "frequency", "temperature", "angle",
-    "mass", "velocity", "number", "force_rate",
+    "mass", "velocity", "number", "force_rate", "density", "per_length",
 ]  # fmt: skip
 UnitSystem = Literal["si", "us"]
 
@@ -48,8 +48,17 @@ DIMENSIONS: dict[Dimension, str] = {
     "velocity": "m s-1",
     "number": "1",
     "force_rate": "N s-1",
+    "density": "kg m-3",
+    "per_length": "m-1",
 }
-_PINT_SI = {"m2": "m**2", "m s-1": "m/s", "N s-1": "N/s", "1": "dimensionless"}
+_PINT_SI = {
+    "m2": "m**2",
+    "m s-1": "m/s",
+    "N s-1": "N/s",
+    "1": "dimensionless",
+    "kg m-3": "kg/m**3",
+    "m-1": "1/m",
+}
 _US = {"m": "ft", "N": "lbf", "Pa": "psi", "m2": "in2", "J m-1": "ft lbf / ft", "m s-1": "ft s-1"}
 _US_PINT = {"in2": "in**2", "ft s-1": "ft/s", "ft lbf / ft": "lbf"}
 # as test machines write them, where pint has no such name

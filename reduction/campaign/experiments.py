@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from reduction.campaign.model import ExperimentSection
-from reduction.campaign.plan import ExperimentPlan, TestPlan
+from reduction.campaign.plan import ExperimentPlan, TestPlan, product_of
 from reduction.errors import SettingsError
 from reduction.record import Specimen
 from reduction.surface.levels import FactorLevels, LevelBasis
@@ -127,7 +127,7 @@ def plan_experiment(
     _check_responses(section, refuse)
     runs: dict[str, tuple[float, ...]] = {}
     for run, coded in section.runs.items():
-        product, kind = _resolve(run, tests) or refuse(
+        product, kind = product_of(run, tests) or refuse(
             "a run is no test of the campaign", found=run,
             needed="a test, or test/step: " + ", ".join(tests),
         )  # fmt: skip
@@ -150,7 +150,7 @@ def plan_experiment(
         refuse("the runs differ in the number of coded levels")
     pulls: dict[str, str] = {}
     for specimen, pull in section.quasi_static.items():
-        product, kind = _resolve(pull, tests) or refuse(
+        product, kind = product_of(pull, tests) or refuse(
             f"the slow pull of '{specimen}' is no test of the campaign", found=pull,
             needed="a test, or test/step: " + ", ".join(tests),
         )  # fmt: skip
@@ -230,17 +230,3 @@ def agree_on_pulls(
                         found=f"{before or 'none'} in '{other}', {pull or 'none'} in '{name}'",
                         needed="the same quasi_static in both: a run has one K_0",
                     )
-
-
-def _resolve(run: str, tests: Mapping[str, TestPlan]) -> tuple[str, str] | None:
-    """Id of the product and kind of a test or test/step; None where there is none."""
-    test, _, step = run.partition("/")
-    plan = tests.get(test)
-    if plan is None:
-        return None
-    if not step:
-        return None if plan.steps else (plan.id, plan.kind)
-    for known in plan.steps:
-        if known.name == step:
-            return known.product(plan.id), known.kind
-    return None

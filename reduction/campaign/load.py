@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 
 from reduction.archive.products import OF_CAMPAIGN
+from reduction.campaign.comparisons import plan_comparison
 from reduction.campaign.experiments import agree_on_pulls, plan_experiment
 from reduction.campaign.faults import in_toml, quantity_of
+from reduction.campaign.hoses import hose_of
 from reduction.campaign.marks import read_marks
 from reduction.campaign.model import (
     CampaignFile,
@@ -243,10 +245,11 @@ def load_campaign(path: Path) -> Campaign:
         tests |= read_test_table(path.parent / _inside(path, table))
     if not isinstance(file.tests, str):
         tests = merge_tests(path, table, tests, file.tests)
-    if not tests and not (file.results or file.campaign.results):
+    if not (tests or file.results or file.campaign.results or file.hoses):
         raise in_toml(
-            path, "the campaign has no tests", needed="at least one [tests.NAME], or results"
-        )
+            path, "the campaign has no tests",
+            needed="at least one [tests.NAME], or results, or [hoses.NAME]",
+        )  # fmt: skip
     plans = {name: _plan(path, name, test, file.defaults, file) for name, test in tests.items()}
     taken = sorted(set(plans) & set(OF_CAMPAIGN))
     if taken:
@@ -285,6 +288,14 @@ def load_campaign(path: Path) -> Campaign:
         for name, section in file.experiments.items()
     }
     agree_on_pulls(path, experiments, plans)
+    hoses = {
+        name: hose_of(path, name, f"hoses.{name}", section, section.cord)
+        for name, section in file.hoses.items()
+    }
+    comparisons = {
+        name: plan_comparison(path, name, section, tests=plans, hoses=hoses)
+        for name, section in file.comparisons.items()
+    }
     return Campaign(
         path=path,
         id=file.campaign.id,
@@ -296,4 +307,6 @@ def load_campaign(path: Path) -> Campaign:
         experiments=experiments,
         results=results,
         outcomes=outcomes,
+        hoses=hoses,
+        comparisons=comparisons,
     )

@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, field_validator
 
+from reduction.campaign.hosemodel import ComparisonSection, HoseSection
 from reduction.errors import SettingsError
 from reduction.ingest.layout import Layout
 from reduction.settings import StrainMethod
@@ -225,3 +226,5 @@ class CampaignFile(_Section):
     defaults: Defaults = Defaults()
     tests: dict[Identifier, TestSection] | Text = Field(default_factory=dict)
     experiments: dict[Identifier, ExperimentSection] = Field(default_factory=dict)
+    hoses: dict[Identifier, HoseSection] = Field(default_factory=dict)
+    comparisons: dict[Identifier, ComparisonSection] = Field(default_factory=dict)

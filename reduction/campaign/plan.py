@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
 from reduction.ingest.layout import Layout
 from reduction.outcomes.product import Outcome
+from reduction.prediction import HosePlan
 from reduction.provenance import Source
 from reduction.record import Specimen, SpliceMarks
 from reduction.settings import ReductionSettings
 from reduction.surface.levels import FactorLevels
 
-__all__ = ["Campaign", "ExperimentPlan", "StepPlan", "TestPlan"]
+__all__ = [
+    "Campaign",
+    "ComparisonPlan",
+    "ExperimentPlan",
+    "StepPlan",
+    "TestPlan",
+    "product_of",
+]
 
 
 @dataclass(frozen=True)
@@ -84,6 +93,21 @@ class ExperimentPlan:
 
 
 @dataclass(frozen=True)
+class ComparisonPlan:
+    """A measured curve and the prediction that it is held against.
+
+    ``measured`` is the id of the test or step, ``specimen`` one of its specimens,
+    ``predicted`` one of the hoses, ``calibrate`` the numbers of the hose to be fitted.
+    """
+
+    name: str
+    measured: str
+    specimen: str
+    predicted: str
+    calibrate: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Campaign:
     """One campaign.toml with everything that it names, resolved.
 
@@ -101,6 +125,8 @@ class Campaign:
     experiments: dict[str, ExperimentPlan] = field(default_factory=dict)
     results: Source | None = None
     outcomes: tuple[Outcome, ...] = ()
+    hoses: dict[str, HosePlan] = field(default_factory=dict)
+    comparisons: dict[str, ComparisonPlan] = field(default_factory=dict)
 
     @property
     def folder(self) -> Path:
@@ -110,3 +136,30 @@ class Campaign:
     def file(self, name: str) -> Path:
         """Path of a campaign file."""
         return self.folder / name
+
+
+def product_of(name: str, tests: Mapping[str, TestPlan]) -> tuple[str, str] | None:
+    """Id of the product and kind of a test or test/step.
+
+    Parameters
+    ----------
+    name : str
+        As written in campaign.toml.
+    tests : mapping of str to TestPlan
+        Of the campaign.
+
+    Returns
+    -------
+    product, kind : str
+        None where there is no such test or step, or the test has steps of which none is named.
+    """
+    test, _, step = name.partition("/")
+    plan = tests.get(test)
+    if plan is None:
+        return None
+    if not step:
+        return None if plan.steps else (plan.id, plan.kind)
+    for known in plan.steps:
+        if known.name == step:
+            return known.product(plan.id), known.kind
+    return None

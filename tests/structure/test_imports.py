@@ -31,6 +31,7 @@ LAYER = {
     "product": 3,
     "experiment": 3,
     "compare": 3,
+    "prediction": 3,
     "pipeline": 4,
     "ingest": 4,
     "archive": 4,

@@ -1,0 +1,245 @@
+"""A hose as written, to a `HosePlan` in SI."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from reduction.campaign.faults import in_toml
+from reduction.campaign.hosemodel import CordSection, HoseKeys, HoseSpecFile, Number
+from reduction.campaign.toml import read_toml
+from reduction.errors import SettingsError
+from reduction.predict.cordcurve import CordCurve
+from reduction.predict.product import HoseDesign
+from reduction.prediction import HelicalLayer, HosePlan
+from reduction.units import Dimension, parse_quantity
+
+__all__ = ["hose_of", "load_hose"]
+
+_DIMENSIONS: dict[str, Dimension] = {
+    "wrap_angle": "angle",
+    "wrap_diameter": "length",
+    "layer_diameters": "length",
+    "inner_diameter": "length",
+    "outer_diameter": "length",
+    "cords_per_length": "per_length",
+    "rubber_modulus": "stress",
+    "cord_load_scale": "number",
+    "cord_strain_scale": "number",
+    "dead_length": "length",
+}
+"""Keys that may have a standard uncertainty."""
+_PARAMETERS = {
+    "wrap_diameter": "layer_diameter",
+    "layer_diameters": "layer_diameter",
+    "dead_length": "dead_length_share",
+}
+
+
+class _Reader:
+    """Values of one table; an error names the file and the key."""
+
+    def __init__(self, path: Path, place: str) -> None:
+        self.path, self.place = path, place
+
+    def value(self, key: str, text: Number, dimension: Dimension) -> float:
+        try:
+            return parse_quantity(text, dimension)
+        except SettingsError as error:
+            raise self.fault(key, error) from error
+
+    def fault(self, key: str, error: SettingsError) -> SettingsError:
+        return in_toml(
+            self.path, f"{self.place}.{key}: {error.problem}", found=error.found,
+            needed=error.needed, hint=error.hint,
+        )  # fmt: skip
+
+
+def hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection) -> HosePlan:
+    """A hose in SI.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file, for the messages.
+    name : str
+        Of the hose.
+    place : str
+        Of the table in the file: ``hose`` or ``hoses.NAME``.
+    keys : HoseKeys
+        The hose as written.
+    cord : CordSection
+        The cord as written.
+
+    Returns
+    -------
+    plan : HosePlan
+        In SI.
+
+    Raises
+    ------
+    SettingsError
+        If a unit is missing or wrong, a number is no hose, or two keys contradict each other.
+
+    Notes
+    -----
+    A curve that measured points at a few strains give is drawn through them: it needs the
+    points at which the load bends.
+    """
+    read = _Reader(path, place)
+    given = keys.layer_diameters if keys.wrap_diameter is None else (keys.wrap_diameter,) * 2
+    if given is None or None not in (keys.wrap_diameter, keys.layer_diameters):
+        raise in_toml(
+            path, f"{place} does not say once where its cords lie",
+            found="wrap_diameter and layer_diameters" if given else "neither",
+            needed="wrap_diameter, the mean of the two layers, or layer_diameters, one of each",
+        )  # fmt: skip
+    key = "wrap_diameter" if keys.wrap_diameter is not None else "layer_diameters"
+    inner, outer = (read.value(key, text, "length") for text in given)
+    numbers = {
+        name: read.value(name, getattr(keys, name), _DIMENSIONS[name])
+        for name in (
+            "wrap_angle", "inner_diameter", "outer_diameter", "cords_per_length",
+            "rubber_modulus", "cord_load_scale", "cord_strain_scale",
+        )
+    }  # fmt: skip
+    bore = keys.minimum_inner_diameter
+    share, length = _dead_length(read, keys)
+    try:
+        design = HoseDesign(
+            **numbers,
+            layer_diameter=(inner, outer),
+            cord_diameter=read.value("cord_diameter", keys.cord_diameter, "length"),
+            cord=_cord(read, place, cord),
+            rubber_law=keys.rubber_law,
+            working_share=read.value("working_share", keys.working_share, "number"),
+            dead_length_share=share,
+            minimum_inner_diameter=0.0
+            if bore is None
+            else read.value("minimum_inner_diameter", bore, "length"),
+        )
+    except SettingsError as error:
+        if error.problem.startswith(str(path)):
+            raise
+        raise in_toml(
+            path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        ) from error  # fmt: skip
+    step = read.value("strain_step", keys.strain_step, "strain")
+    if not 0 < step < 1:
+        raise in_toml(
+            path, f"{place}.strain_step is no step", found=f"{step:g}",
+            needed='above 0 and below 1, such as "1 %"',
+        )  # fmt: skip
+    greatest = keys.greatest_strain
+    last = np.nan if greatest is None else read.value("greatest_strain", greatest, "strain")
+    if last <= 0:
+        raise in_toml(
+            path, f"{place}.greatest_strain is not positive", found=f"{last:g}", needed="above 0"
+        )
+    return HosePlan(
+        name=name,
+        design=design,
+        standard_uncertainty=_uncertainties(read, keys, design, length),
+        strain_step=step,
+        greatest_strain=last,
+        layers=tuple(
+            HelicalLayer(
+                layer.name,
+                read.value(f"layers.{layer.name}", layer.wrap_angle, "angle"),
+                np.nan
+                if layer.strain_limit is None
+                else read.value(f"layers.{layer.name}", layer.strain_limit, "strain"),
+            )
+            for layer in keys.layers
+        ),
+    )
+
+
+def _cord(read: _Reader, place: str, cord: CordSection) -> CordCurve:
+    at = _Reader(read.path, "cord" if place == "hose" else f"{place}.cord")
+    strain = [at.value("strain", text, "strain") for text in cord.strain]
+    load = [at.value("load", text, "force") for text in cord.load]
+    return CordCurve(np.array(strain), np.array(load))
+
+
+def _dead_length(read: _Reader, keys: HoseKeys) -> tuple[float, float]:
+    """Share of the length that does not stretch, and the length, NaN where not stated."""
+    length = np.nan if keys.length is None else read.value("length", keys.length, "length")
+    if length <= 0:
+        raise in_toml(
+            read.path, f"{read.place}.length is not positive", found=keys.length, needed="above 0"
+        )
+    if keys.dead_length is None:
+        return 0.0, length
+    if keys.length is None:
+        raise in_toml(
+            read.path, f"{read.place}.dead_length stands without length",
+            needed='length = "2.4 m", relaxed, stretch-limited ends included',
+        )  # fmt: skip
+    return read.value("dead_length", keys.dead_length, "length") / length, length
+
+
+def _uncertainties(
+    read: _Reader, keys: HoseKeys, design: HoseDesign, length: float
+) -> dict[str, float]:
+    """Standard uncertainties in SI, by parameter; % is of the value itself."""
+    found: dict[str, float] = {}
+    for key, text in keys.standard_uncertainty.items():
+        place = f"standard_uncertainty.{key}"
+        if key not in _DIMENSIONS:
+            raise in_toml(
+                read.path, f"{read.place}.{place} is no number of a hose that may be uncertain",
+                needed="one of " + ", ".join(_DIMENSIONS),
+            )  # fmt: skip
+        if key in ("wrap_diameter", "layer_diameters") and getattr(keys, key) is None:
+            raise in_toml(
+                read.path, f"{read.place}.{place} stands without {key}",
+                needed="the key that the hose has",
+            )  # fmt: skip
+        name = _PARAMETERS.get(key, key)
+        value = design.wrap_diameter if name == "layer_diameter" else getattr(design, name)
+        if isinstance(text, str) and text.strip().endswith("%"):
+            number = read.value(place, text, "strain") * float(np.mean(value))
+        else:
+            number = read.value(place, text, _DIMENSIONS[key])
+            if key == "dead_length":
+                number = number / length
+        if not (np.isfinite(number) and number >= 0):
+            raise in_toml(
+                read.path, f"{read.place}.{place} is no standard uncertainty", found=str(text),
+                needed="zero or more; a dead_length needs the length",
+            )  # fmt: skip
+        found[name] = number
+    return found
+
+
+def load_hose(path: Path) -> tuple[HosePlan, HoseSpecFile]:
+    """Read SPEC.toml of a hose.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+
+    Returns
+    -------
+    plan : HosePlan
+        In SI, named as the file is.
+    file : HoseSpecFile
+        As written, for what stands beside the hose.
+
+    Raises
+    ------
+    SettingsError
+        If a value is still ``?``, or a key, a value or a unit cannot be used.
+    """
+    file = read_toml(
+        path,
+        HoseSpecFile,
+        what="the hose",
+        needed="a SPEC.toml with [hose] and [cord]",
+        keys="docs/predictions.md lists every key",
+    )
+    return hose_of(path, path.stem, "hose", file.hose, file.cord), file
