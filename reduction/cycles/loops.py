@@ -8,12 +8,10 @@ References
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 
-from reduction.cycles.drift import mean_drift, part_means
-from reduction.cycles.energy import loop_energy, sums_over_cycles, without_drift
+from reduction.cycles.drift import part_means
+from reduction.cycles.energy import loop_energy
 from reduction.cycles.harmonic import (
     CycleBasis,
     cycle_basis,
@@ -22,86 +20,23 @@ from reduction.cycles.harmonic import (
     phase_turns,
 )
 from reduction.cycles.product import Cycles, Loops
-from reduction.record import Bools, Floats, Integers
+from reduction.cycles.quantities import MEASURED, Waveform, quantities_of_cycles
+from reduction.cycles.readings import bridge_gaps, reading_noise
+from reduction.record import Floats, Integers
 from reduction.workers import run_blocks
 
-__all__ = ["close_loops", "reading_noise"]
+__all__ = ["close_loops"]
 
-Waveform = Literal["triangular", "sinusoidal", "other"]
-
-# a cycle that lacks a larger share of its readings gives no numbers
-_MISSING_SHARE = 0.1
-_NOISE_SAMPLES = 65_536
 # samples reduced at a time: near the cache, yet long enough for threads to pay
 _BLOCK = 1 << 17
 # samples beside a block that its differences of strain reach
 _REACH = 4
-_MEASURED = (
-    "peak", "valley", "high", "low", "energy", "strain_step_norm", "force_cosine", "force_sine",
-    "force_mean", "strain_cosine", "strain_sine", "strain_mean", "force_end", "strain_end",
-    "force_rise", "force_turn", "force_fall", "strain_rise", "strain_turn", "strain_fall",
-)  # fmt: skip
 _FIELDS = (
     "frequency", "cycle_start_time", "mean_tension", "tension_amplitude", "mean_strain",
     "strain_amplitude", "peak_tension", "valley_tension", "apparent_spring_constant",
     "hysteresis_energy", "storage_spring_constant", "loss_spring_constant", "loss_factor",
     "fundamental_energy_share",
 )  # fmt: skip
-
-
-def reading_noise(values: Floats) -> float:
-    r"""Standard deviation of one reading, from third differences.
-
-    .. math:: \sigma = 1.4826 \, \mathrm{median} |\Delta^3 y| / \sqrt{20}
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        A series that is smooth but for noise; at most its first 65,536 samples
-        are used, so that reading in pieces changes nothing. [any]
-
-    Returns
-    -------
-    noise : float
-        In the unit of the series; 0 where fewer than four readings are finite. [any]
-
-    Raises
-    ------
-    TypeError
-        If the series is not numeric.
-
-    Notes
-    -----
-    A third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance.  The
-    median makes the turns of a triangular test count for nothing.
-
-    Examples
-    --------
-    >>> noise = np.random.default_rng(1).normal(0, 0.25, 10_000)
-    >>> print(round(reading_noise(noise + np.arange(10_000) ** 2), 2))
-    0.25
-    """
-    third = np.diff(values[:_NOISE_SAMPLES], n=3)
-    third = third[np.isfinite(third)]
-    if third.size == 0:
-        return 0.0
-    return float(1.4826 * np.median(np.abs(third)) / np.sqrt(20))
-
-
-def _filled(values: Floats, first: Integers, last: Integers) -> tuple[Floats, Bools]:
-    """Series with missing readings bridged, and the cycles that lack too many of them."""
-    missing = np.isnan(values)
-    if not missing.any():
-        return values, np.zeros(first.size, dtype=bool)
-    present = np.flatnonzero(~missing)
-    lost = sums_over_cycles(missing.astype(np.float64), first, last)
-    too_many = lost > _MISSING_SHARE * (last - first)
-    if present.size == 0:
-        return np.zeros_like(values), np.ones(first.size, dtype=bool)
-    bridged = values.copy()
-    gaps = np.flatnonzero(missing)
-    bridged[gaps] = np.interp(gaps, present, values[present])
-    return bridged, too_many
 
 
 def _extremes(values: Floats, first: Integers, last: Integers) -> tuple[Floats, Floats]:
@@ -115,10 +50,10 @@ def _extremes(values: Floats, first: Integers, last: Integers) -> tuple[Floats, 
 def _measure(
     tension: Floats, strain: Floats, basis: CycleBasis, middles: Integers, waveform: Waveform
 ) -> Floats:
-    """What only the samples tell, one row a quantity of `_MEASURED`, one column a cycle."""
+    """What only the samples tell, one row a quantity of `MEASURED`, one column a cycle."""
     first, last = basis.first, basis.last
-    force, lost_force = _filled(tension, first, last)
-    stretch, lost_stretch = _filled(strain, first, last)
+    force, lost_force = bridge_gaps(tension, first, last)
+    stretch, lost_stretch = bridge_gaps(strain, first, last)
     measured = np.array(
         [
             *_extremes(force, first, last),
@@ -134,109 +69,6 @@ def _measure(
     )
     measured[:, lost_force | lost_stretch] = np.nan
     return measured
-
-
-def _derive(
-    measured: Floats,
-    cycles: Cycles,
-    ends: Floats,
-    *,
-    waveform: Waveform,
-    noise: float,
-    strain_noise: float,
-) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Quantities of each cycle of one specimen, and their standard uncertainties."""
-    row = dict(zip(_MEASURED, measured, strict=True))
-    n_samples = (cycles.last - cycles.first).astype(np.float64)
-    peak, valley = row["peak"], row["valley"]
-    force_cos, strain_cos = row["force_cosine"], row["strain_cosine"]
-    force_drift, strain_drift = (
-        mean_drift(np.stack([row[f"{name}_{part}"] for part in ("rise", "turn", "fall")]), ends)
-        for name in ("force", "strain")
-    )
-    force_sin = row["force_sine"] + force_drift / np.pi
-    strain_sin = row["strain_sine"] + strain_drift / np.pi
-    if waveform == "sinusoidal":
-        mean, mean_strain = row["force_mean"], row["strain_mean"]
-        amplitude = np.hypot(force_cos, force_sin)
-        strain_amplitude = np.hypot(strain_cos, strain_sin)
-    else:
-        mean, mean_strain = (peak + valley) / 2, (row["high"] + row["low"]) / 2
-        # between a turn and the next, half a period, a drift adds half of itself to the range
-        amplitude = (peak - valley - np.abs(force_drift) / 2) / 2
-        strain_amplitude = (row["high"] - row["low"] - np.abs(strain_drift) / 2) / 2
-    energy = without_drift(
-        row["energy"],
-        end_tension=row["force_end"],
-        mean_tension=row["force_mean"],
-        tension_drift=force_drift,
-        end_strain=row["strain_end"],
-        mean_strain=row["strain_mean"],
-        strain_drift=strain_drift,
-    )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        # a series a cos + b sin is the real part of (a - ib) exp(i omega t)
-        square = strain_cos**2 + strain_sin**2
-        storage = (force_cos * strain_cos + force_sin * strain_sin) / square
-        loss = (force_cos * strain_sin - force_sin * strain_cos) / square
-        apparent = amplitude / strain_amplitude
-        share = np.pi * square * loss / energy
-        factor = loss / storage
-        both = np.hypot(noise, apparent * strain_noise)
-        u_part = np.sqrt(2 / n_samples) * both / np.sqrt(square)
-        u_energy = row["strain_step_norm"] * both
-        u_extreme = np.hypot(noise, _missed_turn(amplitude, n_samples))
-        if waveform == "sinusoidal":
-            u_half, u_strain = np.sqrt(2 / n_samples) * noise, np.sqrt(2 / n_samples) * strain_noise
-            u_apparent = u_part
-        else:
-            u_half = u_extreme / np.sqrt(2)
-            u_strain = np.hypot(strain_noise, _missed_turn(strain_amplitude, n_samples))
-            u_strain /= np.sqrt(2)
-            # a missed turn takes the same share off both amplitudes; only noise is left
-            u_apparent = apparent * np.hypot(noise / amplitude, strain_noise / strain_amplitude)
-            u_apparent /= np.sqrt(2)
-        values = {
-            "mean_tension": mean,
-            "tension_amplitude": amplitude,
-            "mean_strain": mean_strain,
-            "strain_amplitude": strain_amplitude,
-            "peak_tension": peak,
-            "valley_tension": valley,
-            "apparent_spring_constant": apparent,
-            "hysteresis_energy": energy,
-            "storage_spring_constant": storage,
-            "loss_spring_constant": loss,
-            "loss_factor": factor,
-            "fundamental_energy_share": share,
-        }
-        uncertainty = {
-            "mean_tension": u_half,
-            "tension_amplitude": u_half,
-            "mean_strain": u_strain,
-            "strain_amplitude": u_strain,
-            "peak_tension": u_extreme,
-            "valley_tension": u_extreme,
-            "apparent_spring_constant": u_apparent,
-            "hysteresis_energy": u_energy,
-            "storage_spring_constant": u_part,
-            "loss_spring_constant": u_part,
-            "loss_factor": u_part / np.abs(storage) * np.sqrt(1 + factor**2),
-            "fundamental_energy_share": np.abs(share)
-            * np.hypot(u_part / np.abs(loss), u_energy / np.abs(energy)),
-        }
-    return values, uncertainty
-
-
-def _missed_turn(amplitude: Floats, n_samples: Floats) -> Floats:
-    """How far the logged extreme may lie below the turn between two samples.
-
-    A branch at constant rate rises by four amplitudes over N per sample; the turn lies
-    within half a sample of the logged extreme, evenly spread, so the loss is spread evenly
-    over half a step: the root of its mean square is the step over the root of 12.
-    """
-    missed: Floats = 4 * amplitude / n_samples / np.sqrt(12)
-    return missed
 
 
 def close_loops(
@@ -316,7 +148,7 @@ def close_loops(
     if waveform == "sinusoidal" and np.all(period > 0):
         period = _sine_period(time, tension, cycles, period)
         duration = period
-    measured = np.empty((tension.shape[0], len(_MEASURED), cycles.n_cycles))
+    measured = np.empty((tension.shape[0], len(MEASURED), cycles.n_cycles))
     # the middles of rise and fall, at least a sample apart and from either end
     middles = (cycles.branch_first + cycles.branch_last).T // 2
     middles[0] = np.clip(middles[0], cycles.first + 1, cycles.last - 2)
@@ -340,7 +172,7 @@ def close_loops(
     tables = {name: np.empty(shape) for name in _FIELDS}
     uncertainty = {name: np.empty(shape) for name in _FIELDS if name != "cycle_start_time"}
     for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
-        values, errors = _derive(
+        values, errors = quantities_of_cycles(
             measured[index],
             cycles,
             ends,
@@ -372,7 +204,7 @@ def _sine_period(time: Floats, tension: Floats, cycles: Cycles, period: Floats) 
         low, high = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
         first, last = cycles.first[block] - low, cycles.last[block] - low
         basis = cycle_basis(time[low:high], first, last, period=period[block])
-        force, _ = _filled(tension[0, low:high], first, last)
+        force, _ = bridge_gaps(tension[0, low:high], first, last)
         turns[block] = phase_turns(*fundamental(force, basis)[:2], basis, time[low:high])
 
     run_blocks(find, blocks)

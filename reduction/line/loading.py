@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
-from reduction.cycles.loops import reading_noise
+from reduction.cycles.readings import reading_noise
 from reduction.errors import DataError
 from reduction.record import Integers
 

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
-from reduction.cycles.loops import reading_noise
+from reduction.cycles.readings import reading_noise
 from reduction.errors import DataError, FitError
 from reduction.line.cubic import positive_range, printed_form
 from reduction.line.loading import find_loading, greatest_fall

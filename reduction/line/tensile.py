@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
-from reduction.cycles.loops import reading_noise
+from reduction.cycles.readings import reading_noise
 from reduction.errors import DataError
 from reduction.line.strength import one_a_specimen
 from reduction.record import Bools, Floats, freeze_arrays

@@ -12,8 +12,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.cycles.loops import reading_noise
 from reduction.cycles.product import Cycles
+from reduction.cycles.readings import reading_noise
 from reduction.moduli.product import EndModuli
 from reduction.moduli.secant import chord_modulus, secant_modulus
 from reduction.moduli.tangent import pair_specimens

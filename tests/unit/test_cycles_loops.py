@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 from reduction.cycles.drift import mean_drift, part_means
 from reduction.cycles.energy import loop_energy, sums_over_cycles
 from reduction.cycles.harmonic import cycle_basis, fundamental
-from reduction.cycles.loops import close_loops, reading_noise
+from reduction.cycles.loops import close_loops
 from reduction.cycles.product import Cycles
+from reduction.cycles.readings import reading_noise
 from reduction.errors import DataError
 
 STORAGE, LOSS, AMPLITUDE = 900.0, 100.0, 0.2
