@@ -1,0 +1,421 @@
+r"""Length of a helix on a cylinder that stretches: cords of a hose, wires of an armour layer.
+
+.. math:: \lambda_c^2 = \lambda_h^2 \cos^2 a_0 + \lambda_r^2 \sin^2 a_0
+
+:math:`\lambda_h` is the stretch ratio of the cylinder, :math:`\lambda_c` that of the helix,
+:math:`a_0` the angle at rest between helix and axis.  The radius follows the stretch as
+:math:`\lambda_r^2 = 1/\lambda_h` where wall and filling keep their volume (``isochoric``: the
+water-filled hose), or stays (``rigid``: wires on a core that does not give).
+
+The isochoric form needs both wall and filling incompressible, none of the filling lost, no twist,
+and the ends far away.  A hose that leaks, holds air or turns under load is not of this kind.
+
+References
+----------
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004,
+   sec. 1.2.1.
+"""
+
+from __future__ import annotations
+
+from math import atan, pi, sqrt
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.checks import as_positive
+from reduction.errors import SettingsError
+from reduction.record import Floats
+
+__all__ = [
+    "NEUTRAL_ANGLE",
+    "Core",
+    "cord_stretch_ratio",
+    "current_wrap_angle",
+    "hose_stretch_ratio",
+    "pick_up_stretch_ratio",
+    "slackest_stretch_ratio",
+    "stretch_ratio_per_angle",
+    "stretch_ratio_per_cord_stretch",
+    "wrap_angle_for",
+]
+
+Core = Literal["isochoric", "rigid"]
+
+NEUTRAL_ANGLE = atan(sqrt(2.0))
+"""54.7356 deg: wrapped at more, a cord goes slack as a water-filled hose stretches. [rad]."""
+
+
+def cord_stretch_ratio(
+    stretch_ratio: ArrayLike, wrap_angle: ArrayLike, *, core: Core = "isochoric"
+) -> Floats:
+    r"""Stretch ratio of a helix from that of its cylinder.
+
+    .. math:: \lambda_c = \sqrt{\lambda_h^2 \cos^2 a_0 + \lambda_r^2 \sin^2 a_0}
+
+    Parameters
+    ----------
+    stretch_ratio : array_like, shape (...)
+        :math:`\lambda_h` of the cylinder. [1]
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+    core : {"isochoric", "rigid"}
+        What the radius does.
+
+    Returns
+    -------
+    cord_stretch_ratio : ndarray, shape (...)
+        :math:`\lambda_c`; below one the cord is slack. [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg, or the core is unknown.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Source: [1]_, eq. (8).
+
+    Examples
+    --------
+    A cord at 64 deg is 2.74 % short where it is slackest, and at length again at +61.04 %:
+
+    >>> print((100 * cord_stretch_ratio([1.28096, 1.61039], np.radians(64.0)) - 100).round(2))
+    [-2.74 0. ]
+    """
+    stretch, (cosine2, sine2) = as_positive("stretch_ratio", stretch_ratio), _squares(wrap_angle)
+    return np.asarray(np.sqrt(stretch**2 * cosine2 + _radius2(stretch, core) * sine2))
+
+
+def hose_stretch_ratio(
+    cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike, *, core: Core = "isochoric"
+) -> Floats:
+    r"""Stretch ratio of the cylinder at which a helix has a given stretch ratio.
+
+    .. math:: \lambda_h = 2\sqrt{p/3}\,
+       \cos\left(\tfrac13 \arccos\left(-\tfrac32 \frac{q}{p} \sqrt{3/p}\right)\right),
+       \quad p = \lambda_c^2/\cos^2 a_0, \quad q = \tan^2 a_0
+
+    Parameters
+    ----------
+    cord_stretch_ratio : array_like, shape (...)
+        :math:`\lambda_c`. [1]
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+    core : {"isochoric", "rigid"}
+        What the radius does.
+
+    Returns
+    -------
+    stretch_ratio : ndarray, shape (...)
+        :math:`\lambda_h` on the branch where stretch lengthens the helix; NaN where the helix
+        is nowhere as short as asked. [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg, or the core is unknown.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Source: [1]_, eq. (8), which is the cubic :math:`\lambda_h^3 - p \lambda_h + q = 0`; the
+    largest of its three roots in closed form.  With the rigid core the equation is quadratic.
+    At an angle below 54.7356 deg a cord that is shorter than at rest gives a ratio below one.
+
+    Examples
+    --------
+    Cords strained by 3.3 % in a hose with a wrap angle of 64 deg: the 79 % of [1]_, sec. 3.0
+
+    >>> print(hose_stretch_ratio(1.033, np.radians(64.0)).round(4))
+    1.7901
+    """
+    cord, (cosine2, sine2) = (
+        as_positive("cord_stretch_ratio", cord_stretch_ratio),
+        _squares(wrap_angle),
+    )
+    _known(core)
+    with np.errstate(invalid="ignore"):
+        if core == "rigid":
+            return np.asarray(np.sqrt((cord**2 - sine2) / cosine2))
+        square = cord**2 / cosine2
+        cosine3 = -1.5 * (sine2 / cord**2) * np.sqrt(3 / square)
+        return np.asarray(2 * np.sqrt(square / 3) * np.cos(np.arccos(cosine3) / 3))
+
+
+def pick_up_stretch_ratio(wrap_angle: ArrayLike) -> Floats:
+    r"""Stretch ratio of a water-filled hose at which its slack cords are at length again.
+
+    .. math:: \lambda_h^* = \tfrac12\left(\sqrt{1 + 4\tan^2 a_0} - 1\right)
+
+    Parameters
+    ----------
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+
+    Returns
+    -------
+    stretch_ratio : ndarray, shape (...)
+        One where the angle is not above 54.7356 deg: the cords bear load from the start. [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+
+    Notes
+    -----
+    Source: [1]_, eq. (8) with :math:`\lambda_c = 1`, divided by its root
+    :math:`\lambda_h = 1`: :math:`\lambda_h^2 + \lambda_h - \tan^2 a_0 = 0`.
+
+    Examples
+    --------
+    >>> print((100 * pick_up_stretch_ratio(np.radians([50.0, 64.0, 68.0])) - 100).round(2))
+    [  0.    61.04 102.51]
+    """
+    cosine2, sine2 = _squares(wrap_angle)
+    above = np.maximum(sine2 / cosine2 - 2, 0.0)
+    return np.asarray(1 + 2 * above / (3 + np.sqrt(9 + 4 * above)))
+
+
+def slackest_stretch_ratio(wrap_angle: ArrayLike) -> Floats:
+    r"""Stretch ratio of a water-filled hose at which its cords are shortest.
+
+    .. math:: \lambda_h = \left(\tfrac12 \tan^2 a_0\right)^{1/3}
+
+    Parameters
+    ----------
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+
+    Returns
+    -------
+    stretch_ratio : ndarray, shape (...)
+        One where the angle is not above 54.7356 deg. [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+
+    Notes
+    -----
+    Where the derivative of eq. (8) of [1]_ is zero.  The current angle is then 54.7356 deg at
+    any angle at rest, by eq. (7).
+
+    Examples
+    --------
+    >>> slackest = slackest_stretch_ratio(np.radians([64.0, 68.0]))
+    >>> print(slackest.round(4))
+    [1.281 1.4523]
+    >>> print(np.degrees(current_wrap_angle(slackest, np.radians([64.0, 68.0]))).round(4))
+    [54.7356 54.7356]
+    """
+    cosine2, sine2 = _squares(wrap_angle)
+    return np.asarray(np.maximum(np.cbrt(sine2 / cosine2 / 2), 1.0))
+
+
+def current_wrap_angle(
+    stretch_ratio: ArrayLike, wrap_angle: ArrayLike, *, core: Core = "isochoric"
+) -> Floats:
+    r"""Angle of the helix on the stretched cylinder.
+
+    .. math:: \tan a = \tan a_0 \, \lambda_r / \lambda_h
+
+    Parameters
+    ----------
+    stretch_ratio : array_like, shape (...)
+        :math:`\lambda_h` of the cylinder. [1]
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+    core : {"isochoric", "rigid"}
+        What the radius does.
+
+    Returns
+    -------
+    current_wrap_angle : ndarray, shape (...)
+        :math:`a`, from the axis. [rad]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg, or the core is unknown.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Source: [1]_, eq. (7), :math:`\lambda_r/\lambda_h = \lambda_h^{-3/2}`.
+
+    Examples
+    --------
+    >>> print(np.degrees(current_wrap_angle(2.3, np.radians(68.0))).round(2))
+    35.36
+    """
+    stretch, (cosine2, sine2) = as_positive("stretch_ratio", stretch_ratio), _squares(wrap_angle)
+    tangent = np.sqrt(_radius2(stretch, core) * sine2 / cosine2) / stretch
+    return np.asarray(np.arctan(tangent))
+
+
+def wrap_angle_for(
+    stretch_ratio: ArrayLike, cord_stretch_ratio: ArrayLike, *, core: Core = "isochoric"
+) -> Floats:
+    r"""Angle at rest that gives both stretch ratios at once.
+
+    .. math:: \cos^2 a_0 = \frac{\lambda_c^2 - \lambda_r^2}{\lambda_h^2 - \lambda_r^2}
+
+    Parameters
+    ----------
+    stretch_ratio : array_like, shape (...)
+        :math:`\lambda_h` of the cylinder. [1]
+    cord_stretch_ratio : array_like, shape (...)
+        :math:`\lambda_c` of the helix. [1]
+    core : {"isochoric", "rigid"}
+        What the radius does.
+
+    Returns
+    -------
+    wrap_angle : ndarray, shape (...)
+        :math:`a_0` at rest, from the axis; NaN where no angle between 0 and 90 deg does. [rad]
+
+    Raises
+    ------
+    SettingsError
+        If the core is unknown.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Source: [1]_, eq. (8) solved for the angle.
+
+    Examples
+    --------
+    Cords strained by 5.65 % at the 130 % of the second hose of [1]_, sec. 3.0:
+
+    >>> print(np.degrees(wrap_angle_for(2.3, 1.0565)).round(2))
+    68.
+    """
+    stretch = as_positive("stretch_ratio", stretch_ratio)
+    cord2 = as_positive("cord_stretch_ratio", cord_stretch_ratio) ** 2
+    radius2 = _radius2(stretch, core)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        tangent2 = (stretch**2 - cord2) / (cord2 - radius2)
+        is_angle = (tangent2 > 0) & np.isfinite(tangent2)
+        return np.asarray(np.arctan(np.sqrt(np.where(is_angle, tangent2, np.nan))))
+
+
+def stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
+    r"""How the stretch of a water-filled hose at a given stretch of its cords goes with the angle.
+
+    .. math:: \frac{\partial\lambda_h}{\partial a_0} = \frac{(\lambda_h^2 - 1/\lambda_h)\sin a_0
+       \cos a_0}{\lambda_h \cos^2 a_0 - \sin^2 a_0/(2\lambda_h^2)}
+
+    Parameters
+    ----------
+    cord_stretch_ratio : array_like, shape (...)
+        :math:`\lambda_c`, held. [1]
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+
+    Returns
+    -------
+    stretch_ratio_per_angle : ndarray, shape (...)
+        NaN where the cord is nowhere as short as asked. [rad-1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Eq. (8) of [1]_ differentiated at constant :math:`\lambda_c`.
+
+    Examples
+    --------
+    Points of stretch a degree, at a cord strain of 9.5 %:
+
+    >>> print(np.radians(100 * stretch_ratio_per_angle(1.095, np.radians([64.0, 68.0]))).round(1))
+    [ 8.6 12.5]
+    """
+    cosine2, sine2 = _squares(wrap_angle)
+    stretch = hose_stretch_ratio(cord_stretch_ratio, wrap_angle)
+    rise = (stretch**2 - 1 / stretch) * np.sqrt(cosine2 * sine2)
+    return np.asarray(rise / _half_slope(stretch, cosine2, sine2))
+
+
+def stretch_ratio_per_cord_stretch(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
+    r"""How the stretch of a water-filled hose goes with the stretch of its cords.
+
+    .. math:: \frac{\partial\lambda_h}{\partial\lambda_c} =
+       \frac{\lambda_c}{\lambda_h \cos^2 a_0 - \sin^2 a_0/(2\lambda_h^2)}
+
+    Parameters
+    ----------
+    cord_stretch_ratio : array_like, shape (...)
+        :math:`\lambda_c`. [1]
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+
+    Returns
+    -------
+    stretch_ratio_per_cord_stretch : ndarray, shape (...)
+        NaN where the cord is nowhere as short as asked. [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Eq. (8) of [1]_ differentiated at constant angle.
+
+    Examples
+    --------
+    >>> print(stretch_ratio_per_cord_stretch(1.095, np.radians([64.0, 68.0])).round(1))
+    [3.7 4. ]
+    """
+    cosine2, sine2 = _squares(wrap_angle)
+    stretch = hose_stretch_ratio(cord_stretch_ratio, wrap_angle)
+    return np.asarray(np.asarray(cord_stretch_ratio) / _half_slope(stretch, cosine2, sine2))
+
+
+def _half_slope(stretch: Floats, cosine2: Floats, sine2: Floats) -> Floats:
+    """Half the derivative of lambda_c squared: lambda_c times d lambda_c / d lambda_h."""
+    return np.asarray(stretch * cosine2 - sine2 / (2 * stretch**2))
+
+
+def _squares(wrap_angle: ArrayLike) -> tuple[Floats, Floats]:
+    """Squares of cosine and sine."""
+    angle = np.asarray(wrap_angle, dtype=np.float64)
+    is_angle = (angle > 0) & (angle < pi / 2)
+    if not np.all(is_angle):
+        bad = np.atleast_1d(angle)[np.atleast_1d(~is_angle)][0]
+        raise SettingsError(
+            "wrap_angle is no angle of a helix",
+            found=f"{np.degrees(bad):g} deg",
+            needed="between 0 and 90 deg from the axis",
+        )
+    return np.asarray(np.cos(angle) ** 2), np.asarray(np.sin(angle) ** 2)
+
+
+def _radius2(stretch: Floats, core: Core) -> Floats:
+    """Square of the ratio of the radius to that at rest."""
+    _known(core)
+    return np.asarray(1 / stretch if core == "isochoric" else np.ones_like(stretch))
+
+
+def _known(core: Core) -> None:
+    if core not in get_args(Core):
+        raise SettingsError("unknown core", found=str(core), needed=" or ".join(get_args(Core)))

@@ -1,0 +1,352 @@
+r"""Load on a cord between the measured points: monotone cubics, and their inverse.
+
+Between two points the load is a cubic of strain whose slopes at the points are those of Fritsch
+and Carlson as scipy has them (PCHIP), so that it rises wherever the points do and goes through
+each of them.  A cord carries nothing below zero strain, and beyond its last point it is broken:
+NaN.  The curve is that of one slow pull: creep, hysteresis and the stiffening of nylon under fast
+cycles are not in it.
+
+References
+----------
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004,
+   sec. 1.2.1, 1.2.4: the load-elongation curve of the cord is an input.
+.. [2] F. N. Fritsch and R. E. Carlson, "Monotone piecewise cubic interpolation," SIAM J. Numer.
+   Anal., vol. 17, no. 2, pp. 238-246, 1980.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
+
+from reduction.predict.cordcurve import CordCurve
+from reduction.record import Floats
+
+__all__ = [
+    "CordPieces",
+    "cord_energy",
+    "cord_load",
+    "cord_stiffness",
+    "cord_strain_at",
+    "evaluate",
+    "piece_of",
+    "pieces_of",
+]
+
+FEW_KNOTS = 32
+"""Up to here a comparison with every knot is quicker than a search."""
+MOST_STEPS = 200
+"""Halvings and Newton steps of the inverse: never reached, since 64 halvings alone suffice."""
+
+
+@dataclass(frozen=True)
+class CordPieces:
+    """A cord curve as polynomials, one a column: slack, one between two points each, broken.
+
+    Parameters
+    ----------
+    knot : ndarray, shape (n_points,)
+        Strains of the points. [1]
+    origin : ndarray, shape (n_points + 1,)
+        Strain from which the polynomial of a piece counts. [1]
+    coefficient : ndarray, shape (n_terms, n_points + 1)
+        Highest power first; zero where slack, NaN where broken.
+    """
+
+    knot: Floats
+    origin: Floats
+    coefficient: Floats
+
+
+def pieces_of(curve: CordCurve, *, order: Literal[0, 1, -1] = 0) -> CordPieces:
+    """Polynomials of a cord curve, of its slope, or of its integral.
+
+    Parameters
+    ----------
+    curve : CordCurve
+        Measured points.
+    order : {0, 1, -1}
+        Of the derivative; -1 is the integral from zero strain.
+
+    Returns
+    -------
+    pieces : CordPieces
+        For `piece_of` and `evaluate`.
+
+    Raises
+    ------
+    ValueError
+        From scipy, if the points do not rise; `CordCurve` has seen to that.
+
+    Notes
+    -----
+    Source: [2]_, as `scipy.interpolate.PchipInterpolator` has it.
+
+    Examples
+    --------
+    >>> line = pieces_of(CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0])))
+    >>> print(line.coefficient[-2])
+    [ 0. 650. nan]
+    """
+    cubic = PchipInterpolator(curve.strain, curve.load)
+    match order:
+        case 1:
+            coefficient = cubic.derivative().c
+        case -1:
+            coefficient = cubic.antiderivative().c
+        case _:
+            coefficient = cubic.c
+    edge = np.ones((len(coefficient), 1))
+    return CordPieces(
+        knot=curve.strain,
+        origin=np.concatenate([[0.0], curve.strain[:-1], [0.0]]),
+        coefficient=np.hstack([0 * edge, coefficient, np.nan * edge]),
+    )
+
+
+def piece_of(pieces: CordPieces, strain: Floats) -> NDArray[np.intp]:
+    """Which polynomial a strain belongs to.
+
+    Parameters
+    ----------
+    pieces : CordPieces
+        Of a cord.
+    strain : ndarray, shape (...)
+        Of the cord. [1]
+
+    Returns
+    -------
+    piece : ndarray of int, shape (...)
+        0 where slack (strain not above zero), the number of points where broken. [1]
+
+    Raises
+    ------
+    ValueError
+        From numpy, if the strains are no array of numbers.
+
+    Notes
+    -----
+    The break strain itself is still borne ([1]_, sec. 1.2.4).
+
+    Examples
+    --------
+    >>> line = pieces_of(CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0])))
+    >>> print(piece_of(line, np.array([-0.1, 0.0, 0.1, 0.2, 0.3])))
+    [0 0 1 1 2]
+    """
+    if len(pieces.knot) > FEW_KNOTS:
+        return np.asarray(np.searchsorted(pieces.knot, strain), dtype=np.intp)
+    below: NDArray[np.int8] = np.zeros(strain.shape, dtype=np.int8)
+    for knot in pieces.knot:
+        below += strain > knot
+    return np.asarray(below, dtype=np.intp)
+
+
+def evaluate(pieces: CordPieces, strain: Floats, piece: NDArray[np.intp]) -> Floats:
+    """Value of the polynomials.
+
+    Parameters
+    ----------
+    pieces : CordPieces
+        Of a cord.
+    strain : ndarray, shape (...)
+        Of the cord. [1]
+    piece : ndarray of int, shape (...)
+        From `piece_of`. [1]
+
+    Returns
+    -------
+    value : ndarray, shape (...)
+        Load [N], slope [N] or energy a length [J m-1], by the pieces. [N]
+
+    Raises
+    ------
+    ValueError
+        From numpy, if shapes differ.
+
+    Notes
+    -----
+    Horner's rule from the left end of each piece, so that no large powers cancel ([2]_).
+
+    Examples
+    --------
+    >>> line = pieces_of(CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0])))
+    >>> strain = np.array([-0.1, 0.1, 0.3])
+    >>> print(evaluate(line, strain, piece_of(line, strain)))
+    [ 0. 65. nan]
+    """
+    local = strain - pieces.origin.take(piece, mode="clip")
+    value: Floats = pieces.coefficient[0].take(piece, mode="clip")
+    for coefficient in pieces.coefficient[1:]:
+        value *= local
+        value += coefficient.take(piece, mode="clip")
+    return value
+
+
+def cord_load(curve: CordCurve, strain: ArrayLike) -> Floats:
+    """Load on one cord.
+
+    Parameters
+    ----------
+    curve : CordCurve
+        Measured points.
+    strain : array_like, shape (...)
+        Of the cord. [1]
+
+    Returns
+    -------
+    load : ndarray, shape (...)
+        0 where the strain is not above zero, NaN beyond the last point. [N]
+
+    Raises
+    ------
+    ValueError
+        From numpy, if the strains are no array of numbers.
+
+    Notes
+    -----
+    Source: [1]_, sec. 1.2.1; [2]_ between the points.
+
+    Examples
+    --------
+    >>> curve = CordCurve(strain=np.array([0.0, 0.1, 0.2]), load=np.array([0.0, 40.0, 130.0]))
+    >>> print(cord_load(curve, [-0.01, 0.1, 0.2, 0.21]))
+    [ 0. 40. 130. nan]
+    """
+    return _value(pieces_of(curve), strain)
+
+
+def cord_stiffness(curve: CordCurve, strain: ArrayLike) -> Floats:
+    """Slope of the load on one cord over its strain.
+
+    Parameters
+    ----------
+    curve : CordCurve
+        Measured points.
+    strain : array_like, shape (...)
+        Of the cord. [1]
+
+    Returns
+    -------
+    stiffness : ndarray, shape (...)
+        0 where the strain is not above zero, NaN beyond the last point. [N]
+
+    Raises
+    ------
+    ValueError
+        From numpy, if the strains are no array of numbers.
+
+    Notes
+    -----
+    Continuous but for the pick-up, where it jumps from zero; its own slope jumps at the points
+    ([2]_).
+
+    Examples
+    --------
+    >>> line = CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0]))
+    >>> print(cord_stiffness(line, [-0.1, 0.1, 0.3]))
+    [ 0. 650. nan]
+    """
+    return _value(pieces_of(curve, order=1), strain)
+
+
+def cord_energy(curve: CordCurve, strain: ArrayLike) -> Floats:
+    """Energy in one cord, a length at rest: the integral of its load over strain.
+
+    Parameters
+    ----------
+    curve : CordCurve
+        Measured points.
+    strain : array_like, shape (...)
+        Of the cord. [1]
+
+    Returns
+    -------
+    energy : ndarray, shape (...)
+        0 where the strain is not above zero, NaN beyond the last point. [J m-1]
+
+    Raises
+    ------
+    ValueError
+        From numpy, if the strains are no array of numbers.
+
+    Notes
+    -----
+    The quartics that belong to the cubics of [2]_.
+
+    Examples
+    --------
+    >>> line = CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0]))
+    >>> print(cord_energy(line, [0.0, 0.1, 0.2]))
+    [ 0. 3.25 13. ]
+    """
+    return _value(pieces_of(curve, order=-1), strain)
+
+
+def cord_strain_at(curve: CordCurve, load: ArrayLike) -> Floats:
+    """Strain at which one cord bears a load: the inverse of `cord_load`.
+
+    Parameters
+    ----------
+    curve : CordCurve
+        Measured points.
+    load : array_like, shape (...)
+        On one cord. [N]
+
+    Returns
+    -------
+    strain : ndarray, shape (...)
+        0 at no load; NaN below zero and beyond the break load. [1]
+
+    Raises
+    ------
+    ValueError
+        From numpy, if the loads are no array of numbers.
+
+    Notes
+    -----
+    Newton's rule on the cubic of the piece, all loads at once; a step that would leave the
+    bracket is replaced by a halving of it.  Ends where a step no longer changes a number, so that
+    the load at the strain found is the one asked for to rounding ([2]_ for the cubics).
+
+    Examples
+    --------
+    >>> curve = CordCurve(strain=np.array([0.0, 0.1, 0.2]), load=np.array([0.0, 40.0, 130.0]))
+    >>> print(cord_strain_at(curve, [0.0, 40.0, 130.0, 131.0]))
+    [0. 0.1 0.2 nan]
+    """
+    wanted = np.asarray(load, dtype=np.float64)
+    pieces = pieces_of(curve)
+    is_borne = (wanted >= 0) & (wanted <= curve.break_load)
+    asked = np.where(is_borne, wanted, 0.0)
+    left = np.clip(np.searchsorted(curve.load, asked, side="right") - 1, 0, len(curve.load) - 2)
+    cubic, square, slope = pieces.coefficient[:3, left + 1]
+    above = asked - curve.load[left]
+    low, high = np.zeros_like(above), np.diff(curve.strain)[left]
+    local = high * above / np.diff(curve.load)[left]
+    for _ in range(MOST_STEPS):
+        miss = local * (slope + local * (square + local * cubic)) - above
+        low, high = np.where(miss <= 0, local, low), np.where(miss >= 0, local, high)
+        rate = slope + local * (2 * square + local * 3 * cubic)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = local - miss / rate
+        inside = (step > low) & (step < high)
+        better = np.where(inside, step, low + (high - low) / 2)
+        better = np.where(miss == 0, local, better)
+        if np.all(np.abs(better - local) <= np.spacing(better)):
+            break
+        local = better
+    strain = curve.strain[left] + better
+    return np.asarray(
+        np.where(is_borne, np.where(asked == curve.break_load, curve.break_strain, strain), np.nan)
+    )
+
+
+def _value(pieces: CordPieces, strain: ArrayLike) -> Floats:
+    values = np.asarray(strain, dtype=np.float64)
+    return np.asarray(evaluate(pieces, values, piece_of(pieces, values)))
