@@ -18,11 +18,11 @@ from reduction.vocabulary import (
 
 __all__ = ["glossary"]
 
-_SOURCES = {"002": "WHOI-2005-10", "003": "CG-D-39-80"}
+_SOURCES = {"000": "WHOI-2004-06", "002": "WHOI-2005-10", "003": "CG-D-39-80"}
 _HEAD = """\
 # Glossary
 
-<!-- Written by docs/make_glossary.py from reduction/vocabulary.py; change it there. -->
+<!-- Written by docs/make_glossary.py from reduction/vocabulary/; change it there. -->
 
 One name a quantity, the same in code, archives and tables; files are SI. A variable
 `NAME_standard_uncertainty` has the unit of `NAME`. A table's header is `NAME [unit]`.
@@ -55,7 +55,7 @@ and `response_unit` say what `[unit]` and `[response_unit]` are."""
 
 
 def _symbol(text: str) -> str:
-    return re.sub(r"\b00[23]\b", lambda match: _SOURCES[match[0]], text)
+    return re.sub(r"\b00[023]\b", lambda match: _SOURCES[match[0]], text)
 
 
 def _row(*cells: str) -> str:
