@@ -25,11 +25,12 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite, as_positive
 from reduction.predict.harmonics import WaveHarmonics
-from reduction.predict.waves import particle_motion
+from reduction.predict.phaseseries import cosine_series, phase_derivative, root_phases, sum_at
 from reduction.record import Floats, freeze_arrays
 
 __all__ = [
     "CODE_OF_HYDROLOGY",
+    "GREATEST_DIAMETER_TO_LENGTH",
     "PUBLISHED_COEFFICIENTS",
     "SEAWATER_VISCOSITY",
     "FlowRegime",
@@ -42,7 +43,8 @@ __all__ = [
 
 SEAWATER_VISCOSITY = 1.1892e-6
 """Kinematic, at 15 deg C and 35 g/kg ([3]_). [m2 s-1]"""
-_PHASES = 721  # of the period, for the greatest velocity; harmonics are smooth
+GREATEST_DIAMETER_TO_LENGTH = 0.2
+"""Above it a cylinder changes the wave, and Morison's equation does not hold ([1]_, sec. 2). [1]"""
 
 
 @dataclass(frozen=True)
@@ -112,6 +114,8 @@ class FlowRegime:
         Re / KC. [1]
     drag_to_inertia : ndarray
         Greatest drag over greatest inertia of a whole cylinder in a sine. [1]
+    diameter_to_length : ndarray
+        Of the wave; at most 0.2 for Morison's equation. [1]
     """
 
     greatest_velocity: float
@@ -119,6 +123,7 @@ class FlowRegime:
     reynolds_number: Floats
     frequency_parameter: Floats
     drag_to_inertia: Floats
+    diameter_to_length: Floats
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -283,7 +288,8 @@ def flow_regime(
 
     Notes
     -----
-    Of the horizontal velocity.  Table 2 of [1]_ gives no range of KC or Re for its numbers;
+    Of the horizontal velocity, the current included; some sources give KC for the wave alone
+    and the current apart.  Table 2 of [1]_ gives no range of KC or Re for its numbers;
     those of [2]_ are from KC 3 to 120 at Re up to 30,000 on cylinders of 2-3 in.
 
     Examples
@@ -294,8 +300,8 @@ def flow_regime(
     35.4
     """
     period = 2 * pi / wave.angular_frequency
-    motion = particle_motion(wave, np.linspace(0.0, period, _PHASES))
-    speed = float(np.max(np.abs(motion.horizontal_velocity + current_velocity)))
+    velocity = cosine_series(wave.horizontal_velocity, current_velocity)
+    speed = float(np.max(np.abs(sum_at(velocity, root_phases(phase_derivative(velocity))))))
     number = keulegan_carpenter_number(speed, period, outer_diameter)
     reynolds = reynolds_number(speed, outer_diameter, kinematic_viscosity=kinematic_viscosity)
     return FlowRegime(
@@ -305,5 +311,8 @@ def flow_regime(
         frequency_parameter=np.asarray(reynolds / number),
         drag_to_inertia=drag_to_inertia(
             number, drag_coefficient=drag_coefficient, inertia_coefficient=inertia_coefficient
+        ),
+        diameter_to_length=np.asarray(
+            as_positive("outer_diameter", outer_diameter) * wave.wave_number / (2 * pi)
         ),
     )

@@ -19,7 +19,6 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
@@ -27,12 +26,10 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError, FitError
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats
 
 __all__ = [
     "STANDARD_GRAVITY",
-    "WaveLengthCheck",
-    "check_wave_length",
     "group_velocity",
     "wave_number",
     "wave_period_of",
@@ -44,32 +41,6 @@ STANDARD_GRAVITY = 9.80665
 _STEP = 1e-14  # last Newton step over the root, at most
 _RESIDUAL = 4 * float(np.finfo(np.float64).eps)
 _MOST_STEPS = 100  # four or five are enough but at the very edge of blocking
-
-
-@dataclass(frozen=True)
-class WaveLengthCheck:
-    """A length and a period that were given together, against the dispersion relation.
-
-    Parameters
-    ----------
-    period_of_length : ndarray, shape (...)
-        That a wave of the given length has. [s]
-    length_of_period : ndarray, shape (...)
-        That a wave of the given period has. [m]
-    period_mismatch : ndarray, shape (...)
-        Period of the length over the given period, less one. [1]
-    length_mismatch : ndarray, shape (...)
-        Given length over the length of the period, less one. [1]
-    """
-
-    period_of_length: Floats
-    length_of_period: Floats
-    period_mismatch: Floats
-    length_mismatch: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def wave_number(
@@ -221,69 +192,6 @@ def group_velocity(
     # 2 q / sinh 2q, which neither overflows nor loses digits
     share = 4 * relative_depth * np.exp(-2 * relative_depth) / -np.expm1(-4 * relative_depth)
     return np.asarray(phase_speed / 2 * (1 + share))
-
-
-def check_wave_length(
-    wave_length: ArrayLike,
-    wave_period: ArrayLike,
-    water_depth: ArrayLike,
-    *,
-    current_velocity: ArrayLike = 0.0,
-    gravity: float = STANDARD_GRAVITY,
-) -> WaveLengthCheck:
-    """How far a length and a period that were given together are from one wave.
-
-    Parameters
-    ----------
-    wave_length : array_like, shape (...)
-        As given. [m]
-    wave_period : array_like, shape (...)
-        As given. [s]
-    water_depth : array_like, shape (...)
-        Of the still water. [m]
-    current_velocity : array_like, shape (...)
-        Uniform over the depth, positive along the wave. [m s-1]
-    gravity : float
-        Acceleration of free fall. [m s-2]
-
-    Returns
-    -------
-    check : WaveLengthCheck
-        Both mismatches.
-
-    Raises
-    ------
-    DataError
-        If a number is not positive, or the current stops the wave.
-
-    Notes
-    -----
-    By the linear relation; a steep wave is faster, so that a few per cent may be its height.
-
-    Examples
-    --------
-    Table 4 of [1]_ at the depths of its two examples.
-
-    >>> check = check_wave_length(20.0, 3.57, [6.0, 3.0])
-    >>> print(check.period_mismatch.round(3), check.length_mismatch.round(3))
-    [0.026 0.169] [0.045 0.227]
-    """
-    length = as_positive("wave_length", wave_length)
-    period = as_positive("wave_period", wave_period)
-    by_length = wave_period_of(
-        2 * pi / length, water_depth, current_velocity=current_velocity, gravity=gravity
-    )
-    by_period = (
-        2
-        * pi
-        / wave_number(period, water_depth, current_velocity=current_velocity, gravity=gravity)
-    )
-    return WaveLengthCheck(
-        period_of_length=by_length,
-        length_of_period=np.asarray(by_period),
-        period_mismatch=np.asarray(by_length / period - 1),
-        length_mismatch=np.asarray(length / by_period - 1),
-    )
 
 
 def _conditions(period: ArrayLike, depth: ArrayLike, current: ArrayLike) -> tuple[Floats, ...]:

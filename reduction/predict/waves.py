@@ -109,8 +109,8 @@ def airy_wave(
     Eq. (13) and (15) of [1]_ print the velocity amplitude H g k / (2 omega) with cosh kd below,
     and the acceleration 2 pi^2 H / T^2 with sinh kd below.  One is the derivative of the other
     only where length and period fit.  Here velocities follow the surface (pi H/T over sinh kd)
-    whatever the length, and accelerations are their derivative; see `check_wave_length` for
-    the mismatch.
+    whatever the length, and accelerations are their derivative; see
+    `reduction.predict.wavelength` for the mismatch.
 
     Over a current the motion is that in water that moves with it ([3]_), and so is the
     acceleration: that of a particle to first order.

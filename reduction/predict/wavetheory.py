@@ -19,24 +19,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cosh, exp, pi, sinh
-from typing import Literal
 
 from reduction.checks import as_positive
+from reduction.errors import DataError
 from reduction.predict.breaking import breaking_height
-from reduction.predict.dispersion import STANDARD_GRAVITY, check_wave_length, wave_number
+from reduction.predict.dispersion import STANDARD_GRAVITY, wave_number
+from reduction.predict.harmonics import WaveHarmonics
+from reduction.predict.theorytable import (
+    PrintedTheory,
+    WaveTheoryName,
+    printed_theory,
+    theory_by_depth,
+)
+from reduction.predict.wavelength import check_wave_length
+from reduction.predict.waves import airy_wave, stokes_wave
 
 __all__ = [
     "GREATEST_URSELL_NUMBER",
-    "PrintedTheory",
     "WaveTheory",
-    "WaveTheoryName",
     "describe_wave",
-    "printed_theory",
-    "theory_by_depth",
+    "regular_wave",
 ]
-
-WaveTheoryName = Literal["airy", "stokes", "cnoidal or solitary", "beyond the table"]
-PrintedTheory = Literal["airy", "stokes", "cnoidal or solitary", "none"]
 
 GREATEST_URSELL_NUMBER = 8 * pi**2 / 3
 """Where Stokes' second order has a secondary crest over shallow water. [1]"""
@@ -96,84 +99,6 @@ class WaveTheory:
     is_beyond_stokes: bool
     is_second_order_small: bool
     reasons: tuple[str, ...]
-
-
-def theory_by_depth(relative_depth: float) -> WaveTheoryName:
-    """Theory by the relative depth alone.
-
-    Parameters
-    ----------
-    relative_depth : float
-        Depth over wave length. [1]
-
-    Returns
-    -------
-    theory : {"airy", "stokes", "cnoidal or solitary", "beyond the table"}
-        Of a wave that does not break.
-
-    Raises
-    ------
-    DataError
-        If the relative depth is not positive.
-
-    Notes
-    -----
-    Table 1 of [1]_ leaves d/L = 0.1 to nobody; it is given to Stokes here, as in sec. 5
-    ("between 2 and 4 meters" of a 20 m wave).  Its lowest limit, "0.04~0.05", is taken as 0.04.
-
-    Examples
-    --------
-    The 20 m wave of [1]_ over 6 m, 3 m and 1.5 m of water.
-
-    >>> [theory_by_depth(depth / 20) for depth in (6.0, 3.0, 1.5)]
-    ['airy', 'stokes', 'cnoidal or solitary']
-    """
-    as_positive("relative_depth", relative_depth)
-    if relative_depth >= 0.2:
-        return "airy"
-    if relative_depth >= 0.1:
-        return "stokes"
-    return "cnoidal or solitary" if relative_depth > 0.04 else "beyond the table"
-
-
-def printed_theory(relative_depth: float, steepness: float) -> PrintedTheory:
-    """Theory by Table 1 to the letter.
-
-    Parameters
-    ----------
-    relative_depth : float
-        Depth over wave length. [1]
-    steepness : float
-        Height over wave length. [1]
-
-    Returns
-    -------
-    printed : {"airy", "stokes", "cnoidal or solitary", "none"}
-        What the table names.
-
-    Raises
-    ------
-    DataError
-        If a number is not positive.
-
-    Notes
-    -----
-    Table 1 of [1]_ contradicts itself: its row of Stokes asks for H/L of 0.2 or more, where
-    every wave has broken (at most 0.142, and 0.12 at d/L = 0.2), and its row of Airy allows
-    up to 0.2.  The second example of the paper, H/L = 0.0625 at d/L = 0.15, is in no row.
-
-    Examples
-    --------
-    >>> printed_theory(0.3, 0.0625), printed_theory(0.15, 0.0625)
-    ('airy', 'none')
-    """
-    as_positive("relative_depth", relative_depth)
-    as_positive("steepness", steepness)
-    if relative_depth >= 0.2:
-        return "airy" if steepness <= 0.2 else "none"
-    if relative_depth > 0.1:
-        return "stokes" if steepness >= 0.2 else "none"
-    return "cnoidal or solitary" if 0.04 < relative_depth < 0.1 else "none"
 
 
 def describe_wave(
@@ -283,6 +208,76 @@ def describe_wave(
         is_beyond_stokes=is_beyond,
         is_second_order_small=is_small,
         reasons=tuple(text for text, is_so in doubts.items() if is_so),
+    )
+
+
+def regular_wave(
+    wave: WaveTheory,
+    *,
+    wave_height: float,
+    wave_period: float,
+    water_depth: float,
+    elevation: float,
+    theory: WaveTheoryName | None = None,
+    current_velocity: float = 0.0,
+) -> WaveHarmonics:
+    """Motion at one elevation by the theory that applies, or by the one asked for.
+
+    Parameters
+    ----------
+    wave : WaveTheory
+        Of the same wave.
+    wave_height : float
+        Trough to crest. [m]
+    wave_period : float
+        As a fixed point sees it. [s]
+    water_depth : float
+        Of the still water. [m]
+    elevation : float
+        Of the place above the mean level. [m]
+    theory : {"airy", "stokes", "cnoidal or solitary", "beyond the table"}, optional
+        None: that of the description.
+    current_velocity : float
+        On which the wave rides, positive along it. [m s-1]
+
+    Returns
+    -------
+    wave : WaveHarmonics
+        With the wave length of the description.
+
+    Raises
+    ------
+    DataError
+        If the theory is not computed, the wave is beyond breaking, or as `airy_wave`.
+
+    Notes
+    -----
+    Doubts of the description do not stop a prediction: they go with it.
+
+    Examples
+    --------
+    The second example of [1]_ has two harmonics.
+
+    >>> sea = dict(wave_height=1.25, wave_period=3.57, water_depth=3.0)
+    >>> regular_wave(describe_wave(**sea), **sea, elevation=0.0).elevation.size
+    2
+    """
+    by = theory or wave.theory
+    makers = {"airy": airy_wave, "stokes": stokes_wave}
+    if by not in makers:
+        raise DataError(
+            f"the theory of this wave is not computed: {by}",
+            found=f"a depth of {wave.relative_depth:.3f} wave lengths",
+            needed="0.1 or more, for Airy's or Stokes' theory",
+            hint="Ask for one of the two by name to see what it gives outside its range.",
+        )
+    return makers[by](
+        wave_height=wave_height,
+        wave_period=wave_period,
+        water_depth=water_depth,
+        elevation=elevation,
+        wave_number=2 * pi / wave.wave_length,
+        current_velocity=current_velocity,
     )
 
 
