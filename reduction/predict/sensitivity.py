@@ -1,0 +1,337 @@
+r"""Derivatives of a hose prediction by the numbers of its design.
+
+With :math:`P` the tension of a cord, :math:`d_w` the mean diameter of the layers and :math:`n`
+the cords per length, the net tension and the fill pressure are
+
+.. math::
+
+    T &= 2\pi n d_w P\, G/\lambda_c + A\,R(\lambda_h), \qquad
+    G = \lambda_h \cos^2\alpha_0 - \sin^2\alpha_0 / (2\lambda_h^2) \\
+    p &= 2 n \left(d_1^{-1} + d_2^{-1}\right) P \sin^2\alpha_0 / (\lambda_h\lambda_c)
+
+A number of the design acts directly, and through :math:`\lambda_h`, :math:`\lambda_c` and
+:math:`P`.  On the curve the strain is held: the angle moves the cord strain, the dead length
+the free stretch.  At an event the cord strain is held: the hose stretch follows.
+
+References
+----------
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004,
+   eq. 8, 24 and 26 (the equations that are differentiated, with the end cap by virtual work).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.checks import as_finite
+from reduction.predict.cord import (
+    NEUTRAL_ANGLE,
+    cord_stretch_ratio,
+    hose_stretch_ratio,
+    pick_up_stretch_ratio,
+    slackest_stretch_ratio,
+    stretch_ratio_per_angle,
+    stretch_ratio_per_cord_stretch,
+)
+from reduction.predict.cordload import cord_load, cord_stiffness, cord_strain_at
+from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
+from reduction.predict.rubber import rubber_stiffness, rubber_tension
+from reduction.record import Floats, freeze_arrays
+
+__all__ = ["EventSensitivity", "HoseSensitivity", "hose_sensitivity"]
+
+
+@dataclass(frozen=True)
+class EventSensitivity:
+    """Derivatives where something happens to the cords, shape (n_parameters, ...).
+
+    Rows as `reduction.predict.product.HOSE_PARAMETERS`, in the unit of the quantity a unit of
+    the parameter.  ``strain`` is of the whole length; ``stiffness``, shape (...), is the slope
+    of the tension over it there, at pick-up that of the slack side. [N]
+    """
+
+    strain: Floats
+    tension: Floats
+    fill_pressure: Floats
+    stiffness: Floats
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class HoseSensitivity:
+    """Derivatives of a prediction.
+
+    Parameters
+    ----------
+    strain : ndarray, shape (n_strain,)
+        Of the whole relaxed length, held. [1]
+    tension, fill_pressure : ndarray, shape (n_parameters, ..., n_strain)
+        Rows as `reduction.predict.product.HOSE_PARAMETERS`; NaN where the cords are broken.
+        [N or Pa, a unit of the parameter]
+    stiffness : ndarray, shape (..., n_strain)
+        Slope of tension over strain. [N]
+    deepest_slack, pick_up, working, cord_break : EventSensitivity
+        Where the cords are shortest, pick up, reach the working share of their break load,
+        and break.
+    """
+
+    strain: Floats
+    tension: Floats
+    fill_pressure: Floats
+    stiffness: Floats
+    deepest_slack: EventSensitivity
+    pick_up: EventSensitivity
+    working: EventSensitivity
+    cord_break: EventSensitivity
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> HoseSensitivity:
+    r"""Derivatives by every number of the design that may be uncertain.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose, or many.
+    strain : array_like, shape (n_strain,)
+        Of the whole relaxed length. [1]
+
+    Returns
+    -------
+    sensitivity : HoseSensitivity
+        Of the curve at held strain, and of the events.
+
+    Raises
+    ------
+    DataError
+        If a strain is not finite, or -1 or less.
+
+    Notes
+    -----
+    Eq. 8, 24 and 26 of [1]_ (module) differentiated.  A row ``layer_diameter`` moves both
+    layers by the same length.  Every row holds the others: a layer diameter that comes out
+    large *with its ribbon as cut* moves the wrap angle too
+    (`reduction.predict.fabric.angle_per_relative_width`).
+
+    At pick-up the derivatives jump: a cord strain of exactly zero counts as slack, also of a
+    hose below 54.7356 degrees at rest.  There the cords pick up at rest at any angle, and the
+    strain of pick-up does not follow it.
+
+    Examples
+    --------
+    Points of stretch a degree at the working load of the two hoses of [1]_, section 3.0, with
+    a cord that has 9.5 % at a third of its break load; and for 1 % of cord strain.
+
+    >>> from reduction.predict.cordcurve import CordCurve
+    >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
+    >>> design = HoseDesign(np.radians([64.0, 68.0]), (0.0889, 0.0889), 0.0635, 0.127,
+    ...     34 / 0.0254, 0.022 * 0.0254, 1.379e6, cord)
+    >>> rows = dict(zip(HOSE_PARAMETERS, hose_sensitivity(design, [0.5]).working.strain))
+    >>> print(np.radians(100 * rows["wrap_angle"]).round(1), rows["rubber_modulus"])
+    [ 8.6 12.5] [0. 0.]
+    >>> print((rows["cord_strain_scale"] / 0.095).round(1))
+    [3.7 4. ]
+    """
+    along = as_finite("strain", strain)
+    curve = _on_the_curve(design, along)
+    tension, pressure = _chain(design, curve)
+    shape = (*design.shape, along.size)
+    working = cord_strain_at(design.cord, design.working_share * design.cord.break_load)
+    broken = np.where(np.isnan(curve.cord_tension), np.nan, 0.0)  # the rubber knows nothing of it
+    return HoseSensitivity(
+        strain=np.array(along),
+        tension=_rows(tension, shape) + broken,
+        fill_pressure=_rows(pressure, shape) + broken,
+        stiffness=np.broadcast_to(tension["strain"], shape).copy(),
+        deepest_slack=_of_event(design, _deepest_slack(design)),
+        pick_up=_of_event(design, _pick_up(design)),
+        working=_of_event(design, _taut(design, working)),
+        cord_break=_of_event(design, _taut(design, np.asarray(design.cord.break_strain))),
+    )
+
+
+_Rates = Mapping[str, Floats]
+
+
+@dataclass(frozen=True)
+class _State:
+    """Where a hose is, and how each parameter moves it from there; ``columns`` adds an axis."""
+
+    stretch: Floats
+    cord_stretch: Floats
+    cord_tension: Floats
+    of_stretch: _Rates
+    of_cord_stretch: _Rates
+    of_cord_tension: _Rates
+    columns: bool = False
+
+
+def _number(value: ArrayLike, *, columns: bool) -> Floats:
+    array = np.asarray(value, dtype=np.float64)
+    return array[..., None] if columns else array
+
+
+def _on_the_curve(design: HoseDesign, strain: Floats) -> _State:
+    angle, dead, load_scale, strain_scale = (
+        _number(one, columns=True)
+        for one in (
+            design.wrap_angle,
+            design.dead_length_share,
+            design.cord_load_scale,
+            design.cord_strain_scale,
+        )
+    )
+    stretch = 1 + strain / (1 - dead)
+    cord = cord_stretch_ratio(stretch, angle)
+    at = (cord - 1) / strain_scale
+    load = load_scale * cord_load(design.cord, at)
+    stiffness = load_scale / strain_scale * cord_stiffness(design.cord, at)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    by_stretch = (stretch * cosine**2 - sine**2 / (2 * stretch**2)) / cord
+    per_strain = 1 / (1 - dead)
+    of_stretch = {"strain": per_strain, "dead_length_share": (stretch - 1) * per_strain}
+    of_cord = {name: by_stretch * rate for name, rate in of_stretch.items()}
+    of_cord["wrap_angle"] = sine * cosine * (1 / stretch - stretch**2) / cord
+    of_load = {name: stiffness * rate for name, rate in of_cord.items()}
+    of_load["cord_load_scale"] = load / load_scale
+    of_load["cord_strain_scale"] = -stiffness * at
+    return _State(stretch, cord, load, of_stretch, of_cord, of_load, columns=True)
+
+
+def _deepest_slack(design: HoseDesign) -> _State:
+    angle = np.asarray(design.wrap_angle, dtype=np.float64)
+    stretch = slackest_stretch_ratio(angle)
+    per_angle = 2 / 3 * stretch / (np.sin(angle) * np.cos(angle))
+    return _slack(design, stretch, per_angle)
+
+
+def _pick_up(design: HoseDesign) -> _State:
+    angle = np.asarray(design.wrap_angle, dtype=np.float64)
+    stretch = pick_up_stretch_ratio(angle)
+    per_angle = 2 * np.tan(angle) / np.cos(angle) ** 2 / (2 * stretch + 1)
+    return _slack(design, stretch, per_angle)
+
+
+def _slack(design: HoseDesign, stretch: Floats, per_angle: Floats) -> _State:
+    """Where the cords carry nothing; below the neutral angle the hose is at rest there."""
+    is_above = np.asarray(design.wrap_angle) > NEUTRAL_ANGLE
+    of_stretch = {
+        "strain": 1 / (1 - np.asarray(design.dead_length_share, dtype=np.float64)),
+        "wrap_angle": np.where(is_above, per_angle, 0.0),
+    }
+    return _State(stretch, np.ones(stretch.shape), np.zeros(stretch.shape), of_stretch, {}, {})
+
+
+def _taut(design: HoseDesign, at: Floats) -> _State:
+    """Where the cords are at a strain of their measured curve."""
+    angle, load_scale, strain_scale, dead = (
+        np.asarray(one, dtype=np.float64)
+        for one in (
+            design.wrap_angle,
+            design.cord_load_scale,
+            design.cord_strain_scale,
+            design.dead_length_share,
+        )
+    )
+    load, slope = cord_load(design.cord, at), cord_stiffness(design.cord, at)
+    cord = 1 + strain_scale * at
+    per_cord = stretch_ratio_per_cord_stretch(cord, angle)
+    per_strain = 1 / (1 - dead)
+    return _State(
+        hose_stretch_ratio(cord, angle),
+        cord,
+        load_scale * load,
+        of_stretch={
+            "strain": per_strain,
+            "wrap_angle": stretch_ratio_per_angle(cord, angle),
+            "cord_strain_scale": per_cord * at,
+        },
+        of_cord_stretch={"strain": per_strain / per_cord, "cord_strain_scale": at},
+        of_cord_tension={
+            "strain": load_scale / strain_scale * slope * per_strain / per_cord,
+            "cord_load_scale": load,
+        },
+    )
+
+
+def _of_event(design: HoseDesign, state: _State) -> EventSensitivity:
+    free = 1 - np.asarray(design.dead_length_share, dtype=np.float64)
+    of_strain = {name: free * rate for name, rate in state.of_stretch.items()}
+    of_strain["dead_length_share"] = 1 - state.stretch
+    tension, pressure = _chain(design, state)
+    return EventSensitivity(
+        strain=_rows(of_strain, design.shape),
+        tension=_rows(tension, design.shape),
+        fill_pressure=_rows(pressure, design.shape),
+        stiffness=np.broadcast_to(tension["strain"], design.shape).copy(),
+    )
+
+
+def _chain(design: HoseDesign, state: _State) -> tuple[_Rates, _Rates]:
+    """Tension and fill pressure by every parameter: directly, and through the state."""
+    angle, first, second, bore, skin, density, modulus = (
+        _number(one, columns=state.columns)
+        for one in (
+            design.wrap_angle,
+            *design.layer_diameter,
+            design.inner_diameter,
+            design.outer_diameter,
+            design.cords_per_length,
+            design.rubber_modulus,
+        )
+    )
+    stretch, cord, load = state.stretch, state.cord_stretch, state.cord_tension
+    cosine, sine = np.cos(angle), np.sin(angle)
+    lever = (stretch * cosine**2 - sine**2 / (2 * stretch**2)) / cord
+    hoop = sine**2 / (stretch * cord)
+    around = pi * density * (first + second)
+    inverse = 2 * density * (1 / first + 1 / second)
+    area = pi / 4 * (skin**2 - bore**2)
+    law = design.rubber_law
+    stress = rubber_tension(stretch, area=1.0, modulus=modulus, law=law)
+
+    tension = {
+        "wrap_angle": -around * load * cosine * sine * (2 * stretch + stretch**-2) / cord,
+        "layer_diameter": 2 * pi * density * load * lever,
+        "inner_diameter": -pi / 2 * bore * stress,
+        "outer_diameter": pi / 2 * skin * stress,
+        "cords_per_length": around / density * load * lever,
+        "rubber_modulus": rubber_tension(stretch, area=area, modulus=1.0, law=law),
+    }
+    pressure = {
+        "wrap_angle": inverse * load * 2 * sine * cosine / (stretch * cord),
+        "layer_diameter": -2 * density * (first**-2 + second**-2) * load * hoop,
+        "cords_per_length": inverse / density * load * hoop,
+    }
+    by_stretch = around * load * (cosine**2 + sine**2 / stretch**3) / cord + rubber_stiffness(
+        stretch, area=area, modulus=modulus, law=law
+    )
+    steps = (
+        (state.of_stretch, by_stretch, -inverse * load * hoop / stretch),
+        (state.of_cord_stretch, -around * load * lever / cord, -inverse * load * hoop / cord),
+        (state.of_cord_tension, around * lever, inverse * hoop),
+    )
+    for rates, of_tension, of_pressure in steps:
+        for name, rate in rates.items():
+            tension[name] = tension.get(name, 0.0) + of_tension * rate
+            pressure[name] = pressure.get(name, 0.0) + of_pressure * rate
+    return tension, pressure
+
+
+def _rows(of: Mapping[str, Floats], shape: tuple[int, ...]) -> Floats:
+    table = np.zeros((len(HOSE_PARAMETERS), *shape))
+    for place, name in enumerate(HOSE_PARAMETERS):
+        table[place, ...] = of.get(name, 0.0)
+    return table
