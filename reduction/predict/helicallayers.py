@@ -116,8 +116,11 @@ def layer_range(
     angle, stretch, limit = np.broadcast_arrays(angle, stretch, limit)
     share = np.asarray(dead_length_share, dtype=np.float64)
     shortest = np.minimum(slackest_stretch_ratio(angle), stretch)
-    final = cord_stretch_ratio(stretch, angle) - 1
-    least = cord_stretch_ratio(shortest, angle) - 1
+    final, least = (
+        # at rest nothing is strained, which rounding may not say
+        np.where(one > 1, cord_stretch_ratio(one, angle) - 1, 0.0)
+        for one in (stretch, shortest)
+    )
     return LayerRange(
         least_strain=np.asarray(least),
         greatest_strain=np.asarray(np.maximum(final, 0)),
