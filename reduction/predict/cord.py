@@ -145,6 +145,9 @@ def hose_stretch_ratio(
             return np.asarray(np.sqrt((cord**2 - sine2) / cosine2))
         square = cord**2 / cosine2
         cosine3 = -1.5 * (sine2 / cord**2) * np.sqrt(3 / square)
+        # the shortest helix of all is at -1, and may be found there to rounding only
+        cosine3 = np.where(cosine3 > -1 - 8 * np.finfo(np.float64).eps, cosine3, np.nan)
+        cosine3 = np.maximum(cosine3, -1.0)
         return np.asarray(2 * np.sqrt(square / 3) * np.cos(np.arccos(cosine3) / 3))
 
 

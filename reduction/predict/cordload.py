@@ -33,7 +33,7 @@ __all__ = [
     "cord_load",
     "cord_stiffness",
     "cord_strain_at",
-    "evaluate",
+    "evaluate_into",
     "piece_of",
     "pieces_of",
 ]
@@ -141,28 +141,36 @@ def piece_of(pieces: CordPieces, strain: Floats) -> NDArray[np.intp]:
     """
     if len(pieces.knot) > FEW_KNOTS:
         return np.asarray(np.searchsorted(pieces.knot, strain), dtype=np.intp)
-    below: NDArray[np.int8] = np.zeros(strain.shape, dtype=np.int8)
+    n_below, is_above = (
+        np.zeros(strain.shape, dtype=np.int8),
+        np.empty(strain.shape, dtype=np.bool_),
+    )
     for knot in pieces.knot:
-        below += strain > knot
-    return np.asarray(below, dtype=np.intp)
+        np.greater(strain, knot, out=is_above)
+        n_below += is_above
+    return n_below.astype(np.intp)
 
 
-def evaluate(pieces: CordPieces, strain: Floats, piece: NDArray[np.intp]) -> Floats:
-    """Value of the polynomials.
+def evaluate_into(
+    out: Floats, scratch: Floats, pieces: CordPieces, strain: Floats, piece: NDArray[np.intp]
+) -> Floats:
+    """Write the values of the polynomials into an array.
 
     Parameters
     ----------
+    out, scratch : ndarray, shape (...)
+        Written; loads in `out` where the pieces are those of the load. [N]
     pieces : CordPieces
         Of a cord.
     strain : ndarray, shape (...)
-        Of the cord. [1]
+        Of the cord; overwritten by strain from the left end of the piece. [1]
     piece : ndarray of int, shape (...)
         From `piece_of`. [1]
 
     Returns
     -------
-    value : ndarray, shape (...)
-        Load [N], slope [N] or energy a length [J m-1], by the pieces. [N]
+    out : ndarray, shape (...)
+        The array given: load [N], slope [N] or energy a length [J m-1], by the pieces. [N]
 
     Raises
     ------
@@ -177,15 +185,15 @@ def evaluate(pieces: CordPieces, strain: Floats, piece: NDArray[np.intp]) -> Flo
     --------
     >>> line = pieces_of(CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0])))
     >>> strain = np.array([-0.1, 0.1, 0.3])
-    >>> print(evaluate(line, strain, piece_of(line, strain)))
+    >>> print(evaluate_into(np.empty(3), np.empty(3), line, strain, piece_of(line, strain)))
     [ 0. 65. nan]
     """
-    local = strain - pieces.origin.take(piece, mode="clip")
-    value: Floats = pieces.coefficient[0].take(piece, mode="clip")
+    strain -= pieces.origin.take(piece, mode="clip", out=scratch)
+    pieces.coefficient[0].take(piece, mode="clip", out=out)
     for coefficient in pieces.coefficient[1:]:
-        value *= local
-        value += coefficient.take(piece, mode="clip")
-    return value
+        out *= strain
+        out += coefficient.take(piece, mode="clip", out=scratch)
+    return out
 
 
 def cord_load(curve: CordCurve, strain: ArrayLike) -> Floats:
@@ -348,5 +356,6 @@ def cord_strain_at(curve: CordCurve, load: ArrayLike) -> Floats:
 
 
 def _value(pieces: CordPieces, strain: ArrayLike) -> Floats:
-    values = np.asarray(strain, dtype=np.float64)
-    return np.asarray(evaluate(pieces, values, piece_of(pieces, values)))
+    local = np.array(strain, dtype=np.float64)
+    piece = piece_of(pieces, local)
+    return evaluate_into(np.empty_like(local), np.empty_like(local), pieces, local, piece)

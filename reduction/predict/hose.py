@@ -28,6 +28,7 @@ References
 from __future__ import annotations
 
 from dataclasses import fields
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -36,17 +37,17 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_finite
 from reduction.errors import DataError
 from reduction.predict.cord import cord_stretch_ratio
-from reduction.predict.cordload import CordPieces, cord_energy, evaluate, piece_of, pieces_of
-from reduction.predict.hoseloads import HoseNumbers, loads_at, numbers_of
-from reduction.predict.product import HoseDesign, HosePrediction, RubberLaw
-from reduction.predict.rubber import rubber_energy, rubber_tension
+from reduction.predict.cordload import CordPieces, cord_energy, evaluate_into, piece_of, pieces_of
+from reduction.predict.hoseloads import HoseLoads, HoseNumbers, loads_at, numbers_of
+from reduction.predict.product import HoseDesign, HosePrediction
+from reduction.predict.rubber import rubber_energy, tension_into
 from reduction.record import Floats
 from reduction.workers import run_blocks
 
 __all__ = ["hose_energy", "predict_hose"]
 
-BLOCK = 8192
-"""Values a block: what a block computes on the way stays in the cache of one processor."""
+BLOCK = 131_072
+"""Values a block: few enough for a cache, so many that threads seldom wait for the interpreter."""
 
 
 def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
@@ -112,28 +113,29 @@ def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
             hint="A hose buckles in compression; the prediction is for tension.",
         )
     numbers, pieces = numbers_of(design), pieces_of(design.cord)
-    n_designs, n_strain = max(1, int(np.prod(design.shape))), asked.size
+    n_designs, n_strain = prod(design.shape), asked.size
+    names = [item.name for item in fields(HosePrediction) if item.name != "strain"]
+    flags = [name for name in names if name.startswith("is_")]
+    numerals = [name for name in names if name not in flags]
+    # one piece of memory for all: the system hands out large ones more quickly than many
     target: dict[str, Any] = {
-        item.name: np.empty(
-            (n_designs, n_strain), dtype=np.bool_ if item.name.startswith("is_") else np.float64
-        )
-        for item in fields(HosePrediction)
-        if item.name != "strain"
+        **dict(zip(numerals, np.empty((len(numerals), n_designs, n_strain)), strict=True)),
+        **dict(
+            zip(flags, np.empty((len(flags), n_designs, n_strain), dtype=np.bool_), strict=True)
+        ),
     }
+    n_rows, n_columns = max(1, BLOCK // max(n_strain, 1)), max(1, min(BLOCK, n_strain))
 
     def fill(block: tuple[slice, slice]) -> None:
         rows, columns = block
-        out = {name: array[rows, columns] for name, array in target.items()}
         _respond(
             numbers.column(rows),
             pieces,
             asked[columns],
-            design.rubber_law,
-            design.minimum_inner_diameter,
-            out,
+            design,
+            {name: array[rows, columns] for name, array in target.items()},
         )
 
-    n_rows, n_columns = max(1, BLOCK // max(n_strain, 1)), min(BLOCK, max(n_strain, 1))
     run_blocks(
         fill,
         [
@@ -152,39 +154,50 @@ def _respond(
     numbers: HoseNumbers,
     pieces: CordPieces,
     strain: Floats,
-    law: RubberLaw,
-    smallest_bore: float,
+    design: HoseDesign,
     out: dict[str, Any],
 ) -> None:
+    """Fill a block of each array: operations in place, for new memory costs more than they do."""
+    stretch, inverse, cord_stretch, spare, other = np.empty((5, *out["tension"].shape))
     free = np.divide(strain, numbers.free_share, out=out["free_strain"])
-    stretch = 1 + free
-    inverse = 1 / stretch
-    square = (2 + free) * free * numbers.cosine2 - free * inverse * numbers.sine2
-    cord_stretch = np.sqrt(1 + square)
-    cord_strain = np.divide(square, 1 + cord_stretch, out=out["cord_strain"])
-    curve_strain = cord_strain / numbers.strain_scale
+    np.add(free, 1, out=stretch)
+    np.reciprocal(stretch, out=inverse)
+    # lambda_c^2 - 1 without the difference of two ones, so that a hose at rest has no cord strain
+    square = np.add(free, 2, out=spare)
+    square *= free
+    square *= numbers.cosine2
+    np.multiply(free, inverse, out=other)
+    other *= numbers.sine2
+    square -= other
+    np.add(square, 1, out=cord_stretch)
+    np.sqrt(cord_stretch, out=cord_stretch)
+    cord_strain = np.add(cord_stretch, 1, out=out["cord_strain"])
+    np.divide(square, cord_strain, out=cord_strain)
+    curve_strain = np.divide(cord_strain, numbers.strain_scale, out=other)
     piece = piece_of(pieces, curve_strain)
     np.equal(piece, 0, out=out["is_slack"])
     np.equal(piece, len(pieces.knot), out=out["is_broken"])
-    load = evaluate(pieces, curve_strain, piece)
-    cord_tension = np.multiply(load, numbers.load_scale, out=out["cord_tension"])
-    loads = loads_at(numbers, stretch, cord_stretch, cord_tension)
-    out["fill_pressure"][...] = loads.fill_pressure
-    out["end_cap_load"][...] = loads.end_cap_load
-    rubber = rubber_tension(stretch, area=numbers.area, modulus=numbers.modulus, law=law)
-    tension = np.add(rubber, loads.cord_axial_load, out=out["tension"])
-    share = np.divide(
-        loads.cord_axial_load, np.maximum(tension, np.finfo(float).tiny), out=out["cord_share"]
+    cord_tension = evaluate_into(out["cord_tension"], spare, pieces, curve_strain, piece)
+    cord_tension *= numbers.load_scale
+    cords = HoseLoads(out["fill_pressure"], out["end_cap_load"], spare)
+    loads_at(numbers, stretch, cord_stretch, cord_tension, out=cords)
+    tension = tension_into(
+        out["tension"], stretch, numbers.area * numbers.modulus, design.rubber_law
     )
+    tension += cords.cord_axial_load
+    share = np.maximum(tension, np.finfo(np.float64).tiny, out=out["cord_share"])
+    np.divide(cords.cord_axial_load, share, out=share)
     np.subtract(1, share, out=out["rubber_share"])
-    thinning = np.sqrt(inverse)
-    np.arctan(inverse * thinning * numbers.tangent, out=out["current_wrap_angle"])
-    spacing = np.multiply(
-        stretch * thinning / cord_stretch, numbers.cord_spacing, out=out["cord_spacing"]
-    )
-    np.less(spacing, numbers.cord_diameter, out=out["is_jammed"])
+    thinning = np.sqrt(inverse, out=spare)
     bore = np.multiply(thinning, numbers.inner_diameter, out=out["current_inner_diameter"])
-    np.less(bore, smallest_bore, out=out["is_bore_too_small"])
+    np.less(bore, design.minimum_inner_diameter, out=out["is_bore_too_small"])
+    inverse *= thinning
+    inverse *= numbers.tangent
+    np.arctan(inverse, out=out["current_wrap_angle"])
+    stretch *= thinning
+    stretch /= cord_stretch
+    spacing = np.multiply(stretch, numbers.cord_spacing, out=out["cord_spacing"])
+    np.less(spacing, numbers.cord_diameter, out=out["is_jammed"])
 
 
 def hose_energy(design: HoseDesign, stretch_ratio: ArrayLike) -> Floats:

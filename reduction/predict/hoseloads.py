@@ -145,7 +145,12 @@ def numbers_of(design: HoseDesign) -> HoseNumbers:
 
 
 def loads_at(
-    numbers: HoseNumbers, stretch: Floats, cord_stretch: Floats, cord_tension: Floats
+    numbers: HoseNumbers,
+    stretch: Floats,
+    cord_stretch: Floats,
+    cord_tension: Floats,
+    *,
+    out: HoseLoads | None = None,
 ) -> HoseLoads:
     r"""Loads of cords and water.
 
@@ -163,6 +168,8 @@ def loads_at(
         :math:`\lambda_c`. [1]
     cord_tension : ndarray, shape (...)
         :math:`P`. [N]
+    out : HoseLoads, optional
+        Where to write.
 
     Returns
     -------
@@ -193,11 +200,15 @@ def loads_at(
     >>> print(loads_at(numbers_of(design), one, one, 10 * one).fill_pressure.round(6))
     200000.0
     """
-    along = cord_tension / cord_stretch
-    around = along / stretch
-    end_cap = around / stretch * numbers.end_cap_factor
-    return HoseLoads(
-        fill_pressure=around * numbers.pressure_factor,
-        end_cap_load=end_cap,
-        cord_axial_load=along * stretch * numbers.axial_factor - end_cap,
-    )
+    if out is None:
+        shape = np.broadcast_shapes(numbers.cosine2.shape, stretch.shape, cord_tension.shape)
+        out = HoseLoads(np.empty(shape), np.empty(shape), np.empty(shape))
+    along = np.divide(cord_tension, cord_stretch, out=out.cord_axial_load)
+    around = np.divide(along, stretch, out=out.fill_pressure)
+    end_cap = np.divide(around, stretch, out=out.end_cap_load)
+    end_cap *= numbers.end_cap_factor
+    around *= numbers.pressure_factor
+    along *= stretch
+    along *= numbers.axial_factor
+    along -= end_cap
+    return out

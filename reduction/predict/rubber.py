@@ -37,7 +37,7 @@ from reduction.errors import SettingsError
 from reduction.predict.product import RubberLaw
 from reduction.record import Floats
 
-__all__ = ["rubber_energy", "rubber_stiffness", "rubber_tension"]
+__all__ = ["rubber_energy", "rubber_stiffness", "rubber_tension", "tension_into"]
 
 
 def rubber_tension(
@@ -79,17 +79,61 @@ def rubber_tension(
     [0.76, 1.46, 0.59, 0.37]
     """
     stretch, stiffness = as_positive("stretch_ratio", stretch_ratio), _stiffness(area, modulus)
-    strain = stretch - 1
+    tension = np.empty(np.broadcast_shapes(stretch.shape, stiffness.shape))
+    return tension_into(tension, stretch, stiffness, law)
+
+
+def tension_into(out: Floats, stretch: Floats, stiffness: Floats, law: RubberLaw) -> Floats:
+    """Write the axial load of the wall into an array; nothing is checked but the law.
+
+    Parameters
+    ----------
+    out : ndarray, shape (...)
+        Written. [N]
+    stretch : ndarray, shape (...)
+        Stretch ratio, above zero. [1]
+    stiffness : ndarray, shape (...)
+        Slope at rest, A E. [N]
+    law : {"neo-hookean", "linear", "linear-current", "hencky"}
+        See the table of the module.
+
+    Returns
+    -------
+    out : ndarray, shape (...)
+        The array given. [N]
+
+    Raises
+    ------
+    SettingsError
+        If the law is unknown.
+
+    Notes
+    -----
+    As `rubber_tension`, for many hoses at once: no array is made on the way.
+
+    Examples
+    --------
+    >>> print(tension_into(np.empty(2), np.array([1.0, 2.0]), np.array(3.0), "neo-hookean"))
+    [0. 1.75]
+    """
     match _known(law):
         case "neo-hookean":
-            inverse = 1 / stretch
-            return np.asarray((1 + inverse * (1 + inverse)) * strain * (stiffness / 3))
+            np.reciprocal(stretch, out=out)
+            np.square(out, out=out)
+            np.subtract(stretch, out, out=out)
+            out *= stiffness / 3
         case "linear":
-            return np.asarray(strain * stiffness)
+            np.subtract(stretch, 1, out=out)
+            out *= stiffness
         case "linear-current":
-            return np.asarray(strain / stretch * stiffness)
+            np.subtract(stretch, 1, out=out)
+            out /= stretch
+            out *= stiffness
         case "hencky":
-            return np.asarray(np.log1p(strain) / stretch * stiffness)
+            np.log(stretch, out=out)
+            out /= stretch
+            out *= stiffness
+    return out
 
 
 def rubber_energy(
