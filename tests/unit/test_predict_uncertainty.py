@@ -1,0 +1,164 @@
+"""Uncertainty of a hose prediction, against sampled hoses."""
+
+import dataclasses
+import re
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError, SettingsError
+from reduction.predict.cordcurve import CordCurve
+from reduction.predict.events import find_events
+from reduction.predict.hose import predict_hose
+from reduction.predict.product import HoseDesign
+from reduction.predict.sensitivity import hose_sensitivity
+from reduction.predict.uncertainty import propagate_hose
+
+INCH, PSI = 0.0254, 6894.757
+CORD = CordCurve(
+    np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]), np.array([0.0, 7.0, 22.0, 45.0, 80.0, 133.0])
+)
+DESIGN = HoseDesign(
+    wrap_angle=np.radians(68.0),
+    layer_diameter=(3.4 * INCH, 3.6 * INCH),
+    inner_diameter=2.5 * INCH,
+    outer_diameter=5.0 * INCH,
+    cords_per_length=34 / INCH,
+    cord_diameter=0.022 * INCH,
+    rubber_modulus=200 * PSI,
+    cord=CORD,
+    dead_length_share=0.05,
+)
+KNOWN = {
+    "wrap_angle": np.radians(0.2),
+    "layer_diameter": 0.02 * INCH,
+    "inner_diameter": 0.01 * INCH,
+    "outer_diameter": 0.03 * INCH,
+    "cords_per_length": 0.5 / INCH,
+    "rubber_modulus": 10 * PSI,
+    "cord_load_scale": 0.03,
+    "cord_strain_scale": 0.02,
+    "dead_length_share": 0.005,
+}
+N_HOSES = 20_000
+SAMPLING = 4 / np.sqrt(2 * N_HOSES)  # four standard errors of a standard deviation: 2 %
+BENT = 0.03  # what the second order of the curve adds, at two tenths of a degree
+
+
+@pytest.fixture(scope="module")
+def hoses():
+    rng = np.random.default_rng(20040601)
+    drawn = {name: spread * rng.standard_normal(N_HOSES) for name, spread in KNOWN.items()}
+    shift = drawn.pop("layer_diameter")
+    moved = {name: getattr(DESIGN, name) + by for name, by in drawn.items()}
+    return dataclasses.replace(
+        DESIGN, layer_diameter=tuple(one + shift for one in DESIGN.layer_diameter), **moved
+    )
+
+
+def test_the_curve_away_from_its_kinks_is_as_uncertain_as_sampled_hoses(hoses):
+    strain = np.array([0.2, 0.6, 0.85, 1.2, 1.3, 1.4, 1.6])
+    found = propagate_hose(DESIGN, strain, KNOWN)
+    assert not found.is_near_kink.any()
+    sampled = predict_hose(hoses, strain)
+    for name in ("tension", "fill_pressure"):
+        linear = getattr(found, f"{name}_standard_uncertainty")
+        assert linear == pytest.approx(getattr(sampled, name).std(axis=0), rel=SAMPLING + BENT)
+
+
+@pytest.mark.parametrize("event", ["pick_up", "working", "cord_break"])
+@pytest.mark.parametrize("quantity", ["strain", "tension", "fill_pressure"])
+def test_the_events_are_as_uncertain_as_those_of_sampled_hoses(hoses, event, quantity):
+    found = getattr(propagate_hose(DESIGN, [0.5], KNOWN), event)
+    sampled = getattr(getattr(find_events(hoses), event), quantity).std()
+    linear = getattr(found, f"{quantity}_standard_uncertainty")
+    assert linear == pytest.approx(sampled, rel=SAMPLING + 0.005)
+
+
+def test_the_strain_at_the_nominal_load_is_as_uncertain_as_read_from_sampled_curves(hoses):
+    few = dataclasses.replace(
+        hoses,
+        layer_diameter=tuple(one[:4000] for one in hoses.layer_diameter),
+        **{name: getattr(hoses, name)[:4000] for name in KNOWN if name != "layer_diameter"},
+    )
+    load = float(find_events(DESIGN).working.tension)
+    grid = np.linspace(1.1, 1.7, 301)
+    curves = predict_hose(few, grid).tension
+    after = np.argmax(curves >= load, axis=1)
+    row = np.arange(len(after))
+    below, above = curves[row, after - 1], curves[row, after]
+    crossed = grid[after - 1] + (load - below) / (above - below) * np.diff(grid)[0]
+    found = propagate_hose(DESIGN, [0.5], KNOWN)
+    linear = found.strain_at_working_load_standard_uncertainty
+    assert linear == pytest.approx(crossed.std(), rel=4 / np.sqrt(8000) + BENT)
+
+
+def test_at_the_kink_it_is_not_and_that_is_marked():
+    known = {"wrap_angle": np.radians(0.5)}
+    width = float(propagate_hose(DESIGN, [0.5], known).pick_up.strain_standard_uncertainty)
+    at = float(find_events(DESIGN).pick_up.strain) + width * np.array([-2.1, -1.9, 0, 1.9, 2.1])
+    found = propagate_hose(DESIGN, at, known)
+    assert found.is_near_kink.tolist() == [False, True, True, True, False]
+    rng = np.random.default_rng(3)
+    angles = DESIGN.wrap_angle + known["wrap_angle"] * rng.standard_normal(N_HOSES)
+    sampled = predict_hose(dataclasses.replace(DESIGN, wrap_angle=angles), at).tension.std(axis=0)
+    # on the slack side the angle moves nothing at first order
+    assert found.tension_standard_uncertainty[1] == pytest.approx(0, abs=1e-9)
+    assert sampled[2] > 100
+
+
+def test_near_the_break_is_marked_and_beyond_it_is_nan():
+    at = float(find_events(DESIGN).cord_break.strain) + np.array([-1e-3, 1e-3])
+    found = propagate_hose(DESIGN, at, KNOWN)
+    assert found.is_near_kink.tolist() == [True, True]
+    assert np.isnan(found.tension_standard_uncertainty).tolist() == [False, True]
+    assert np.isnan(found.tension_contribution[:, 1]).all()
+
+
+def test_contributions_are_signed_and_in_the_order_of_the_parameters():
+    found = propagate_hose(DESIGN, [1.3], {"rubber_modulus": 10 * PSI, "wrap_angle": 0.003})
+    assert found.source == ("wrap_angle", "rubber_modulus")
+    assert np.sign(found.tension_contribution[:, 0]).tolist() == [-1, 1]
+    slopes = hose_sensitivity(DESIGN, [1.3])
+    assert found.tension_contribution[0] == pytest.approx(0.003 * slopes.tension[0])
+    assert found.tension_standard_uncertainty == pytest.approx(
+        np.hypot(*found.tension_contribution)
+    )
+
+
+def test_the_two_strains_at_the_working_load_differ_by_what_the_load_moves():
+    found = propagate_hose(DESIGN, [1.3], KNOWN)
+    at = find_events(DESIGN).working.strain
+    slopes = propagate_hose(DESIGN, [float(at)], KNOWN)
+    stiffness = hose_sensitivity(DESIGN, [float(at)]).stiffness
+    expected = -slopes.tension_contribution[:, 0] / stiffness
+    assert found.strain_at_working_load_contribution == pytest.approx(expected, rel=1e-8)
+
+
+def test_many_hoses_at_once_and_nothing_uncertain():
+    many = dataclasses.replace(DESIGN, wrap_angle=np.radians([[60.0], [64.0]]))
+    found = propagate_hose(many, [0.1, 0.2, 0.3], {"wrap_angle": 0.01})
+    assert found.tension_contribution.shape == (1, 2, 1, 3)
+    assert found.working.strain_standard_uncertainty.shape == (2, 1)
+    assert found.is_near_kink.shape == (2, 1, 3)
+    known = propagate_hose(DESIGN, [0.1, 0.2], {})
+    assert known.source == () and known.tension_contribution.shape == (0, 2)
+    assert known.tension_standard_uncertainty.tolist() == [0, 0]
+
+
+@pytest.mark.parametrize(
+    ("error", "known", "message"),
+    [
+        (SettingsError, {"cord_diameter": 1e-5}, "standard_uncertainty.cord_diameter is no number of a hose; found cord_diameter; needed one of wrap_angle, layer_diameter"),
+        (SettingsError, {"wrap_angle": -0.1}, "standard_uncertainty.wrap_angle is no uncertainty; found -0.1 in SI; needed zero or more"),
+        (SettingsError, {"wrap_angle": np.nan}, "found nan in SI"),
+    ],
+)  # fmt: skip
+def test_an_uncertainty_that_is_none_is_refused(error, known, message):
+    with pytest.raises(error, match=re.escape(message)):
+        propagate_hose(DESIGN, [0.5], known)
+
+
+def test_a_strain_that_cannot_be_predicted_is_refused():
+    with pytest.raises(DataError, match="1 of 1 strains are below zero"):
+        propagate_hose(DESIGN, [-0.1], KNOWN)
