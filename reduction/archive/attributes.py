@@ -15,13 +15,22 @@ from reduction.errors import ArchiveError
 from reduction.product import ReducedTest
 from reduction.provenance import Source, Step
 
-__all__ = ["CONVENTIONS", "experiment_attributes", "global_attributes", "outcome_attributes"]
+__all__ = [
+    "CONVENTIONS",
+    "comparison_attributes",
+    "experiment_attributes",
+    "global_attributes",
+    "outcome_attributes",
+    "prediction_attributes",
+]
 
 CONVENTIONS = "CF-1.11 ACDD-1.3"
 _SOFTWARE = "mooring-reduction"
 _KEYWORDS = "mooring, tension test, elastic modulus, hysteresis"
 _KEYWORDS_OF_EXPERIMENTS = "mooring, designed experiment, response surface, spring constant"
 _KEYWORDS_OF_OUTCOMES = "mooring, tensile strength, fatigue, abrasion, exposure"
+_KEYWORDS_OF_PREDICTIONS = "mooring, stretch hose, tire cord, load elongation, prediction"
+_KEYWORDS_OF_COMPARISONS = "mooring, stretch hose, validation, measured against predicted"
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -98,6 +107,62 @@ def outcome_attributes(
             "id": f"{campaign_id}/outcomes",
             "campaign": campaign_id,
             **_raw_files([source]),
+            "settings": settings_json,
+        },
+        steps=steps,
+        version=version,
+        command=command,
+    )
+
+
+def prediction_attributes(
+    names: Sequence[str],
+    *,
+    campaign_id: str,
+    attributes: Mapping[str, str],
+    sources: Sequence[Source],
+    steps: Sequence[Step],
+    settings_json: str,
+    version: str,
+    command: str,
+) -> dict[str, str]:
+    """Return the global attributes of an archive of predictions, in the same order."""
+    return _complete(
+        attributes,
+        {
+            "summary": f"Load and fill pressure of {' and '.join(names)}, from construction alone.",
+            "keywords": _KEYWORDS_OF_PREDICTIONS,
+            "id": f"{campaign_id}/predictions",
+            "campaign": campaign_id,
+            **_raw_files(sources),
+            "settings": settings_json,
+        },
+        steps=steps,
+        version=version,
+        command=command,
+    )
+
+
+def comparison_attributes(
+    names: Sequence[str],
+    *,
+    campaign_id: str,
+    attributes: Mapping[str, str],
+    sources: Sequence[Source],
+    steps: Sequence[Step],
+    settings_json: str,
+    version: str,
+    command: str,
+) -> dict[str, str]:
+    """Return the global attributes of an archive of comparisons, in the same order."""
+    return _complete(
+        attributes,
+        {
+            "summary": f"Measured curves against their predictions: {' and '.join(names)}.",
+            "keywords": _KEYWORDS_OF_COMPARISONS,
+            "id": f"{campaign_id}/comparisons",
+            "campaign": campaign_id,
+            **_raw_files(sources),
             "settings": settings_json,
         },
         steps=steps,

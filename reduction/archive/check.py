@@ -15,6 +15,7 @@ import numpy as np
 
 from reduction.archive.attributes import CONVENTIONS
 from reduction.archive.outcomes import OUTCOME_SCHEMA
+from reduction.archive.prediction_schema import PREDICTION_SCHEMA
 from reduction.archive.schema import SCHEMA_VERSION, schema_of
 from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.variable import Variable
@@ -83,6 +84,8 @@ def _schema_of_file(dimensions: Container[str]) -> Mapping[str, Variable]:
         return SURFACE_SCHEMA
     if "outcome" in dimensions:
         return OUTCOME_SCHEMA
+    if "hose" in dimensions:
+        return PREDICTION_SCHEMA
     return schema_of(is_stepwise="step" in dimensions)
 
 

@@ -40,6 +40,8 @@ class LayerSection(_Section):
     wrap_angle: str
     strain_limit: Number | None = None
     """Greatest tensile strain that it bears."""
+    compression_limit: Number | None = None
+    """Greatest compressive strain that it bears, a positive number."""
 
 
 class HoseKeys(_Section):

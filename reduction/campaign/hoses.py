@@ -7,7 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from reduction.campaign.faults import in_toml
-from reduction.campaign.hosemodel import CordSection, HoseKeys, HoseSpecFile, Number
+from reduction.campaign.hosemodel import (
+    CordSection,
+    HoseKeys,
+    HoseSpecFile,
+    LayerSection,
+    Number,
+)
 from reduction.campaign.toml import read_toml
 from reduction.errors import SettingsError
 from reduction.predict.cordcurve import CordCurve
@@ -144,17 +150,17 @@ def hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection
         standard_uncertainty=_uncertainties(read, keys, design, length),
         strain_step=step,
         greatest_strain=last,
-        layers=tuple(
-            HelicalLayer(
-                layer.name,
-                read.value(f"layers.{layer.name}", layer.wrap_angle, "angle"),
-                np.nan
-                if layer.strain_limit is None
-                else read.value(f"layers.{layer.name}", layer.strain_limit, "strain"),
-            )
-            for layer in keys.layers
-        ),
+        layers=tuple(_layer(read, layer) for layer in keys.layers),
     )
+
+
+def _layer(read: _Reader, layer: LayerSection) -> HelicalLayer:
+    place = f"layers.{layer.name}"
+    limits = [
+        np.nan if text is None else read.value(place, text, "strain")
+        for text in (layer.strain_limit, layer.compression_limit)
+    ]
+    return HelicalLayer(layer.name, read.value(place, layer.wrap_angle, "angle"), *limits)
 
 
 def _cord(read: _Reader, place: str, cord: CordSection) -> CordCurve:

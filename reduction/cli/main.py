@@ -39,6 +39,14 @@ class DesignName(StrEnum):
     PLACKETT_BURMAN = "plackett-burman"
 
 
+class PredictionName(StrEnum):
+    """Predictions that the command line knows."""
+
+    HOSE = "hose"
+    ARMOUR = "armour"
+    WAVE_LOAD = "wave-load"
+
+
 SpecPath = Annotated[Path, typer.Argument(metavar="SPEC.toml", show_default=False, callback=here)]
 OptionalSpecPath = Annotated[
     Path | None, typer.Argument(metavar="[SPEC.toml]", show_default=False, callback=here)
@@ -163,6 +171,24 @@ def surface(
         from reduction.cli.surfaces import fit_runs
 
         fit_runs(runs, spec, outcome=outcome)
+
+
+@app.command()
+def predict(
+    kind: Annotated[PredictionName, typer.Argument(help="Of what.", show_default=False)],
+    spec: SpecPath,
+    out: Annotated[
+        Path | None, typer.Option(help="Write archive, tables and figures to this folder.")
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Predict a stretch hose, a helical armour or a wave load from construction alone."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.predictions import predict_hose
+
+        {PredictionName.HOSE: predict_hose}[kind](spec, out=out, outcome=outcome)
 
 
 @app.command()

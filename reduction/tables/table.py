@@ -8,6 +8,7 @@ from typing import Literal
 
 import xarray as xr
 
+from reduction.archive.prediction_schema import PREDICTION_SCHEMA
 from reduction.archive.schema import schema_of
 from reduction.archive.surface_schema import SURFACE_SCHEMA, rows_of_response
 from reduction.archive.variable import Variable, count, label, measured, stated
@@ -15,7 +16,7 @@ from reduction.tables.column import Column, uncertainty_of
 
 __all__ = ["SYNTHETIC", "TEST", "Product", "Table"]
 
-Product = Literal["test", "stepwise test", "experiments"]
+Product = Literal["test", "stepwise test", "experiments", "predictions"]
 
 TEST = Column("test", label("test")[0])
 SYNTHETIC = Column("synthetic", label("synthetic")[0])
@@ -43,6 +44,7 @@ _SCHEMAS: dict[Product, dict[str, Variable]] = {
     "test": schema_of(is_stepwise=False) | _OWN,
     "stepwise test": schema_of(is_stepwise=True) | _OWN,
     "experiments": SURFACE_SCHEMA | _OF_RESPONSES,
+    "predictions": PREDICTION_SCHEMA,
 }
 
 
@@ -68,7 +70,7 @@ class Table:
     prepare : callable
         What has to be done to the archive first.
     product : str
-        Whose names they are. Of experiments a row names the experiment, else the test.
+        Whose names they are. A row of a test names it; any other names its experiment or hose.
     """
 
     name: str
@@ -82,7 +84,7 @@ class Table:
     def columns(self) -> list[Column]:
         """Every column, the test first and the word on synthetic data last."""
         schema = _SCHEMAS[self.product]
-        columns = [] if self.product == "experiments" else [TEST]
+        columns = [TEST] if self.product in ("test", "stepwise test") else []
         for item in (*(dim for dim in self.dims if dim in schema), *self.variables):
             name, _, source = item.partition("=")
             column = _column(name, schema[source or name])

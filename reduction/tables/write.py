@@ -15,6 +15,7 @@ from reduction.tables.definitions import TABLES
 from reduction.tables.envelope import ENVELOPE_COLUMNS, Curve, curves_of, envelope_rows
 from reduction.tables.experiments import EXPERIMENT_TABLES
 from reduction.tables.outcomes import OUTCOME_TABLES, GroupColumn, outcome_table_rows
+from reduction.tables.predictions import PREDICTION_TABLES
 from reduction.tables.responses import by_response
 from reduction.tables.rows import table_rows
 from reduction.tables.static_dynamic import (
@@ -23,6 +24,7 @@ from reduction.tables.static_dynamic import (
     slopes_of,
     static_dynamic_rows,
 )
+from reduction.tables.table import Table
 
 __all__ = ["write_tables"]
 
@@ -39,6 +41,7 @@ def write_tables(
     *,
     surfaces: Path | None = None,
     outcomes: Path | None = None,
+    predictions: Path | None = None,
 ) -> list[Path]:
     """Write every table that the archives fill, and columns.csv, which explains them.
 
@@ -53,6 +56,8 @@ def write_tables(
         Archive of the campaign's experiments, where it has any.
     outcomes : pathlib.Path, optional
         Archive of the campaign's outcomes without a log, where it has any.
+    predictions : pathlib.Path, optional
+        Archive of the campaign's predicted hoses, where it has any.
 
     Returns
     -------
@@ -66,11 +71,12 @@ def write_tables(
         If an archive cannot be opened or a table cannot be written.
     """
     columns: dict[str, Sequence[Column | GroupColumn]] = {
-        table.name: table.columns for table in (*TABLES, *EXPERIMENT_TABLES)
+        table.name: table.columns for table in (*TABLES, *EXPERIMENT_TABLES, *PREDICTION_TABLES)
     }
     columns |= {"envelope": ENVELOPE_COLUMNS, "static_dynamic": STATIC_DYNAMIC_COLUMNS}
     columns |= OUTCOME_TABLES
     rows = _all_rows(archives) | _experiment_rows(surfaces) | _outcome_rows(outcomes)
+    rows |= _rows_as_they_are(predictions, PREDICTION_TABLES)
     filled = [name for name in columns if rows[name]]
     rows["columns"] = [
         [f"{name}.csv", *column.description]
@@ -122,6 +128,13 @@ def _experiment_rows(surfaces: Path | None) -> dict[str, list[list[Cell]]]:
     with open_archive(surfaces) as archive:
         dataset = by_response(archive)
         return {table.name: table_rows(dataset, table) for table in EXPERIMENT_TABLES}
+
+
+def _rows_as_they_are(path: Path | None, tables: Sequence[Table]) -> dict[str, list[list[Cell]]]:
+    if path is None:
+        return {table.name: [] for table in tables}
+    with open_archive(path) as archive:
+        return {table.name: table_rows(archive, table) for table in tables}
 
 
 def _outcome_rows(outcomes: Path | None) -> dict[str, list[list[Cell]]]:
