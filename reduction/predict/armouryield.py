@@ -25,7 +25,7 @@ __all__ = ["YieldCriterion", "layer_strength", "wire_stress", "yield_strain"]
 YieldCriterion = Literal["axial", "normal", "von-mises"]
 
 _STEPS = 100
-_CLOSE = 1e-12  # of the yield stress
+_CLOSE = 1e-10  # of the yield stress; strains of the cable are differences from one
 
 
 def wire_stress(response: ArmourResponse, *, criterion: YieldCriterion = "von-mises") -> Floats:
@@ -105,13 +105,14 @@ def yield_strain(
     SettingsError
         If a yield stress is not above zero, or criterion or theory are unknown.
     FitError
-        If the strain is not found, as for wires that would have to be strained without bound.
+        If the strain is not found: the yield strain is lost in rounding, or the wires are much
+        thicker than their core.
 
     Notes
     -----
     Strain of the wire and strain of the cable are one in closed form (`reduction.predict.cord`),
     and the stress is all but proportional to the strain of the wire: it is scaled until the
-    stress is the yield stress to 1e-12.  [1]_, sec. 5.3, takes the axial stress alone.
+    stress is the yield stress to 1e-10.  [1]_, sec. 5.3, takes the axial stress alone.
 
     Examples
     --------
@@ -146,7 +147,7 @@ def yield_strain(
     raise FitError(
         "the strain at which the wires yield is not found",
         found=f"a stress that is still {100 * worst:.2g} % off",
-        needed="wires whose yield strain is small",
+        needed="a yield stress above 1e-5 of the modulus, and wires no thicker than their core",
     )
 
 
