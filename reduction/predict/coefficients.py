@@ -42,7 +42,7 @@ __all__ = [
 ]
 
 SEAWATER_VISCOSITY = 1.1892e-6
-"""Kinematic, at 15 deg C and 35 g/kg ([3]_). [m2 s-1]"""
+"""Kinematic, of standard seawater at 15 deg C ([3]_). [m2 s-1]"""
 GREATEST_DIAMETER_TO_LENGTH = 0.2
 """Above it a cylinder changes the wave, and Morison's equation does not hold ([1]_, sec. 2). [1]"""
 
@@ -289,8 +289,8 @@ def flow_regime(
     Notes
     -----
     Of the horizontal velocity, the current included; some sources give KC for the wave alone
-    and the current apart.  Table 2 of [1]_ gives no range of KC or Re for its numbers;
-    those of [2]_ are from KC 3 to 120 at Re up to 30,000 on cylinders of 2-3 in.
+    and the current apart.  Table 2 of [1]_ gives no range of KC or Re for its numbers,
+    though [2]_ shows that they depend on KC.
 
     Examples
     --------

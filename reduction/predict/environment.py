@@ -201,8 +201,8 @@ def anchor_force(
     -----
     Eq. (4) of [1]_, the extreme case in which all act in one direction, adds loads; the cross
     term 2 u U of the squared velocity is missing there, so that the sum is too low where the
-    current follows the wave, the very case meant.  Where the current opposes the wave the sum
-    has the wrong sign of that term.
+    current follows the wave, the very case meant.  Where the current opposes the wave the
+    term takes from the load under the crest, and the sum is too high.
 
     Examples
     --------

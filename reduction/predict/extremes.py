@@ -123,7 +123,7 @@ def find_extremes(
     Notes
     -----
     Table 5 of [1]_ is the extreme on a grid of 0.1 s up to 5 s, its Table 6 up to 10 s; both
-    miss the extremes of their own formula, by up to 0.6 N/m.
+    miss the extremes of their own formula, by up to 0.4 N/m.
 
     Examples
     --------

@@ -199,9 +199,9 @@ def wave_load(
     Notes
     -----
     Eq. (1) and (10) of [1]_.  The hose is held in place with its waterline at the mean level,
-    as there; one that rides the wave meets less.  Drag is taken direction by direction: with
-    both velocities at once, |u|u of the vector would be larger by up to sqrt(2).  Lift and the
-    change of buoyancy are left out.
+    as there; one that rides the wave meets less.  Drag is taken direction by direction; on a
+    round section wholly under water it would go with the speed of both together, which is
+    more.  Lift and the change of buoyancy are left out.
 
     Examples
     --------

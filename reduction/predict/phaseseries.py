@@ -211,7 +211,7 @@ def root_phases(coefficients: Coefficients) -> Floats:
     Returns
     -------
     phase : ndarray, shape (..., n_roots)
-        Among them every zero of the sum; one phase of no meaning where the sum is zero. [rad]
+        Among them every zero of the sum; 0 where a sum has fewer roots than others. [rad]
 
     Raises
     ------
@@ -222,26 +222,28 @@ def root_phases(coefficients: Coefficients) -> Floats:
     -----
     Eigenvalues of the companion matrix ([1]_).  Roots off the circle are kept: who looks
     for the greatest value of a function tries them all and needs no tolerance to tell them
-    apart.  Outermost orders that are rounding in every sum are left out.
+    apart.  Outermost orders that are rounding are left out.
 
     Examples
     --------
     >>> print(np.sort(root_phases(cosine_series(np.array([1.0])))).round(6))
     [-1.570796  1.570796]
     """
-    middle = int(_orders(coefficients)[-1])
-    size = np.abs(coefficients)
-    is_there = np.any(
-        size > _ZERO * size.max(axis=-1, keepdims=True), axis=tuple(range(size.ndim - 1))
-    )
-    order = int(np.max(np.abs(np.flatnonzero(is_there) - middle), initial=0))
-    if order == 0:
-        return np.zeros((*size.shape[:-1], 1))
-    falling = coefficients[..., middle - order : middle + order + 1][..., ::-1]
-    companion = np.zeros((*size.shape[:-1], 2 * order, 2 * order), dtype=np.complex128)
-    companion[..., 0, :] = -falling[..., 1:] / falling[..., :1]
-    companion[..., np.arange(1, 2 * order), np.arange(2 * order - 1)] = 1.0
-    return np.asarray(np.angle(np.linalg.eigvals(companion)))
+    orders = _orders(coefficients)
+    rows = np.reshape(coefficients, (-1, orders.size))
+    size = np.abs(rows)
+    is_there = size > _ZERO * size.max(axis=-1, keepdims=True)
+    order_of = np.max(np.where(is_there, orders, 0), axis=-1)
+    phase = np.zeros((len(rows), max(2 * int(order_of.max(initial=0)), 1)))
+    for order in range(1, int(order_of.max(initial=0)) + 1):
+        alike = order_of == order
+        middle = orders.size // 2
+        falling = rows[alike, middle - order : middle + order + 1][:, ::-1]
+        companion = np.zeros((len(falling), 2 * order, 2 * order), dtype=np.complex128)
+        companion[:, 0, :] = -falling[:, 1:] / falling[:, :1]
+        companion[:, np.arange(1, 2 * order), np.arange(2 * order - 1)] = 1.0
+        phase[alike, : 2 * order] = np.angle(np.linalg.eigvals(companion))
+    return phase.reshape(*np.shape(coefficients)[:-1], phase.shape[1])
 
 
 def _amplitudes(amplitude: Floats) -> Floats:
