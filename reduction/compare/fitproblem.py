@@ -1,0 +1,230 @@
+"""Measured points and the numbers of a hose that are fitted to them.
+
+References
+----------
+.. [1] G. A. F. Seber and C. J. Wild, "Nonlinear Regression," Wiley, 1989, ch. 2.
+.. [2] R. T. Birge, "The calculation of errors by the method of least squares," Phys. Rev.,
+   vol. 40, 1932.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from reduction.compare.identifiability import plausible_error
+from reduction.compare.residuals import autocorrelation_length
+from reduction.compare.trials import trial_tension
+from reduction.errors import FitError
+from reduction.predict.product import HoseDesign
+from reduction.record import Floats, freeze_arrays
+
+__all__ = ["FitProblem", "FitSpread", "parameter_bounds", "spread_of"]
+
+_START_STEPS = (-4.0, -2.0, 0.0, 2.0, 4.0)  # plausible errors, tried in all combinations
+_DIFFERENCE = 1e-3  # of a plausible error, for derivatives
+
+
+def parameter_bounds(name: str, start: float) -> tuple[float, float]:
+    """Between what a number is kept while it is fitted.
+
+    Parameters
+    ----------
+    name : str
+        One of `reduction.compare.identifiability.CALIBRATED`.
+    start : float
+        Its value. [SI]
+
+    Returns
+    -------
+    low, high : float
+        10 degrees around a wrap angle, up to half of the length that does not stretch, a fifth to
+        five times the others. [SI]
+
+    Raises
+    ------
+    SettingsError
+        If the number is not one to be fitted.
+
+    Examples
+    --------
+    >>> print(parameter_bounds("cord_load_scale", 1.0))
+    (0.2, 5.0)
+    """
+    plausible_error(name, start)
+    if name == "wrap_angle":
+        low, high = start - np.radians(10.0), start + np.radians(10.0)
+        return max(float(low), float(np.radians(1.0))), min(float(high), float(np.radians(89.0)))
+    if name == "dead_length_share":
+        return 0.0, 0.5
+    return start / 5, start * 5
+
+
+@dataclass(frozen=True)
+class FitProblem:
+    """Measured points and what is to be fitted to them; numbers in plausible errors.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        From which the numbers are that are not fitted.
+    names : tuple of str, length n_parameter
+        Numbers that are fitted.
+    unit, low, high : ndarray, shape (n_parameter,)
+        Plausible error of each [SI], and its bounds in that unit.
+    strain, tension, noise : ndarray, shape (n_strain,)
+        Measured points, and the standard uncertainty that no two of them share. [1], [N], [N]
+    shared : ndarray, shape (n_source, n_strain)
+        What they share, signed; fitted beside the numbers. [N]
+    """
+
+    design: HoseDesign
+    names: tuple[str, ...]
+    unit: Floats
+    low: Floats
+    high: Floats
+    strain: Floats
+    tension: Floats
+    noise: Floats
+    shared: Floats
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+    def tension_at(self, steps: Floats) -> Floats:
+        """Tension of trials (n_trial, n_parameter), shape (n_trial, n_strain). [N]."""
+        return trial_tension(self.design, self.names, steps * self.unit, self.strain)
+
+    def slopes(self, at: Floats) -> Floats:
+        """Derivative of tension by each number in plausible errors, (n_strain, n_parameter)."""
+        p = at.size
+        ends = np.vstack([at - _DIFFERENCE * np.eye(p), at + _DIFFERENCE * np.eye(p)])
+        ends = np.clip(ends, self.low, self.high)
+        below, above = np.split(self.tension_at(ends), 2)
+        width = np.diagonal(ends[p:] - ends[:p])
+        return np.asarray((above - below) / width[:, None]).T
+
+    def remainder(self, x: Floats) -> Floats:
+        """Fitted curve, shared errors in it, less the measured one, shape (n_strain,). [N]."""
+        at, z = np.split(x, [self.unit.size])
+        return np.asarray(self.tension_at(at[None, :])[0] + z @ self.shared - self.tension)
+
+    def residual(self, x: Floats, noise: Floats) -> Floats:
+        """What is squared and summed: every strain, then every shared error."""
+        return np.concatenate([self.remainder(x) / noise, x[self.unit.size :]])
+
+    def jacobian(self, x: Floats, noise: Floats) -> Floats:
+        """Of `residual`, by the numbers and the shared errors."""
+        slopes = self.slopes(x[: self.unit.size])
+        k = self.shared.shape[0]
+        data = np.hstack([slopes, self.shared.T]) / noise[:, None]
+        prior = np.hstack([np.zeros((k, self.unit.size)), np.eye(k)])
+        return np.vstack([data, prior])
+
+    def start(self, first: Floats) -> Floats:
+        """Best of a few values around the design, since the curve has kinks."""
+        p = first.size
+        offsets = np.array(list(product(_START_STEPS, repeat=p)))
+        tried = np.clip(first + offsets, self.low, self.high)
+        error = (self.tension_at(tried) - self.tension) / self.noise
+        return np.asarray(tried[int(np.argmin(np.sum(error**2, axis=1)))])
+
+    def solve(self, first: Floats, noise: Floats) -> Floats:
+        """Least sum of squares, from these numbers; shared errors begin at zero.
+
+        Raises
+        ------
+        FitError
+            If the search does not end.
+        """
+        k = self.shared.shape[0]
+        margin = 1e-6 * (self.high - self.low)  # a search may not begin on a bound
+        inside = np.clip(first[: self.unit.size], self.low + margin, self.high - margin)
+        x0 = np.concatenate([inside, np.zeros(k)])
+        found = least_squares(
+            self.residual,
+            x0,
+            jac=self.jacobian,
+            bounds=(
+                np.concatenate([self.low, np.full(k, -np.inf)]),
+                np.concatenate([self.high, np.full(k, np.inf)]),
+            ),
+            xtol=1e-10,
+            ftol=1e-10,
+            gtol=1e-10,
+            args=(noise,),
+        )
+        if not found.success:
+            raise FitError(
+                "the calibration did not come to an end",
+                found=f"{found.nfev} trials",
+                needed="a least sum of squares",
+                hint="Fit fewer numbers.",
+            )
+        return np.asarray(found.x)
+
+
+@dataclass(frozen=True)
+class FitSpread:
+    """Covariance of the fitted numbers, in plausible errors, and what it rests on."""
+
+    covariance: Floats
+    freedom: float
+    effective_points: float
+
+    def __post_init__(self) -> None:
+        """Make the array read-only."""
+        freeze_arrays(self)
+
+
+def spread_of(problem: FitProblem, best: Floats, noise: Floats) -> FitSpread:
+    """Covariance of what was fitted, from the points that the residuals are worth.
+
+    Parameters
+    ----------
+    problem : FitProblem
+        What was fitted.
+    best : ndarray, shape (n_parameter + n_source,)
+        Its answer. [1]
+    noise : ndarray, shape (n_strain,)
+        Standard uncertainty that the points were weighed by. [N]
+
+    Returns
+    -------
+    spread : FitSpread
+        Degrees of freedom at least one.
+
+    Raises
+    ------
+    Nothing
+        Numbers that do the same have a covariance without bound, by a pseudo-inverse.
+
+    Notes
+    -----
+    The information of the data is divided by tau times the reduced chi square, where that is
+    above 1 [2]_; shared errors keep the information of their stated uncertainty.
+
+    Examples
+    --------
+    See `reduction.compare.calibrate.calibrate_hose`.
+
+    >>> FitSpread(np.eye(2), 8.0, 10.0).freedom
+    8.0
+    """
+    p, n = problem.unit.size, noise.size
+    left = problem.remainder(best) / noise
+    length = autocorrelation_length(left)
+    worth = n / length
+    freedom = max(worth - p, 1.0)
+    excess = max(1.0, float(left @ left) / n * length * max(worth / freedom, 1.0))
+    jacobian = problem.jacobian(best, noise)
+    data, prior = jacobian[:n], jacobian[n:]
+    information = data.T @ data / excess + prior.T @ prior
+    scale = np.sqrt(np.maximum(np.diagonal(information), np.finfo(float).tiny))
+    inverse = np.linalg.pinv(information / np.outer(scale, scale), rcond=1e-14, hermitian=True)
+    covariance = inverse / np.outer(scale, scale)
+    return FitSpread(covariance[:p, :p], freedom, worth)

@@ -1,0 +1,210 @@
+"""A measured curve on an axis of strain, from the samples of a test.
+
+References
+----------
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004.
+.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of
+   uncertainty in measurement" (type A and type B).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.compare.cells import fill_cells, tension_at_centres
+from reduction.compare.product import Loading, MeasuredCurve
+from reduction.compare.samples import select_samples
+from reduction.compare.scatter import bin_noise, branch_scatter, shared_scatter
+from reduction.errors import SettingsError
+from reduction.record import Floats
+
+__all__ = ["SharedUncertainty", "measured_curve"]
+
+_ONE_BRANCH = (
+    "one branch was measured: it is judged itself, and lies above a midline by half the loop"
+)
+
+
+@dataclass(frozen=True)
+class SharedUncertainty:
+    """Standard uncertainties of the calibration, which all samples of a test share.
+
+    Offset and scale of the load cell [N], [1] and of the strain [1], [1]; a strain scale is
+    that of the relaxed length too.
+    """
+
+    tension_offset: float = 0.0
+    tension_scale: float = 0.0
+    strain_offset: float = 0.0
+    strain_scale: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check that none is negative or unknown."""
+        for name, value in vars(self).items():
+            if not (np.isfinite(value) and value >= 0):
+                raise SettingsError(
+                    f"the standard uncertainty of {name} cannot be used",
+                    found=f"{value:g}",
+                    needed="zero or more",
+                )
+
+
+def measured_curve(
+    strain: ArrayLike,
+    tension: ArrayLike,
+    *,
+    loading: Loading,
+    cycle_number: ArrayLike | None = None,
+    branch: ArrayLike | None = None,
+    strain_step: float | None = None,
+    break_in_cycles: int = 0,
+    shared: SharedUncertainty | None = None,
+) -> MeasuredCurve:
+    r"""Tension of every cycle and branch at equally spaced strains, and over the cycles.
+
+    With the mean strain :math:`\bar\varepsilon` and tension :math:`\bar T` of the samples in a
+    bin, the tension at its centre :math:`\varepsilon_0` is
+
+    .. math:: T = \bar T - T' (\bar\varepsilon - \varepsilon_0)
+              + \tfrac{1}{2} T'' [(\bar\varepsilon - \varepsilon_0)^2 - s^2],
+
+    slope and bend from the means of the two neighbouring bins, :math:`s^2` the variance of
+    strain in the bin.
+
+    Parameters
+    ----------
+    strain : array_like, shape (n_samples,)
+        Nominal strain of the whole relaxed length; NaN where missing or flagged. [1]
+    tension : array_like, shape (n_samples,)
+        Tension; NaN where missing or flagged. [N]
+    loading : {"static", "dynamic"}
+        How it was pulled.
+    cycle_number : array_like of int, shape (n_samples,), optional
+        From 1; 0 outside cycles. Without it the record is one slow pull, which ends at its
+        greatest tension. [1]
+    branch : array_like of int, shape (n_samples,), optional
+        0 none, 1 ascending, 2 descending; goes with ``cycle_number``. [1]
+    strain_step : float, optional
+        Between the strains of the curve; without it 1 %, or wider where samples are few. [1]
+    break_in_cycles : int
+        First cycles that are in no mean; they are kept cycle by cycle. [1]
+    shared : SharedUncertainty, optional
+        Of the calibration; none where not given.
+
+    Returns
+    -------
+    curve : MeasuredCurve
+        Cycle by cycle, means, midline, and what they are uncertain by. [SI]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up, no sample belongs to a branch, or no cycle is left
+        after break-in.
+    SettingsError
+        If the step is not positive, one of ``cycle_number`` and ``branch`` is missing, or
+        ``loading`` is neither.
+
+    Notes
+    -----
+    *Bias.* A mean over a bin is high by a 24th of its bend; the third term takes that off, so
+    that a parabola comes back exactly.  Where the cords pick up, the slope jumps and the curve
+    is rounded over one bin.  A bin at the end of a branch has one neighbour and no bend.
+
+    *Uncertainty* of the means is type A: scatter over the cycles, and for a single pull the
+    noise in the bins and from bin to bin.  Where cycles lie high or low as a whole, that part
+    is kept as signed contributions, since it does not average out over strain.  Calibration
+    errors are signed contributions too: what the curve is wrong by if the instrument reads
+    one standard uncertainty high.  A strain that is read high moves the curve to the right:
+    minus the slope times it.
+
+    *NaN.* A sample that is missing in either series is left out; a bin is NaN where a branch
+    has no sample, or only samples beside its centre with nothing beyond; a mean is NaN where
+    fewer than half of the cycles came.  Strains below zero are left out: no hose is
+    predicted there.
+
+    More than 1000 cycles are kept as means of consecutive ones.
+
+    Examples
+    --------
+    Two cycles of a parabola come back exactly, ascending 10 N above descending.
+
+    >>> stroke = np.linspace(0.0, 0.5, 401)
+    >>> strain = np.tile(np.concatenate([stroke, stroke[::-1]]), 2)
+    >>> branch = np.tile(np.repeat([1, 2], 401), 2)
+    >>> tension = 400 * strain**2 + np.where(branch == 1, 5, -5)
+    >>> curve = measured_curve(
+    ...     strain, tension, loading="static", cycle_number=np.repeat([1, 2], 802), branch=branch
+    ... )
+    >>> place = np.searchsorted(curve.strain, 0.2999)
+    >>> print(curve.tension[:, :, place].round(6), curve.midline_tension[place].round(6))
+    [[41. 31.] [41. 31.]] 36.0
+    """
+    if loading not in ("static", "dynamic"):
+        raise SettingsError("loading is unknown", found=str(loading), needed="static or dynamic")
+    samples = select_samples(
+        strain, tension, cycle_number=cycle_number, branch=branch, break_in_cycles=break_in_cycles
+    )
+    step = samples.least_step() if strain_step is None else strain_step
+    if not (np.isfinite(step) and step > 0):
+        raise SettingsError("strain_step cannot be used", found=f"{step:g}", needed="above zero")
+    n_cycle = samples.cycle_number.size
+    cells, centre = fill_cells(
+        samples.strain, samples.tension, row=samples.row, n_rows=2 * n_cycle, step=step
+    )
+    by_row = tension_at_centres(cells)
+    by_cycle = by_row.reshape(n_cycle, 2, centre.size)
+    kept = by_cycle[samples.n_break_in :]
+    noise = bin_noise(cells, by_row).reshape(by_cycle.shape)[samples.n_break_in :]
+    mean, variance = branch_scatter(kept, noise)
+    middle, noise_of_middle = kept.mean(axis=1), noise.mean(axis=1) / 2
+    midline = branch_scatter(middle[:, None], noise_of_middle[:, None])[0][0]
+    is_paired = bool(np.isfinite(midline).any())
+    judged = midline if is_paired else mean[0]
+    cycles, its_noise = (middle, noise_of_middle) if is_paired else (kept[:, 0], noise[:, 0])
+    common, rest = shared_scatter(cycles, judged)
+    _, independent = branch_scatter(rest[:, None], its_noise[:, None])
+    type_a = np.sqrt(independent[0] + np.sum(common**2, axis=0))
+    of_branch = np.sqrt(variance)
+    if not is_paired:
+        of_branch[0] = type_a
+    source, contribution = _contributions(centre, judged, shared or SharedUncertainty())
+    return MeasuredCurve(
+        strain=centre,
+        tension=by_cycle,
+        count=cells.count.reshape(by_cycle.shape).astype(np.int64),
+        cycle_number=samples.cycle_number,
+        branch_tension=mean,
+        branch_standard_uncertainty=of_branch,
+        midline_tension=midline,
+        midline_standard_uncertainty=type_a if is_paired else np.full(centre.size, np.nan),
+        scatter_contribution=common,
+        source=source,
+        contribution=contribution,
+        loading=loading,
+        cycles_pooled=samples.cycles_pooled,
+        notes=samples.notes if is_paired else (*samples.notes, _ONE_BRANCH),
+    )
+
+
+def _contributions(
+    strain: Floats, tension: Floats, shared: SharedUncertainty
+) -> tuple[tuple[str, ...], Floats]:
+    """Errors of the judged curve if an instrument reads one standard uncertainty high."""
+    there = np.isfinite(tension)
+    slope = np.zeros(strain.size)
+    if np.count_nonzero(there) > 1:
+        slope[there] = np.gradient(tension[there], strain[there])
+    level = np.where(there, tension, 0.0)
+    errors = {
+        "tension_offset": np.full(strain.size, shared.tension_offset),
+        "tension_scale": shared.tension_scale * level,
+        "strain_offset": -shared.strain_offset * slope,
+        "strain_scale": -shared.strain_scale * strain * slope,
+    }
+    names = tuple(name for name in errors if getattr(shared, name) > 0)
+    return names, np.array([errors[name] for name in names]).reshape(-1, strain.size)
