@@ -17,6 +17,11 @@ area at rest.
 
 The other numbers of the hose come from a design that it is to be like.
 
+A working share of a third is of the *cords*.  The rubber of a hose that stretches far bears half
+of the working load but a quarter of the load at the break, so the hose breaks at less than three
+times its working load: 2.2 to 2.7 times with wrap angles of 64 to 68 degrees in a thick wall, above
+three below the neutral angle.  `reduction.predict.events.find_events` gives both loads.
+
 References
 ----------
 .. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical

@@ -61,6 +61,12 @@ def test_one_ribbon_on_two_diameters_makes_two_angles_that_pick_up_apart():
 
 def test_dead_ends_add_up_and_take_many_hoses_at_once():
     assert dead_length_share_of([2.0, 4.0], [[0.1, 0.1], [0.3, 0.1]]) == pytest.approx([0.2, 0.05])
+    assert dead_length_share_of(2.0, [0.0, 0.5]) == pytest.approx(0.25)
+
+
+def test_a_ribbon_as_wide_as_the_circumference_lies_along_the_hose():
+    assert ribbon_width(0.1, 0.0) == pytest.approx(np.pi * 0.1)
+    assert ribbon_angle(1.0, np.pi) == 0
 
 
 @pytest.mark.parametrize(

@@ -144,6 +144,15 @@ def test_many_hoses_at_once_and_nothing_uncertain():
     known = propagate_hose(DESIGN, [0.1, 0.2], {})
     assert known.source == () and known.tension_contribution.shape == (0, 2)
     assert known.tension_standard_uncertainty.tolist() == [0, 0]
+    same = propagate_hose(DESIGN, [0.1, 0.2], {"wrap_angle": 0.0})
+    assert same.tension_standard_uncertainty.tolist() == [0, 0]
+
+
+def test_a_hose_whose_cords_bear_from_the_start_has_no_kink_at_rest():
+    flat = dataclasses.replace(DESIGN, wrap_angle=np.radians(50.0))
+    found = propagate_hose(flat, [0.0, 0.001], KNOWN)
+    assert not found.is_near_kink.any()
+    assert found.tension_standard_uncertainty[0] == 0
 
 
 @pytest.mark.parametrize(
