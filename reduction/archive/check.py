@@ -14,6 +14,7 @@ import netCDF4
 import numpy as np
 
 from reduction.archive.attributes import CONVENTIONS
+from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.outcomes import OUTCOME_SCHEMA
 from reduction.archive.prediction_schema import PREDICTION_SCHEMA
 from reduction.archive.schema import SCHEMA_VERSION, schema_of
@@ -84,6 +85,8 @@ def _schema_of_file(dimensions: Container[str]) -> Mapping[str, Variable]:
         return SURFACE_SCHEMA
     if "outcome" in dimensions:
         return OUTCOME_SCHEMA
+    if "comparison" in dimensions:
+        return COMPARISON_SCHEMA
     if "hose" in dimensions:
         return PREDICTION_SCHEMA
     return schema_of(is_stepwise="step" in dimensions)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from reduction import __version__
 from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.archive.write import write_archive
+from reduction.batch.part import PartStatus
 from reduction.batch.planned import same_logs
 from reduction.batch.runrows import LINE, MEASURED, Row, rows_of_run
 from reduction.batch.waiting import waiting_in_words
@@ -26,21 +27,11 @@ from reduction.record import Floats
 from reduction.surface.levels import FactorLevels
 from reduction.vocabulary import quantity
 
-__all__ = ["ExperimentStatus", "fit_experiments", "write_experiments"]
+__all__ = ["fit_experiments", "write_experiments"]
 
 _UNITS = {"temperature": "K", "diameter": "m"}
 # notes of which the message tells the first: without that part there is little to read
 _MAIN_PART = ("refused: response surfaces", "refused: effects", "refused: surface of")
-
-
-@dataclass(frozen=True)
-class ExperimentStatus:
-    """What became of one experiment: fitted, fitted_with_notes, failed, or no_work."""
-
-    id: str
-    status: str
-    exit_status: int
-    message: str
 
 
 def write_experiments(
@@ -51,7 +42,7 @@ def write_experiments(
     waiting: Mapping[str, str],
     raw_sha256: Mapping[str, str],
     command: str,
-) -> list[ExperimentStatus]:
+) -> list[PartStatus]:
     """Fit the experiments of a campaign of which no run waits, and write them as one archive.
 
     Parameters
@@ -71,7 +62,7 @@ def write_experiments(
 
     Returns
     -------
-    statuses : list of ExperimentStatus
+    statuses : list of PartStatus
         One an experiment.
 
     Raises
@@ -88,7 +79,7 @@ def write_experiments(
     path = folder / "surfaces.nc"
     kept = "; surfaces.nc is of an earlier run" if path.exists() and not ready else ""
     statuses = {
-        name: ExperimentStatus(name, "no_work", 0, f"not fitted: {words}{kept}")
+        name: PartStatus(name, "no_work", 0, f"not fitted: {words}{kept}")
         for name, words in held.items()
     }
     if not ready:
@@ -120,7 +111,7 @@ def _in_one_line(result: ExperimentResult) -> str:
     return f"{result.name}: {done} of {len(result.runs.run)} runs of a {result.kind} design"
 
 
-def _status(result: ExperimentResult) -> ExperimentStatus:
+def _status(result: ExperimentResult) -> PartStatus:
     """A design whose main part the runs do not carry has failed, as the error of it says."""
     failed = result.refusal_status != 0
     main = [note for note in result.notes if note.startswith(_MAIN_PART)]
@@ -129,7 +120,7 @@ def _status(result: ExperimentResult) -> ExperimentStatus:
     said = [*main[:1], *[note for note in ranked if note not in main][:1]]
     message = "; ".join([_in_one_line(result), *said])
     status = "failed" if failed else "fitted_with_notes" if result.notes else "fitted"
-    return ExperimentStatus(result.name, status, result.refusal_status, message)
+    return PartStatus(result.name, status, result.refusal_status, message)
 
 
 def fit_experiments(

@@ -13,7 +13,9 @@ import numpy as np
 from reduction import __version__
 from reduction.archive.predictions import predictions_to_dataset
 from reduction.archive.write import write_archive
+from reduction.batch.part import PartStatus
 from reduction.campaign.plan import Campaign
+from reduction.errors import ReductionError
 from reduction.ingest.source import hash_source
 from reduction.pipeline.prediction import predict_from_plan
 from reduction.prediction import HosePlan, PredictedHose
@@ -22,7 +24,7 @@ from reduction.provenance import Source, Step
 __all__ = ["settings_of_hose", "write_hoses", "write_predictions"]
 
 
-def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list[PredictedHose]:
+def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list[PartStatus]:
     """Predict the hoses of a campaign, and write them as one archive.
 
     Parameters
@@ -36,17 +38,26 @@ def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list
 
     Returns
     -------
-    hoses : list of PredictedHose
-        In the order of the campaign.
+    statuses : list of PartStatus
+        One a hose, in the order of the campaign.
 
     Raises
     ------
-    SettingsError
-        If a hose has more strains than a table should have.
     ArchiveError
         If the archive cannot be written.
     """
-    hoses = [predict_from_plan(plan) for plan in campaign.hoses.values()]
+    hoses, statuses = [], []
+    for plan in campaign.hoses.values():
+        try:
+            hose = predict_from_plan(plan)
+        except ReductionError as error:
+            text = f"hose '{plan.name}': {error}"
+            statuses.append(PartStatus(plan.name, "failed", error.exit_status, text))
+            continue
+        hoses.append(hose)
+        status = "predicted_with_notes" if hose.notes else "predicted"
+        message = "; ".join([_in_one_line(hose), *hose.notes[:1]])
+        statuses.append(PartStatus(plan.name, status, 0, message))
     if hoses:
         write_hoses(
             hoses,
@@ -56,7 +67,7 @@ def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list
             source=hash_source(campaign.path, campaign.path.name),
             command=command,
         )
-    return hoses
+    return statuses
 
 
 def write_hoses(

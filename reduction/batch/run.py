@@ -9,13 +9,16 @@ from pathlib import Path
 
 from reduction import __version__
 from reduction.archive.dataset import to_dataset
-from reduction.archive.products import archives_of_tests
+from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.write import write_archive, write_whole
 from reduction.batch.basis import basis_of
+from reduction.batch.comparisons import write_comparisons
 from reduction.batch.describe import describe
-from reduction.batch.experiments import ExperimentStatus, write_experiments
+from reduction.batch.experiments import write_experiments
 from reduction.batch.models import fit_strain_models
 from reduction.batch.outcome import note_message, status_row
+from reduction.batch.part import PartStatus
+from reduction.batch.predictions import write_predictions
 from reduction.batch.pulls import fit_pulls, pull_conditions
 from reduction.batch.results import write_outcomes
 from reduction.batch.standing import standing_product
@@ -39,20 +42,27 @@ Progress = Callable[[str, str], None]
 
 @dataclass(frozen=True)
 class CampaignResult:
-    """What a run did: one status a test, and what it wrote."""
+    """What a run did: one status a test and a part, and what it wrote."""
 
     tests: tuple[TestStatus, ...]
-    experiments: tuple[ExperimentStatus, ...]
+    experiments: tuple[PartStatus, ...]
+    hoses: tuple[PartStatus, ...]
+    comparisons: tuple[PartStatus, ...]
     processed: Path
     report: Path | None
     stray: tuple[str, ...]
     tables: tuple[Path, ...] = ()
 
     @property
+    def parts(self) -> tuple[PartStatus, ...]:
+        """Everything that is not a test."""
+        return (*self.experiments, *self.hoses, *self.comparisons)
+
+    @property
     def exit_status(self) -> int:
         """The highest seen."""
         seen = [test.exit_status for test in self.tests]
-        return max([*seen, *(one.exit_status for one in self.experiments)], default=0)
+        return max([*seen, *(one.exit_status for one in self.parts)], default=0)
 
 
 def _selected(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
@@ -285,7 +295,9 @@ def run_campaign(
         },
         command=command,
     )
-    outcomes = write_outcomes(campaign, folder, command=command)
+    write_outcomes(campaign, folder, command=command)
+    hoses = write_predictions(campaign, folder, command=command)
+    comparisons = write_comparisons(campaign, folder, failed=now_failed, command=command)
     if progress is not None:
         progress("tables", campaign.id)
     ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
@@ -294,26 +306,40 @@ def run_campaign(
     rows = _all_rows(folder / "status.csv", surveys, statuses)
     if statuses:
         write_whole(folder / "status.csv", status_csv(rows))
-    if archives or outcomes is not None:
-        surfaces = folder / "surfaces.nc" if campaign.experiments else None
-        if surfaces is not None and not surfaces.exists():
-            surfaces = None  # its runs wait
-        tables = write_tables(archives, folder / "tables", surfaces=surfaces, outcomes=outcomes)
+    products = _products_of_campaign(campaign, folder)
+    if archives or products:
+        tables = write_tables(archives, folder / "tables", **products)
         if progress is not None:
             progress("report", campaign.id)
         report = write_report(folder, reports / campaign.id, units=units)
     stray = sorted(path.name for path in archives_of_tests(folder) if path not in ours)
     stray += [
-        path.name
-        for path, is_ours in (
-            (folder / "outcomes.nc", outcomes is not None),
-            (folder / "surfaces.nc", bool(campaign.experiments)),
-        )
-        if path.exists() and not is_ours
+        f"{name}.nc"
+        for name in OF_CAMPAIGN
+        if name not in products and (folder / f"{name}.nc").exists()
     ]
     return CampaignResult(
-        tuple(statuses), tuple(experiments), folder, report, tuple(stray), tuple(tables)
+        tests=tuple(statuses),
+        experiments=tuple(experiments),
+        hoses=tuple(hoses),
+        comparisons=tuple(comparisons),
+        processed=folder,
+        report=report,
+        stray=tuple(stray),
+        tables=tuple(tables),
     )
+
+
+def _products_of_campaign(campaign: Campaign, folder: Path) -> dict[str, Path]:
+    """Archives of the whole campaign that it asks for and that are there, by their names."""
+    asked = {
+        "surfaces": bool(campaign.experiments),
+        "predictions": bool(campaign.hoses),
+        "comparisons": bool(campaign.comparisons),
+        "outcomes": campaign.results is not None,
+    }
+    paths = {name: folder / f"{name}.nc" for name, is_asked in asked.items() if is_asked}
+    return {name: path for name, path in paths.items() if path.exists()}
 
 
 def _all_rows(

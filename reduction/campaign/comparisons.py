@@ -88,5 +88,6 @@ def plan_comparison(
         measured=product,
         specimen=specimen,
         predicted=section.predicted,
+        loading=section.loading,
         calibrate=section.calibrate,
     )

@@ -85,6 +85,8 @@ class ComparisonKeys(_Section):
 
     specimen: str | None = None
     """Of the measured test, where it has several."""
+    loading: Literal["static", "dynamic"] | None = None
+    """How it was pulled, where its kind does not say it: a cyclic test may be slow."""
     calibrate: tuple[Calibrated, ...] = ()
     """Numbers of the hose to be fitted to the measured curve."""
 

@@ -97,13 +97,15 @@ class ComparisonPlan:
     """A measured curve and the prediction that it is held against.
 
     ``measured`` is the id of the test or step, ``specimen`` one of its specimens,
-    ``predicted`` one of the hoses, ``calibrate`` the numbers of the hose to be fitted.
+    ``predicted`` one of the hoses, ``calibrate`` the numbers of the hose to be fitted;
+    ``loading`` is None where the kind of the test says it.
     """
 
     name: str
     measured: str
     specimen: str
     predicted: str
+    loading: Literal["static", "dynamic"] | None = None
     calibrate: tuple[str, ...] = ()
 
 

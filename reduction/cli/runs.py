@@ -16,7 +16,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from reduction.batch.experiments import ExperimentStatus
+from reduction.batch.part import PartStatus
 from reduction.batch.planned import experiments_found
 from reduction.batch.results import results_found
 from reduction.batch.run import check_campaign as check_tests
@@ -77,21 +77,21 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
 
 
 def _report_failures(
-    outcome: Outcome, tests: Sequence[TestStatus], experiments: Sequence[ExperimentStatus] = ()
+    outcome: Outcome, tests: Sequence[TestStatus], parts: Sequence[PartStatus] = ()
 ) -> None:
     ended = [(test.exit_status, test.message) for test in tests]
-    ended += [(one.exit_status, one.message) for one in experiments]
+    ended += [(one.exit_status, one.message) for one in parts]
     for exit_status, message in ended:
         if exit_status:
             outcome.error(message)
             outcome.raise_status(exit_status)
 
 
-def _experiment_table(experiments: Sequence[ExperimentStatus]) -> Table:
+def _part_table(kind: str, parts: Sequence[PartStatus]) -> Table:
     table = Table(box=None, pad_edge=False)
-    for heading in ("experiment", "status", "message"):
+    for heading in (kind, "status", "message"):
         table.add_column(heading)
-    for one in experiments:
+    for one in parts:
         table.add_row(one.id, one.status, escape(one.message))
     return table
 
@@ -158,7 +158,7 @@ def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> N
     campaign = load_campaign(path)
     with _progress(outcome, len(campaign.tests)) as progress:
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
-    if statuses or not campaign.outcomes:
+    if statuses or not (campaign.outcomes or campaign.hoses):
         outcome.show(_status_table(statuses))
     for test in statuses:
         for channel, masks in test.found.get("flags", {}).items():
@@ -209,11 +209,15 @@ def run_campaign(
             units=cast("UnitSystem", outcome.units),
             progress=progress,
         )
-    if result.tests or not campaign.outcomes:
+    if result.tests or not (campaign.outcomes or campaign.hoses):
         outcome.show(_status_table(result.tests))
     _say_results(outcome, results_found(campaign))
-    if result.experiments:
-        outcome.show(_experiment_table(result.experiments))
+    for kind, parts in (
+        ("experiment", result.experiments), ("hose", result.hoses),
+        ("comparison", result.comparisons),
+    ):  # fmt: skip
+        if parts:
+            outcome.show(_part_table(kind, parts))
     for name in result.stray:
         outcome.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
     outcome.say(f"products: {result.processed}")
@@ -223,6 +227,8 @@ def run_campaign(
         "campaign": campaign.id,
         "tests": [test.document() for test in result.tests],
         "experiments": [asdict(one) for one in result.experiments],
+        "hoses": [asdict(one) for one in result.hoses],
+        "comparisons": [asdict(one) for one in result.comparisons],
         "results": results_found(campaign),
         "processed": str(result.processed),
         "tables": [str(path) for path in result.tables],
@@ -231,7 +237,7 @@ def run_campaign(
     if result.report is not None:
         outcome.say(f"report:   {result.report}")
     outcome.answer(document)
-    _report_failures(outcome, result.tests, result.experiments)
+    _report_failures(outcome, result.tests, result.parts)
 
 
 def report_again(processed: Path, *, reports: Path, outcome: Outcome) -> None:

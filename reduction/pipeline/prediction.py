@@ -80,7 +80,8 @@ def _strains(plan: HosePlan, at_break: float) -> Floats:
             needed=f"at most {_MOST_POINTS}",
             hint="Make strain_step larger, or greatest_strain smaller.",
         )
-    steps = np.arange(int(np.floor(end / plan.strain_step + 1e-9)) + 1) * plan.strain_step
+    n_steps = int(np.floor(end / plan.strain_step + 1e-9)) + 1
+    steps = np.arange(n_steps, dtype=np.float64) * plan.strain_step
     if np.isnan(plan.greatest_strain) and steps[-1] < end:
         return np.append(steps, end)
     return steps

@@ -8,6 +8,7 @@ from typing import Literal
 
 import xarray as xr
 
+from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.prediction_schema import PREDICTION_SCHEMA
 from reduction.archive.schema import schema_of
 from reduction.archive.surface_schema import SURFACE_SCHEMA, rows_of_response
@@ -16,7 +17,7 @@ from reduction.tables.column import Column, uncertainty_of
 
 __all__ = ["SYNTHETIC", "TEST", "Product", "Table"]
 
-Product = Literal["test", "stepwise test", "experiments", "predictions"]
+Product = Literal["test", "stepwise test", "experiments", "predictions", "comparisons"]
 
 TEST = Column("test", label("test")[0])
 SYNTHETIC = Column("synthetic", label("synthetic")[0])
@@ -45,6 +46,7 @@ _SCHEMAS: dict[Product, dict[str, Variable]] = {
     "stepwise test": schema_of(is_stepwise=True) | _OWN,
     "experiments": SURFACE_SCHEMA | _OF_RESPONSES,
     "predictions": PREDICTION_SCHEMA,
+    "comparisons": COMPARISON_SCHEMA,
 }
 
 

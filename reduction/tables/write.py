@@ -11,6 +11,7 @@ from reduction.archive.open import open_archive
 from reduction.archive.variable import label
 from reduction.archive.write import write_whole
 from reduction.tables.column import Cell, Column, csv_text
+from reduction.tables.comparisons import COMPARISON_TABLES
 from reduction.tables.definitions import TABLES
 from reduction.tables.envelope import ENVELOPE_COLUMNS, Curve, curves_of, envelope_rows
 from reduction.tables.experiments import EXPERIMENT_TABLES
@@ -29,6 +30,7 @@ from reduction.tables.table import Table
 __all__ = ["write_tables"]
 
 _Place = tuple[float, list[tuple[int, str]]]
+_ALL = (*TABLES, *EXPERIMENT_TABLES, *PREDICTION_TABLES, *COMPARISON_TABLES)
 _ABOUT = tuple(
     Column(name, label(name)[0])
     for name in ("table", "column", "unit", "meaning", "no_uncertainty")
@@ -42,6 +44,7 @@ def write_tables(
     surfaces: Path | None = None,
     outcomes: Path | None = None,
     predictions: Path | None = None,
+    comparisons: Path | None = None,
 ) -> list[Path]:
     """Write every table that the archives fill, and columns.csv, which explains them.
 
@@ -58,6 +61,8 @@ def write_tables(
         Archive of the campaign's outcomes without a log, where it has any.
     predictions : pathlib.Path, optional
         Archive of the campaign's predicted hoses, where it has any.
+    comparisons : pathlib.Path, optional
+        Archive of the campaign's comparisons, where it has any.
 
     Returns
     -------
@@ -71,12 +76,13 @@ def write_tables(
         If an archive cannot be opened or a table cannot be written.
     """
     columns: dict[str, Sequence[Column | GroupColumn]] = {
-        table.name: table.columns for table in (*TABLES, *EXPERIMENT_TABLES, *PREDICTION_TABLES)
+        table.name: table.columns for table in _ALL
     }
     columns |= {"envelope": ENVELOPE_COLUMNS, "static_dynamic": STATIC_DYNAMIC_COLUMNS}
     columns |= OUTCOME_TABLES
     rows = _all_rows(archives) | _experiment_rows(surfaces) | _outcome_rows(outcomes)
     rows |= _rows_as_they_are(predictions, PREDICTION_TABLES)
+    rows |= _rows_as_they_are(comparisons, COMPARISON_TABLES)
     filled = [name for name in columns if rows[name]]
     rows["columns"] = [
         [f"{name}.csv", *column.description]

@@ -1,0 +1,143 @@
+"""Every variable that an archive of comparisons may have.
+
+=========================  ===========================================================
+dimension                  one entry for
+=========================  ===========================================================
+``comparison``             each comparison; text coordinate
+``comparison_point``       each strain of the measured curve, from 1
+``curve``                  ascending and descending branch, midline; text coordinate
+``hose_event``             slackest cords, pick-up, working load, break; text coordinate
+``comparison_cycle``       each cycle, or row of pooled cycles, from 1
+``parameter``              each fitted number of the hose, from 1; ``parameter_name``
+``note``                   each note of any comparison
+=========================  ===========================================================
+
+Every difference is predicted less measured.  Fitted numbers stand as numbers beside
+``parameter_unit``.  A comparison that has fewer entries than another ends in NaN, empty text
+or 0.
+"""
+
+from __future__ import annotations
+
+from itertools import chain
+
+from reduction.archive.variable import Variable, count, flag, label, measured, stated
+
+__all__ = ["COMPARISON_SCHEMA"]
+
+_NO_YES = {"no": 0, "yes": 1}
+_C = ("comparison",)
+_P = ("comparison", "comparison_point")
+_V = ("comparison", "curve")
+_E = ("comparison", "hose_event")
+_K = ("comparison", "comparison_cycle")
+_N = ("comparison", "parameter")
+
+_GIVEN = "given: the strain at which both are compared"
+_DIFFERENCE = "see validation_uncertainty"
+_TEST = "a statistic of a test"
+_SPREAD = "is itself a measure of spread"
+_BOUND = "bound"
+_SETTING = "setting"
+_CRITERION = "criterion of a fit"
+_IS = "is an uncertainty"
+_NOT_CARRIED = "not carried through"
+
+COMPARISON_SCHEMA: dict[str, Variable] = {
+    row.name: row
+    for row in chain(
+        label("comparison", _C),
+        label("curve", ("curve",)),
+        label("hose_event", ("hose_event",)),
+        count("comparison_point", ("comparison_point",)),
+        count("comparison_cycle", ("comparison_cycle",)),
+        count("parameter", ("parameter",)),
+        count("parameter_other", ("parameter_other",)),
+        *(
+            label(name, _C)
+            for name in (
+                "comparison_test",
+                "comparison_specimen",
+                "comparison_hose",
+                "comparison_loading",
+                "judged_curve",
+            )
+        ),
+        stated("strain", _P, _GIVEN),
+        measured("measured_tension", ("comparison", "curve", "comparison_point")),
+        measured("predicted_tension", _P),
+        stated("calibrated_tension", _P, "see the fitted numbers"),
+        stated("tension_difference", ("comparison", "curve", "comparison_point"), _DIFFERENCE),
+        stated("validation_uncertainty", _P, _IS),
+        *(
+            stated(name, _V, why)
+            for name, why in (
+                ("tension_bias", _DIFFERENCE),
+                ("tension_rms", _SPREAD),
+                ("tension_relative_rms", _SPREAD),
+                ("worst_strain", _DIFFERENCE),
+                ("worst_tension_difference", _DIFFERENCE),
+            )
+        ),
+        *(
+            stated(name, _C, _TEST)
+            for name in (
+                "coverage_factor",
+                "largest_ratio",
+                "largest_ratio_strain",
+                "chi_square",
+                "chi_square_freedom",
+                "chi_square_probability",
+                "uncertainty_share",
+            )
+        ),
+        flag("agrees", _C, _NO_YES),
+        flag("is_informative", _C, _NO_YES),
+        label("verdict", _C),
+        stated("event_strain", _E, "see event_strain_difference"),
+        stated("event_tension", _E, "see event_tension_difference"),
+        stated("event_measured_tension", _E, "see event_tension_difference"),
+        measured("event_tension_difference", _E),
+        stated("event_measured_strain", _E, "see event_strain_difference"),
+        measured("event_strain_difference", _E),
+        *(
+            stated(name, _C, why)
+            for name, why in (
+                ("energy_strain_low", _BOUND),
+                ("energy_strain_high", _BOUND),
+                ("measured_energy", _NOT_CARRIED),
+                ("predicted_energy", _NOT_CARRIED),
+                ("energy_difference", _NOT_CARRIED),
+                ("loop_energy", _NOT_CARRIED),
+                ("loop_energy_share", _NOT_CARRIED),
+            )
+        ),
+        count("comparison_cycle_number", _K),
+        stated("cycle_bias", _K, _DIFFERENCE),
+        stated("cycle_rms", _K, _SPREAD),
+        measured("bias_per_decade", _C),
+        label("parameter_name", _N),
+        label("parameter_unit", _N),
+        stated("parameter_start", _N, _SETTING),
+        measured("parameter_value", _N),
+        *(
+            stated(f"parameter_{name}", _N, _BOUND)
+            for name in ("low", "high", "lower_bound", "upper_bound")
+        ),
+        flag("parameter_is_at_bound", _N, _NO_YES),
+        stated("parameter_correlation", (*_N, "parameter_other"), "is part of an uncertainty"),
+        stated("calibrated_bias", _C, _DIFFERENCE),
+        stated("calibrated_rms", _C, _SPREAD),
+        stated("calibrated_relative_rms", _C, _SPREAD),
+        flag("is_identified", _C, _NO_YES | {"not_asked": 2}),
+        label("identifiability", _C),
+        *(
+            stated(name, _C, _CRITERION)
+            for name in ("collinearity", "least_change", "needed_change", "effective_points")
+        ),
+        stated("model_error", _C, _SPREAD),
+        label("note_comparison", ("note",)),
+        label("note", ("note",)),
+    )
+}
+"""Every variable that an archive of comparisons may have."""

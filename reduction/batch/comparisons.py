@@ -1,0 +1,225 @@
+"""Measured curves against predictions as the product ``comparisons.nc``."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from reduction import __version__
+from reduction.archive.comparisons import NamedComparison, comparisons_to_dataset
+from reduction.archive.open import open_archive
+from reduction.archive.write import write_archive
+from reduction.batch.part import PartStatus
+from reduction.batch.predictions import settings_of_hose
+from reduction.campaign.plan import Campaign, ComparisonPlan
+from reduction.errors import DataError, ReductionError
+from reduction.ingest.source import hash_source
+from reduction.pipeline.hosecomparison import compare_record, loading_of
+from reduction.prediction import HosePlan
+from reduction.provenance import Source, Step
+
+__all__ = ["compare_archive", "write_comparisons", "write_named"]
+
+
+def write_comparisons(
+    campaign: Campaign, folder: Path, *, failed: Collection[str], command: str
+) -> list[PartStatus]:
+    """Compare what a campaign asks for, from the archives of its tests, and write one archive.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded; nothing is written where it has no comparisons.
+    folder : pathlib.Path
+        Of its products.
+    failed : collection of str
+        Tests whose archive, where there is one, is of an earlier run and not used.
+    command : str
+        For the product's ``command`` attribute, without paths.
+
+    Returns
+    -------
+    statuses : list of PartStatus
+        One a comparison, in the order of the campaign.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive cannot be written.
+    """
+    done: list[NamedComparison] = []
+    statuses: list[PartStatus] = []
+    paths: dict[str, Path] = {}
+    for plan in campaign.comparisons.values():
+        path = folder / f"{plan.measured}.nc"
+        try:
+            if plan.measured in failed:
+                raise DataError(f"test '{plan.measured}' failed: there is no curve of it")
+            named = compare_archive(path, campaign.hoses[plan.predicted], plan)
+        except ReductionError as error:
+            text = f"comparison '{plan.name}': {error}"
+            statuses.append(PartStatus(plan.name, "failed", error.exit_status, text))
+            continue
+        done.append(named)
+        paths[path.name] = path
+        status = "compared_with_notes" if named.notes else "compared"
+        message = f"{plan.name}: {named.comparison.validation.verdict}"
+        statuses.append(PartStatus(plan.name, status, 0, message))
+    if done:
+        write_named(
+            done,
+            folder / "comparisons.nc",
+            hoses={one.hose: campaign.hoses[one.hose] for one in done},
+            campaign_id=campaign.id,
+            attributes=campaign.attributes,
+            sources=[
+                hash_source(campaign.path, campaign.path.name),
+                *(_source_of(path) for path in paths.values()),
+            ],
+            command=command,
+        )
+    return statuses
+
+
+def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedComparison:
+    """Hold the archive of a test against a hose.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Of the test.
+    hose : HosePlan
+        The prediction.
+    plan : ComparisonPlan
+        Which specimen, how it was pulled, what to fit; an empty specimen stands for the only one.
+
+    Returns
+    -------
+    named : NamedComparison
+        With its verdict.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive cannot be read.
+    DataError
+        If it has no curve of tension against strain, or none in common with the prediction.
+    FitError
+        If the calibration does not come to an end.
+    """
+    with open_archive(path) as archive:
+        missing = [name for name in ("strain", "tension", "specimen") if name not in archive]
+        if missing:
+            raise DataError(
+                f"{path} holds no curve of tension against strain",
+                found=f"no {' and no '.join(missing)}",
+                needed="the archive of a reduced test with position and tension",
+            )
+        specimen, index = _specimen(path, archive, plan.specimen)
+        comparison = compare_record(
+            hose,
+            archive["strain"].values[index],
+            archive["tension"].values[index],
+            loading=plan.loading or loading_of(archive.attrs["test_kind"]),
+            cycle_number=archive["cycle_number"].values if "cycle_number" in archive else None,
+            branch=archive["branch"].values if "branch" in archive else None,
+            break_in_cycles=_break_in(archive),
+            tension_standard_uncertainty=_declared(archive, "tension", index),
+            strain_standard_uncertainty=_declared(archive, "strain", index),
+            calibrate=plan.calibrate,
+        )
+        return NamedComparison(plan.name, archive.attrs["test"], specimen, hose.name, comparison)
+
+
+def _specimen(path: Path, archive: xr.Dataset, wanted: str) -> tuple[str, int]:
+    names = [str(name) for name in archive["specimen"].values]
+    if not wanted and len(names) == 1:
+        return names[0], 0
+    if wanted not in names:
+        raise DataError(
+            f"{path} has no specimen '{wanted}'" if wanted else f"{path} has several specimens",
+            needed="specimen = one of " + ", ".join(names),
+        )
+    return wanted, names.index(wanted)
+
+
+def _declared(archive: xr.Dataset, name: str, index: int) -> float:
+    spread = f"{name}_standard_uncertainty"
+    return float(archive[spread].values[index]) if spread in archive else float("nan")
+
+
+def _break_in(archive: xr.Dataset) -> int:
+    settings = json.loads(archive.attrs.get("settings", "{}"))
+    return int(settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0))
+
+
+def _source_of(path: Path) -> Source:
+    content = path.read_bytes()
+    return Source(path.name, hashlib.sha256(content).hexdigest(), len(content))
+
+
+def write_named(
+    done: Sequence[NamedComparison],
+    path: Path,
+    *,
+    hoses: Mapping[str, HosePlan],
+    campaign_id: str,
+    attributes: Mapping[str, str],
+    sources: Sequence[Source],
+    command: str,
+) -> None:
+    """Write comparisons as one archive.
+
+    Parameters
+    ----------
+    done : sequence of NamedComparison
+        One or more.
+    path : pathlib.Path
+        The archive.
+    hoses : mapping of str to HosePlan
+        By name.
+    campaign_id : str
+        For its ``id``.
+    attributes : mapping of str to str
+        What there is to say of them together.
+    sources : sequence of Source
+        Archives of the tests, and the file that says how the hoses are made.
+    command : str
+        For the product's ``command`` attribute, without paths.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive cannot be written.
+    """
+    settings: dict[str, Any] = {
+        "hoses": {name: settings_of_hose(plan) for name, plan in hoses.items()},
+        "comparisons": {
+            one.name: {
+                "test": one.test,
+                "specimen": one.specimen,
+                "hose": one.hose,
+                "loading": one.comparison.measured.loading,
+                "calibrate": []
+                if one.comparison.calibration is None
+                else list(one.comparison.calibration.parameter),
+            }
+            for one in done
+        },
+    }
+    dataset = comparisons_to_dataset(
+        done,
+        campaign_id=campaign_id,
+        attributes=attributes,
+        sources=sources,
+        steps=[Step("compare", f"{one.name}: {one.comparison.validation.verdict}") for one in done],
+        settings_json=json.dumps(settings, sort_keys=True, ensure_ascii=False),
+        version=__version__,
+        command=command,
+    )
+    write_archive(dataset, path)
