@@ -142,7 +142,7 @@ def hose_stretch_ratio(
     _known(core)
     with np.errstate(invalid="ignore"):
         if core == "rigid":
-            return np.asarray(np.sqrt((cord**2 - sine2) / cosine2))
+            return np.asarray(np.sqrt(1 + (cord - 1) * (cord + 1) / cosine2))
         square = cord**2 / cosine2
         cosine3 = -1.5 * (sine2 / cord**2) * np.sqrt(3 / square)
         # the shortest helix of all is at -1, and may be found there to rounding only

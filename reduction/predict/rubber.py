@@ -9,7 +9,7 @@ linear-current     :math:`(A_0/\lambda) E (\lambda - 1)`: true stress goes with 
 hencky             :math:`(A_0/\lambda) E \ln\lambda`: true stress goes with true strain
 =================  ===============================================================
 
-All begin with the slope :math:`A_0 E`; at a stretch ratio of 2.46 they have come to 0.77, 1.46,
+All begin with the slope :math:`A_0 E`; at a stretch ratio of 2.46 they have come to 0.76, 1.46,
 0.59 and 0.37 of :math:`A_0 E`.  Only the neo-Hookean law belongs to a solid in three dimensions
 that keeps its volume; linear-current levels off at :math:`A_0 E`, and the Hencky load *falls*
 beyond a stretch ratio of e.

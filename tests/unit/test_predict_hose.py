@@ -1,0 +1,254 @@
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from reduction import workers
+from reduction.errors import DataError
+from reduction.predict import hose
+from reduction.predict.cordcurve import CordCurve
+from reduction.predict.events import find_events
+from reduction.predict.hose import hose_energy, predict_hose
+from reduction.predict.product import HoseDesign, HosePrediction
+from reduction.predict.rubber import rubber_tension
+
+CORD = CordCurve(
+    strain=np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]),
+    load=np.array([0.0, 7.1, 22.2, 44.5, 80.1, 133.4]),
+)
+GUMBY = HoseDesign(
+    wrap_angle=np.radians(68.0),
+    layer_diameter=(0.0889, 0.0889),
+    inner_diameter=0.0635,
+    outer_diameter=0.127,
+    cords_per_length=34 / 0.0254,
+    cord_diameter=0.000559,
+    rubber_modulus=1.379e6,
+    cord=CORD,
+)
+AREA = np.pi / 4 * (0.127**2 - 0.0635**2)
+ARRAYS = [item.name for item in fields(HosePrediction)]
+LOADS = ("tension", "fill_pressure", "cord_tension", "cord_share", "rubber_share", "end_cap_load")
+
+
+def several(count=7, **numbers):
+    rng = np.random.default_rng(5)
+    return replace(
+        GUMBY,
+        wrap_angle=np.radians(rng.uniform(45, 72, count)),
+        layer_diameter=(rng.uniform(0.07, 0.08, count), rng.uniform(0.08, 0.09, count)),
+        dead_length_share=rng.uniform(0, 0.1, count),
+        cord_strain_scale=rng.uniform(0.9, 1.1, count),
+        **numbers,
+    )
+
+
+def test_slack_cords_leave_the_load_to_the_rubber():
+    found = predict_hose(GUMBY, np.linspace(0, 1.025, 60))
+    assert np.all(found.is_slack) and not np.any(found.is_broken)
+    for name in ("cord_tension", "fill_pressure", "end_cap_load", "cord_share"):
+        assert np.all(getattr(found, name) == 0)
+    assert np.all(found.rubber_share == 1)
+    rubber = rubber_tension(1 + found.strain, area=AREA, modulus=1.379e6, law="neo-hookean")
+    np.testing.assert_allclose(found.tension, rubber, rtol=1e-12, atol=1e-9)
+    assert np.all(found.cord_strain[1:] < 0)
+
+
+def test_a_hose_at_rest_bears_nothing_and_has_shares_all_the_same():
+    found = predict_hose(GUMBY, [0.0])
+    assert found.tension == found.cord_strain == found.cord_share == 0
+    assert not np.signbit(found.cord_strain) and found.rubber_share == 1 and found.is_slack
+    np.testing.assert_allclose(found.current_wrap_angle, np.radians(68.0), rtol=1e-14)
+    np.testing.assert_allclose(found.cord_spacing, 0.0254 / 34, rtol=1e-14)
+
+
+def test_a_wall_without_rubber_leaves_the_load_to_the_cords():
+    found = predict_hose(replace(GUMBY, rubber_modulus=0.0), [0.5, 1.5])
+    np.testing.assert_array_equal(found.cord_share, [0, 1])
+    np.testing.assert_array_equal(found.rubber_share, [1, 0])
+
+
+def test_beyond_the_break_of_the_cords_there_is_no_load_but_a_geometry():
+    found = predict_hose(GUMBY, [1.9, 1.95])
+    np.testing.assert_array_equal(found.is_broken, [False, True])
+    for name in LOADS:
+        assert np.all(np.isfinite(getattr(found, name)) == [True, False]), name
+    for name in ("cord_strain", "cord_spacing", "current_inner_diameter", "current_wrap_angle"):
+        assert np.all(np.isfinite(getattr(found, name))), name
+
+
+def test_a_predicted_hose_is_what_virtual_work_written_by_hand_gives():
+    # one point, 68 deg at +150 %: numbers in inches and pounds, worked with a pocket calculator's
+    # operations from equations (8), (10), (11), (24), (26)
+    cosine2, sine2, stretch = 0.14033009, 0.85966991, 2.5
+    cord_stretch = (stretch**2 * cosine2 + sine2 / stretch) ** 0.5
+    line = CordCurve(strain=np.array([0.0, 0.22]), load=np.array([0.0, 22.0]))
+    load = 100 * (cord_stretch - 1)
+    pressure = 4 * load * sine2 / (stretch * cord_stretch * 3.5 / 34)
+    number = 2 * 3.14159265 * 3.5 * 0.37460659 * 34
+    cords = number * 0.37460659 * load * stretch / cord_stretch
+    end_cap = pressure * 3.14159265 * 3.5**2 / (4 * stretch)
+    rubber = 3.14159265 / 4 * (5**2 - 2.5**2) * 200 / 3 * (stretch - stretch**-2)
+    # the same hose with an inch and a pound as units of length and force
+    design = replace(
+        GUMBY,
+        layer_diameter=(3.5, 3.5),
+        inner_diameter=2.5,
+        outer_diameter=5.0,
+        cords_per_length=34.0,
+        cord_diameter=0.022,
+        rubber_modulus=200.0,
+        cord=line,
+    )
+    found = predict_hose(design, [1.5])
+    np.testing.assert_allclose(found.cord_tension, load, rtol=1e-6)
+    np.testing.assert_allclose(found.fill_pressure, pressure, rtol=1e-6)
+    np.testing.assert_allclose(found.end_cap_load, end_cap, rtol=1e-6)
+    np.testing.assert_allclose(found.tension, cords - end_cap + rubber, rtol=1e-6)
+    np.testing.assert_allclose(found.cord_share, 1 - rubber / found.tension, rtol=1e-6)
+
+
+def test_dead_ends_stretch_the_axis_and_nothing_else():
+    strain = np.linspace(0, 1.7, 50)
+    whole = predict_hose(replace(GUMBY, dead_length_share=0.1), 0.9 * strain)
+    free = predict_hose(GUMBY, strain)
+    np.testing.assert_allclose(whole.free_strain, strain, rtol=1e-14)
+    np.testing.assert_allclose(whole.tension, free.tension, rtol=1e-10, atol=1e-9)
+    np.testing.assert_allclose(whole.current_inner_diameter, free.current_inner_diameter)
+
+
+def test_the_scales_stretch_the_axes_of_the_cord_curve():
+    scaled = replace(
+        GUMBY,
+        cord=CordCurve(strain=1.2 * CORD.strain, load=0.7 * CORD.load),
+    )
+    by_scale = replace(GUMBY, cord_strain_scale=1.2, cord_load_scale=0.7)
+    strain = np.linspace(0, 2.2, 80)
+    one, other = predict_hose(scaled, strain), predict_hose(by_scale, strain)
+    np.testing.assert_allclose(one.tension, other.tension, rtol=1e-10, atol=1e-9)
+    np.testing.assert_array_equal(one.is_broken, other.is_broken)
+    assert np.any(one.is_broken)
+    stretch = 1 + strain
+    np.testing.assert_allclose(
+        hose_energy(scaled, stretch), hose_energy(by_scale, stretch), rtol=1e-12, atol=1e-9
+    )
+
+
+def test_tight_cords_touch_where_the_spacing_says():
+    # at 30 deg the spacing falls with stretch; a steeper layer opens
+    design = replace(GUMBY, wrap_angle=np.radians(30.0), cord_diameter=0.00074)
+    found = predict_hose(design, np.linspace(0, 0.2, 41))
+    assert not found.is_jammed[0] and found.is_jammed[-1]
+    np.testing.assert_array_equal(found.is_jammed, found.cord_spacing < 0.00074)
+    # width of the fabric between cords times cord length is area on the wall, which goes with
+    # the root of the stretch: c lambda_c = c0 sqrt(lambda_h)
+    np.testing.assert_allclose(
+        found.cord_spacing * (1 + found.cord_strain),
+        0.0254 / 34 * np.sqrt(1 + found.strain),
+        rtol=1e-12,
+    )
+
+
+def test_the_bore_keeps_its_volume_and_has_a_limit():
+    found = predict_hose(replace(GUMBY, minimum_inner_diameter=0.05), [0.0, 0.5, 1.0])
+    volume = found.current_inner_diameter**2 * (1 + found.strain)
+    np.testing.assert_allclose(volume, 0.0635**2, rtol=1e-14)
+    np.testing.assert_array_equal(found.is_bore_too_small, [False, False, True])
+
+
+@pytest.mark.parametrize("law", ["neo-hookean", "linear", "linear-current", "hencky"])
+def test_the_law_of_the_rubber_is_that_of_the_design(law):
+    found = predict_hose(replace(GUMBY, rubber_law=law), [0.8])
+    rubber = rubber_tension(1.8, area=AREA, modulus=1.379e6, law=law)
+    np.testing.assert_allclose(found.tension, rubber, rtol=1e-12)
+
+
+def test_many_hoses_are_each_what_they_are_alone():
+    designs, strain = several(), np.linspace(0, 1.5, 33)
+    together = predict_hose(designs, strain)
+    for row in range(7):
+        alone = replace(
+            designs,
+            wrap_angle=designs.wrap_angle[row],
+            layer_diameter=tuple(one[row] for one in designs.layer_diameter),
+            dead_length_share=designs.dead_length_share[row],
+            cord_strain_scale=designs.cord_strain_scale[row],
+        )
+        for name in ARRAYS[1:]:
+            one = getattr(predict_hose(alone, strain), name)
+            assert one.shape == (33,)
+            np.testing.assert_array_equal(getattr(together, name)[row], one, err_msg=name)
+        np.testing.assert_array_equal(
+            hose_energy(designs, 1 + strain)[row], hose_energy(alone, 1 + strain)
+        )
+
+
+def test_numbers_of_designs_broadcast_to_a_grid():
+    grid = replace(
+        GUMBY,
+        wrap_angle=np.radians([[64.0], [68.0]]),
+        rubber_modulus=np.array([1e6, 1.2e6, 1.4e6]),
+    )
+    found = predict_hose(grid, [0.1, 0.2, 0.3, 0.4])
+    assert found.tension.shape == found.is_slack.shape == (2, 3, 4)
+    assert hose_energy(grid, [1.1, 1.2]).shape == (2, 3, 2)
+    np.testing.assert_allclose(found.tension[:, 2], 1.4 * found.tension[:, 0], rtol=1e-12)
+
+
+@pytest.mark.parametrize("block", [1, 50, 1000])
+@pytest.mark.parametrize("n_processors", [1, 3])
+def test_neither_blocks_nor_processors_change_a_bit(monkeypatch, block, n_processors):
+    designs, strain = several(11), np.linspace(0, 1.9, 123)
+    whole = predict_hose(designs, strain)
+    monkeypatch.setattr(hose, "BLOCK", block)
+    monkeypatch.setattr(workers, "_n_processors", lambda: n_processors)
+    parts = predict_hose(designs, strain)
+    for name in ARRAYS:
+        np.testing.assert_array_equal(getattr(parts, name), getattr(whole, name), err_msg=name)
+
+
+def test_no_strains_and_no_hoses_give_no_answers():
+    assert predict_hose(GUMBY, []).tension.shape == (0,)
+    nobody = replace(GUMBY, wrap_angle=np.empty(0))
+    assert predict_hose(nobody, [0.1, 0.2]).tension.shape == (0, 2)
+
+
+def test_the_arrays_of_a_prediction_cannot_be_written_on():
+    found = predict_hose(GUMBY, [0.1, 0.2])
+    for name in ARRAYS:
+        assert not getattr(found, name).flags.writeable
+
+
+def test_the_order_of_the_strains_does_not_matter():
+    strain = np.array([1.5, 0.2, 1.9, 0.0])
+    shuffled, sorted_ = predict_hose(GUMBY, strain), predict_hose(GUMBY, np.sort(strain))
+    np.testing.assert_array_equal(shuffled.tension[np.argsort(strain)], sorted_.tension)
+
+
+def test_the_net_tension_of_steep_hoses_rises_all_the_way():
+    # up to the break, for the angles between the two hoses of the report and beyond
+    for angle in range(60, 73):
+        design = replace(GUMBY, wrap_angle=np.radians(angle))
+        end = float(find_events(design).cord_break.strain)
+        tension = predict_hose(design, np.linspace(0, end * (1 - 1e-12), 500)).tension
+        assert np.all(np.diff(tension) > 0), angle
+
+
+def test_compression_is_refused():
+    with pytest.raises(DataError, match=r"2 of 3 strains are below zero; found -0\.2; needed zero"):
+        predict_hose(GUMBY, [-0.2, -0.1, 0.1])
+
+
+def test_a_strain_that_is_no_number_is_refused():
+    with pytest.raises(DataError, match="1 of 2 values of strain are not finite"):
+        predict_hose(GUMBY, [0.1, np.nan])
+
+
+def test_strains_that_are_no_series_are_refused():
+    with pytest.raises(DataError, match=r"strain is not a series; found shape \(1, 2\)"):
+        predict_hose(GUMBY, [[0.1, 0.2]])
+
+
+def test_energy_at_no_stretch_ratio_is_refused():
+    with pytest.raises(DataError, match="stretch_ratio are not positive"):
+        hose_energy(GUMBY, [0.0])
