@@ -122,7 +122,7 @@ def largest_difference(ours: HosePrediction, theirs: dict[str, np.ndarray]) -> t
         if mine.dtype == np.bool_:
             n_flags += int(np.sum(mine != other))
         else:
-            scale = float(np.nanmax(np.abs(other)))
+            scale = float(np.nanmax(np.abs(other))) or 1.0
             most = max(most, float(np.nanmax(np.abs(mine - other))) / scale)
     return most, n_flags
 

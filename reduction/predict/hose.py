@@ -146,7 +146,7 @@ def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
     )
     shape = (*design.shape, n_strain)
     return HosePrediction(
-        strain=asked, **{name: array.reshape(shape) for name, array in target.items()}
+        strain=asked.copy(), **{name: array.reshape(shape) for name, array in target.items()}
     )
 
 

@@ -214,9 +214,12 @@ def test_no_strains_and_no_hoses_give_no_answers():
 
 
 def test_the_arrays_of_a_prediction_cannot_be_written_on():
-    found = predict_hose(GUMBY, [0.1, 0.2])
+    strain = np.array([0.1, 0.2])
+    found = predict_hose(GUMBY, strain)
     for name in ARRAYS:
         assert not getattr(found, name).flags.writeable
+    strain[0] = 0.15  # the caller's own stays the caller's
+    assert found.strain[0] == 0.1
 
 
 def test_the_order_of_the_strains_does_not_matter():
