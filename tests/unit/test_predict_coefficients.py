@@ -52,6 +52,9 @@ def test_greatest_velocity_is_that_of_a_fine_sweep(make, current):
     regime = flow_regime(wave, [0.114, 0.3], current_velocity=current)
     sweep = particle_motion(wave, np.linspace(0.0, 3.57, 200_001)).horizontal_velocity + current
     assert regime.greatest_velocity == pytest.approx(np.max(np.abs(sweep)), rel=1e-9)
+    assert regime.keulegan_carpenter_number == pytest.approx(
+        regime.greatest_velocity * 3.57 / np.array([0.114, 0.3])
+    )
     assert regime.frequency_parameter == pytest.approx(
         regime.reynolds_number / regime.keulegan_carpenter_number
     )
@@ -59,6 +62,7 @@ def test_greatest_velocity_is_that_of_a_fine_sweep(make, current):
         np.array([0.114, 0.3]) * wave.wave_number / (2 * np.pi)
     )
     assert np.all(regime.diameter_to_length < GREATEST_DIAMETER_TO_LENGTH)
+    assert GREATEST_DIAMETER_TO_LENGTH == 0.2
 
 
 def test_numbers_that_are_none_are_refused():

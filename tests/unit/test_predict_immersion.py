@@ -82,6 +82,11 @@ def test_ends_and_middle():
     assert float(neutral.submerged_width) == pytest.approx(0.114)
 
 
+def test_a_rod_has_no_bore():
+    rod = immerse_hose(**{**HOSE, "wall_thickness": 0.057, "wall_density": 600.0})
+    assert float(rod.submerged_share) == pytest.approx(600 / 1025)
+
+
 def test_many_hoses_at_once():
     thickness = np.linspace(0.002, 0.015, 7)[:, None]
     content = np.array([0.0, 500.0, 830.0])

@@ -21,7 +21,7 @@ def test_depth_names_the_theory(relative_depth, theory):
 @pytest.mark.parametrize(
     ("relative_depth", "steepness", "theory"),
     [
-        (0.3, 0.0625, "airy"), (0.3, 0.21, "none"), (0.15, 0.0625, "none"), (0.15, 0.2, "stokes"),
+        (0.3, 0.0625, "airy"), (0.3, 0.2, "airy"), (0.3, 0.201, "none"), (0.0999, 0.01, "cnoidal or solitary"), (0.15, 0.0625, "none"), (0.15, 0.2, "stokes"),
         (0.1, 0.2, "none"), (0.07, 0.01, "cnoidal or solitary"), (0.03, 0.01, "none"),
     ],
 )  # fmt: skip
