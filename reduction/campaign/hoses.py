@@ -12,14 +12,14 @@ from reduction.campaign.hosemodel import (
     HoseKeys,
     HoseSpecFile,
     LayerSection,
-    Number,
 )
+from reduction.campaign.quantities import TableReader
 from reduction.campaign.toml import read_toml
 from reduction.errors import SettingsError
 from reduction.predict.cordcurve import CordCurve
 from reduction.predict.product import HoseDesign
 from reduction.prediction import HelicalLayer, HosePlan
-from reduction.units import Dimension, parse_quantity
+from reduction.units import Dimension
 
 __all__ = ["hose_of", "load_hose"]
 
@@ -41,25 +41,6 @@ _PARAMETERS = {
     "layer_diameters": "layer_diameter",
     "dead_length": "dead_length_share",
 }
-
-
-class _Reader:
-    """Values of one table; an error names the file and the key."""
-
-    def __init__(self, path: Path, place: str) -> None:
-        self.path, self.place = path, place
-
-    def value(self, key: str, text: Number, dimension: Dimension) -> float:
-        try:
-            return parse_quantity(text, dimension)
-        except SettingsError as error:
-            raise self.fault(key, error) from error
-
-    def fault(self, key: str, error: SettingsError) -> SettingsError:
-        return in_toml(
-            self.path, f"{self.place}.{key}: {error.problem}", found=error.found,
-            needed=error.needed, hint=error.hint,
-        )  # fmt: skip
 
 
 def hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection) -> HosePlan:
@@ -93,7 +74,7 @@ def hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection
     A curve that measured points at a few strains give is drawn through them: it needs the
     points at which the load bends.
     """
-    read = _Reader(path, place)
+    read = TableReader(path, place)
     given = keys.layer_diameters if keys.wrap_diameter is None else (keys.wrap_diameter,) * 2
     if given is None or None not in (keys.wrap_diameter, keys.layer_diameters):
         raise in_toml(
@@ -154,7 +135,7 @@ def hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection
     )
 
 
-def _layer(read: _Reader, layer: LayerSection) -> HelicalLayer:
+def _layer(read: TableReader, layer: LayerSection) -> HelicalLayer:
     place = f"layers.{layer.name}"
     limits = [
         np.nan if text is None else read.value(place, text, "strain")
@@ -163,14 +144,14 @@ def _layer(read: _Reader, layer: LayerSection) -> HelicalLayer:
     return HelicalLayer(layer.name, read.value(place, layer.wrap_angle, "angle"), *limits)
 
 
-def _cord(read: _Reader, place: str, cord: CordSection) -> CordCurve:
-    at = _Reader(read.path, "cord" if place == "hose" else f"{place}.cord")
+def _cord(read: TableReader, place: str, cord: CordSection) -> CordCurve:
+    at = TableReader(read.path, "cord" if place == "hose" else f"{place}.cord")
     strain = [at.value("strain", text, "strain") for text in cord.strain]
     load = [at.value("load", text, "force") for text in cord.load]
     return CordCurve(np.array(strain), np.array(load))
 
 
-def _dead_length(read: _Reader, keys: HoseKeys) -> tuple[float, float]:
+def _dead_length(read: TableReader, keys: HoseKeys) -> tuple[float, float]:
     """Share of the length that does not stretch, and the length, NaN where not stated."""
     length = np.nan if keys.length is None else read.value("length", keys.length, "length")
     if length <= 0:
@@ -188,7 +169,7 @@ def _dead_length(read: _Reader, keys: HoseKeys) -> tuple[float, float]:
 
 
 def _uncertainties(
-    read: _Reader, keys: HoseKeys, design: HoseDesign, length: float
+    read: TableReader, keys: HoseKeys, design: HoseDesign, length: float
 ) -> dict[str, float]:
     """Standard uncertainties in SI, by parameter; % is of the value itself."""
     found: dict[str, float] = {}

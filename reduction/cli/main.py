@@ -186,9 +186,14 @@ def predict(
 ) -> None:
     """Predict a stretch hose, a helical armour or a wave load from construction alone."""
     with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
-        from reduction.cli.predictions import predict_hose
+        if kind is PredictionName.HOSE:
+            from reduction.cli.predictions import predict_hose as predict_it
+        elif kind is PredictionName.ARMOUR:
+            from reduction.cli.armour import predict_cable as predict_it
+        else:
+            from reduction.cli.waveload import predict_wave as predict_it
 
-        {PredictionName.HOSE: predict_hose}[kind](spec, out=out, outcome=outcome)
+        predict_it(spec, out=out, outcome=outcome)
 
 
 @app.command()
