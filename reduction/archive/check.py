@@ -85,7 +85,7 @@ def _schema_of_file(dimensions: Container[str]) -> Mapping[str, Variable]:
         return SURFACE_SCHEMA
     if "outcome" in dimensions:
         return OUTCOME_SCHEMA
-    if "comparison" in dimensions:
+    if "comparison_point" in dimensions:  # a reduced test compares specimens, too
         return COMPARISON_SCHEMA
     if "hose" in dimensions:
         return PREDICTION_SCHEMA
