@@ -28,7 +28,7 @@ _METHOD = re.compile(
 )
 _REFUSAL = re.compile(
     r"^refused:|\bnot given\b|: no hyperelastic law|has no tangent modulus|^not fitted"
-    r"|no stress and no modulus",
+    r"|no stress and no modulus|no load is given",
     re.IGNORECASE,
 )
 # words of a note after which a reader may have to put a number aside
@@ -39,7 +39,8 @@ _DOUBT = re.compile(
     r"|whole cycles found|not counted|is negative|falls with stretch|slack within"
     r"|only \d+% of the branches|which no specimen does|cut off|marks differ|reversals give"
     r"|has no time|have no time|two amplitudes|is not constant|given up for|failed"
-    r"|goes slack|drifts over the order|goes below zero",
+    r"|goes slack|drifts over the order|goes below zero"
+    r"|does not hold there|is (stretched|compressed) by|no angle keeps it|load is uncertain by",
     re.IGNORECASE,
 )
 

@@ -21,9 +21,6 @@ from reduction.archive.products import archives_of_tests
 from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
 from reduction.report.designtables import design_tables
-from reduction.report.experimentsection import make_experiment_section
-from reduction.report.experimentview import ExperimentView
-from reduction.report.experimentwords import experiment_findings
 from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.campaign import (
     draw_all_moduli,
@@ -31,23 +28,13 @@ from reduction.report.figures.campaign import (
     draw_ratios,
     draw_static_dynamic,
 )
-from reduction.report.htmltable import Table
-from reduction.report.outcomesection import make_outcome_section
-from reduction.report.outcomeview import OutcomeView, view_outcomes
 from reduction.report.section import Section, make_part, make_section
 from reduction.report.specimentables import specimen_notes, specimen_table
 from reduction.report.stepwisetables import interval_table
-from reduction.report.summary import (
-    Finding,
-    Tile,
-    find_faults,
-    summary_sentence,
-    test_table,
-    tiles,
-)
-from reduction.report.surfacetables import answer_table
+from reduction.report.summary import find_faults, summary_sentence, test_table, tiles
 from reduction.report.testtables import segment_table
 from reduction.report.view import Status, TestView, any_synthetic, natural_order
+from reduction.report.whole import WholeCampaign, is_there, read_whole
 from reduction.units import UnitSystem
 
 __all__ = ["write_report"]
@@ -81,8 +68,7 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     """
     paths = sorted(archives_of_tests(processed), key=lambda path: natural_order(path.stem))
     statuses = _read_statuses(processed / "status.csv")
-    of_outcomes, of_surfaces = processed / "outcomes.nc", processed / "surfaces.nc"
-    if not (paths or statuses or of_outcomes.is_file() or of_surfaces.is_file()):
+    if not (paths or statuses or is_there(processed)):
         raise ArchiveError(
             "there is nothing to report on",
             found=f"no archive and no status.csv in {processed}",
@@ -107,18 +93,8 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     order = sorted(range(len(tests)), key=lambda place: _place(tests[place], by_id, starts))
     tests = [tests[place] for place in order]
     ordered = [sections[place] for place in order]
-    outcomes = None
-    if of_outcomes.is_file():
-        try:
-            with open_archive(of_outcomes) as data:
-                outcomes = view_outcomes(data, units)
-            ordered.insert(0, make_outcome_section(outcomes))
-        except ArchiveError as error:
-            unreadable[of_outcomes.name] = str(error)
-    experiments = _experiments(of_surfaces, by_id, units, unreadable)
-    html = _render(
-        tests, outcomes, experiments, ordered, statuses, unreadable, units, processed.name
-    )
+    whole = read_whole(processed, by_id, units, unreadable)
+    html = _render(tests, whole, ordered, statuses, unreadable, units, processed.name)
     page = out / "index.html"
     write_whole(page, html)
     return page
@@ -126,8 +102,7 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
 
 def _render(
     tests: Sequence[TestView],
-    outcomes: OutcomeView | None,
-    experiments: Sequence[tuple[ExperimentView, Section]],
+    whole: WholeCampaign,
     sections: Sequence[Section],
     statuses: Sequence[Status],
     unreadable: dict[str, str],
@@ -139,93 +114,49 @@ def _render(
     )
     room = files("reduction.report")
     template = environment.from_string((room / "templates" / "page.html").read_text("utf-8"))
-    views = [view for view, _ in experiments]
-    of_experiments = [one for view in views for one in experiment_findings(view)]
-    faults = find_faults(tests, statuses, unreadable, of_experiments)
+    faults = find_faults(tests, statuses, unreadable, whole.findings)
     comparisons = [
         make_part("All tests in one figure", draw_all_moduli(tests)),
         make_part("Ratios of moduli", draw_ratios(tests)),
         make_part("Mean strain and amplitude", draw_amplitude_pairs(tests)),
         make_part("Start against end", draw_parts(tests)),
         make_part("Static against dynamic", draw_static_dynamic(tests)),
+        *whole.comparisons,
     ]
     intervals = [interval_table(view) for view in tests]
-    speakers: list[TestView | OutcomeView | ExperimentView] = [*tests, *views]
-    speakers += [] if outcomes is None else [outcomes]
+    speakers = [*tests, *whole.views]
     first = speakers[0] if speakers else None
+    of_tests = tiles(tests, statuses, faults)
+    if not (tests or statuses):
+        of_tests = [one for one in of_tests if one.target == "wrong"]
     return template.render(
         title=(first.attribute("title") if first else "") or f"Campaign {folder}",
         campaign=first.attribute("campaign") if first else folder,
-        summary=summary_sentence(tests) or ("" if outcomes is None else f"{outcomes.summary}."),
+        summary=summary_sentence(tests) or whole.summary,
         institution=first.attribute("institution").rstrip(".") if first else "",
         references=first.attribute("references") if first else "",
-        synthetic=any_synthetic(tests)
-        or (outcomes is not None and outcomes.is_synthetic)
-        or any(view.is_synthetic for view in views),
+        synthetic=any_synthetic(tests) or whole.is_synthetic,
         has_tests=bool(tests or statuses),
-        tiles=_tiles(tests, outcomes, views, statuses, faults),
+        has_hoses=bool(whole.hoses),
+        tiles=whole.with_tiles(of_tests),
         specimens=specimen_table(tests, units),
         specimen_notes=specimen_notes(tests),
         tests=test_table(tests, statuses),
-        answers=[table for view in views for table in _answers(view)],
+        answers=whole.answers,
         designs=design_tables(tests),
         segments=segment_table(tests),
         intervals=[table for table in intervals if table is not None],
         faults=faults,
         comparisons=[part for part in comparisons if part.figures],
-        experiments=[section for _, section in experiments],
-        sections=sections,
+        across="Across the tests" if tests else "Across the hoses",
+        chapters=[section for _, section in (*whole.experiments, *whole.hoses)],
+        sections=[*(section for _, section in whole.outcomes), *sections],
         units="US customary" if units == "us" else "SI",
         version=__version__,
         style=(room / "static" / "page.css").read_text("utf-8"),
         script=(room / "static" / "page.js").read_text("utf-8"),
         plotly=get_plotlyjs(),
     )
-
-
-def _answers(view: ExperimentView) -> list[Table]:
-    table = None if view.surfaces is None else answer_table(view, view.surfaces)
-    return [] if table is None else [table]
-
-
-def _tiles(
-    tests: Sequence[TestView],
-    outcomes: OutcomeView | None,
-    experiments: Sequence[ExperimentView],
-    statuses: Sequence[Status],
-    faults: Sequence[Finding],
-) -> list[Tile]:
-    """Numbers at the top; those of tests only where there are tests."""
-    found = tiles(tests, statuses, faults)
-    if not (tests or statuses):
-        found = [one for one in found if one.target == "wrong"]
-    if experiments:
-        noun = "experiment" if len(experiments) == 1 else "experiments"
-        found.insert(0, Tile(f"{len(experiments):,}", noun, experiments[0].key))
-    if outcomes is None:
-        return found
-    size = len(outcomes.outcomes)
-    noun = "outcome" if size == 1 else "outcomes"
-    return [Tile(f"{size:,}", f"{noun} without a log", "outcomes"), *found]
-
-
-def _experiments(
-    path: Path, tests: Mapping[str, TestView], units: UnitSystem, unreadable: dict[str, str]
-) -> list[tuple[ExperimentView, Section]]:
-    """Return each experiment of the campaign with its section; none where it has none."""
-    if not path.is_file():
-        return []
-    try:
-        with open_archive(path) as data:
-            loaded = data.load()
-            views = [
-                ExperimentView(f"experiment-{index}", loaded, index, units)
-                for index in range(loaded.sizes["experiment"])
-            ]
-            return [(view, make_experiment_section(view, tests)) for view in views]
-    except ArchiveError as error:
-        unreadable[path.name] = str(error)
-        return []
 
 
 def _read_statuses(path: Path) -> list[Status]:

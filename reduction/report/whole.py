@@ -1,0 +1,158 @@
+"""What the page shows of a whole campaign besides its tests: outcomes, experiments, hoses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+import xarray as xr
+
+from reduction.archive.open import open_archive
+from reduction.errors import ArchiveError
+from reduction.report.experimentsection import make_experiment_section
+from reduction.report.experimentview import ExperimentView
+from reduction.report.experimentwords import experiment_findings
+from reduction.report.figures.hoses import draw_all_hoses
+from reduction.report.hosesection import hose_findings, hose_tiles, make_hose_section
+from reduction.report.hosetables import answer_of_hoses
+from reduction.report.hoseview import HoseView, view_hoses
+from reduction.report.htmltable import Table
+from reduction.report.outcomesection import make_outcome_section
+from reduction.report.outcomeview import OutcomeView, view_outcomes
+from reduction.report.section import Part, Section, make_part
+from reduction.report.summary import Finding, Tile
+from reduction.report.surfacetables import answer_table
+from reduction.report.view import TestView
+from reduction.units import UnitSystem
+
+__all__ = ["WholeCampaign", "is_there", "read_whole"]
+
+_SHOWN = ("outcomes", "surfaces", "predictions")
+_Read = TypeVar("_Read")
+
+
+@dataclass(frozen=True)
+class WholeCampaign:
+    """Views of the archives that belong to no single test, each with its section."""
+
+    outcomes: tuple[tuple[OutcomeView, Section], ...]
+    experiments: tuple[tuple[ExperimentView, Section], ...]
+    hoses: tuple[tuple[HoseView, Section], ...]
+
+    @property
+    def views(self) -> list[OutcomeView | ExperimentView | HoseView]:
+        """All of them; the first speaks for the campaign where there is no test."""
+        return [
+            *(view for view, _ in self.experiments),
+            *(view for view, _ in self.outcomes),
+            *(view for view, _ in self.hoses),
+        ]
+
+    @property
+    def is_synthetic(self) -> bool:
+        """True where any of them says so."""
+        return any(view.is_synthetic for view in self.views)
+
+    @property
+    def summary(self) -> str:
+        """Say what there is, where no test does."""
+        if self.outcomes:
+            return f"{self.outcomes[0][0].summary}."
+        if self.hoses and not self.experiments:
+            return self.hoses[0][0].attribute("summary")
+        return ""
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What a reader must know first."""
+        found = [one for view, _ in self.experiments for one in experiment_findings(view)]
+        return found + [one for view, _ in self.hoses for one in hose_findings(view)]
+
+    @property
+    def answers(self) -> list[Table]:
+        """Tables that answer on the first screen."""
+        found = [
+            answer_table(view, view.surfaces)
+            for view, _ in self.experiments
+            if view.surfaces is not None
+        ]
+        found.append(answer_of_hoses([view for view, _ in self.hoses]))
+        return [table for table in found if table is not None]
+
+    @property
+    def comparisons(self) -> list[Part]:
+        """Figures over several of a kind."""
+        hoses = draw_all_hoses([view for view, _ in self.hoses])
+        return [make_part("All predicted hoses in one figure", hoses)]
+
+    def with_tiles(self, of_tests: list[Tile]) -> list[Tile]:
+        """Numbers at the top, before and among those of the tests."""
+        found = []
+        for outcomes, _ in self.outcomes:
+            size = len(outcomes.outcomes)
+            noun = "outcome" if size == 1 else "outcomes"
+            found.append(Tile(f"{size:,}", f"{noun} without a log", "outcomes"))
+        if self.experiments:
+            size = len(self.experiments)
+            noun = "experiment" if size == 1 else "experiments"
+            found.append(Tile(f"{size:,}", noun, self.experiments[0][0].key))
+        return [*found, *hose_tiles([view for view, _ in self.hoses]), *of_tests]
+
+
+def is_there(processed: Path) -> bool:
+    """Return whether a folder holds an archive of a whole campaign that the page can show."""
+    return any((processed / f"{name}.nc").is_file() for name in _SHOWN)
+
+
+def read_whole(
+    processed: Path, tests: Mapping[str, TestView], units: UnitSystem, unreadable: dict[str, str]
+) -> WholeCampaign:
+    """Read what there is; a file that cannot be read is told in ``unreadable``.
+
+    Parameters
+    ----------
+    processed : pathlib.Path
+        Folder of the archives.
+    tests : mapping of str to TestView
+        The tests of the campaign, by name.
+    units : UnitSystem
+        What a reader is shown.
+    unreadable : dict of str to str
+        File name to message; added to.
+    """
+
+    def outcomes(data: xr.Dataset) -> list[tuple[OutcomeView, Section]]:
+        view = view_outcomes(data, units)
+        return [(view, make_outcome_section(view))]
+
+    def experiments(data: xr.Dataset) -> list[tuple[ExperimentView, Section]]:
+        loaded = data.load()
+        views = [
+            ExperimentView(f"experiment-{index}", loaded, index, units)
+            for index in range(loaded.sizes["experiment"])
+        ]
+        return [(view, make_experiment_section(view, tests)) for view in views]
+
+    def hoses(data: xr.Dataset) -> list[tuple[HoseView, Section]]:
+        return [(view, make_hose_section(view)) for view in view_hoses(data, units)]
+
+    return WholeCampaign(
+        outcomes=_read(processed / "outcomes.nc", outcomes, unreadable),
+        experiments=_read(processed / "surfaces.nc", experiments, unreadable),
+        hoses=_read(processed / "predictions.nc", hoses, unreadable),
+    )
+
+
+def _read(
+    path: Path, read: Callable[[xr.Dataset], list[_Read]], unreadable: dict[str, str]
+) -> tuple[_Read, ...]:
+    if not path.is_file():
+        return ()
+    try:
+        with open_archive(path) as data:
+            return tuple(read(data))
+    except ArchiveError as error:
+        unreadable[path.name] = str(error)
+        return ()
