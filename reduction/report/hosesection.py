@@ -98,7 +98,7 @@ def _story(view: HoseView) -> str:
 
     def at(name: str) -> str:
         load = number_text(force.factor * events[name].tension, 3)
-        return f"{100 * events[name].strain:.1f} % ({load} {force.unit})"
+        return f"{100 * events[name].strain:.1f}\N{NO-BREAK SPACE}% ({load} {force.unit})"
 
     start = (
         f"The rubber alone carries up to {at('pick_up')}, where the cords pick up; before, they are"

@@ -10,7 +10,6 @@ from reduction.report.hoseview import DEGREES, SOURCE_WORDS, HoseView, OneEvent
 from reduction.report.htmltable import (
     Cell,
     Table,
-    count,
     make_table,
     measured,
     number,
@@ -27,6 +26,10 @@ __all__ = [
 _ROWS = 24
 """Of the curve on the page, about; the archive has them all."""
 _ONE = Shown("1", 1.0)
+_TOGETHER = (
+    "An event moves along the curve with what is uncertain: its tension is known better than the"
+    " tension at a held strain, which the band of the figure shows."
+)
 
 
 def plus_minus_of_hoses(views: Sequence[HoseView]) -> list[str]:
@@ -99,7 +102,11 @@ def event_table(view: HoseView) -> Table:
             ]
             for event in view.events.values()
         ],
-        synthetic=view.is_synthetic, remarks=plus_minus_of_hoses([view]),
+        synthetic=view.is_synthetic,
+        remarks=[
+            *plus_minus_of_hoses([view]),
+            *([_TOGETHER] if view.sources else []),
+        ],
     )  # fmt: skip
 
 
@@ -238,7 +245,7 @@ def cord_table(view: HoseView) -> Table:
         f"Points of the cord of hose {view.name}; the last is its break.",
         ("point", percent.label("strain"), force.label("load"), percent.label("share of break")),
         [
-            [count(k + 1), number(strain[k], percent), number(load[k], force),
+            [words(f"{k + 1}"), number(strain[k], percent), number(load[k], force),
              number(float(load[k] / load[-1]), percent, digits=3)]
             for k in range(strain.size)
         ],

@@ -17,7 +17,7 @@ from reduction.predict.cord import NEUTRAL_ANGLE
 from reduction.predict.designchart import cord_strain_chart
 from reduction.record import Floats
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure, plain_numbers
-from reduction.report.hoseview import DEGREES, SOURCE_WORDS, HoseView, OneEvent
+from reduction.report.hoseview import DEGREES, EVENT_WORDS, SOURCE_WORDS, HoseView, OneEvent
 from reduction.report.style import COLOURS, Shown, colour, plot_text, shown, symbol
 
 __all__ = [
@@ -35,13 +35,25 @@ _FAMILY = (45.0, 50.0, float(np.degrees(NEUTRAL_ANGLE)), 58.0, 61.0, 64.0, 66.0,
 _AS_OWN = 0.75
 """A line of the chart nearer than this to that of the hose is not drawn. [deg]"""
 _CHART_POINTS = 201
+_LEAST_SHARE = 2.0
+"""A source that never has so much of the variance stands with the others. [%]"""
+_MOST_SOURCES = 6
 _NEAR = 1.25
 """Cords within so many of their diameters of each other are worth a figure."""
 _STATIC = (
     " From the static curve of one cord and a long, straight, closed hose full of water: nothing of"
     " cycles, speed, heat or compression is in it, and of the ends only the stated dead length."
 )
-_STRAIN = "strain of the hose"
+_KINK = (
+    ", a rough one near the strain of pick-up, where of all hoses in it some have slack cords and"
+    " others not"
+)
+_WHERE = {"working": "the hose works", "cord_break": "it breaks"}
+_DASHES = ("solid", "dash", "dot", "dashdot")
+_SYMBOLS = {
+    "deepest_slack": symbol(7), "pick_up": symbol(2), "working": symbol(0), "cord_break": symbol(5),
+}  # fmt: skip
+_SLACKEST = EVENT_WORDS["deepest_slack"]
 
 
 def draw_tension(view: HoseView) -> list[Figure]:
@@ -68,7 +80,8 @@ def draw_tension(view: HoseView) -> list[Figure]:
                  colour=_GREY, dash="dashdot", width=1.4)
         )  # fmt: skip
     data += _events(view, "tension", force)
-    about = "Shaded blue: 95 % band (two standard uncertainties). " if view.sources else ""
+    about = f"Shaded blue: 95 % band (two standard uncertainties at held strain){_KINK}. "
+    about = about if view.sources else ""
     grey = " Grey: cords slack, the rubber alone carries." if view.is_slack_at_first else ""
     return _kept(
         make_figure(
@@ -91,8 +104,8 @@ def draw_pressure(view: HoseView) -> list[Figure]:
     if view.sources:
         data.append(_interval(strain, pressure, spread, unit.factor))
     data.append(line(strain, unit.factor * pressure, name="fill pressure", colour=_NET, width=2.4))
-    data += _events(view, "fill_pressure", unit)
-    about = " Shaded blue: 95 % band." if view.sources else ""
+    data += [mark for mark in _events(view, "fill_pressure", unit) if mark["name"] != _SLACKEST]
+    about = f" Shaded blue: 95 % band{_KINK}." if view.sources else ""
     return _kept(
         make_figure(
             f"{view.key}-pressure", f"Predicted fill pressure, hose {view.name}",
@@ -114,7 +127,7 @@ def draw_budget(view: HoseView) -> list[Figure]:
     kept = np.isfinite(total) & (total > 0)
     if not kept.any():
         return []
-    share = 100 * variance[:, kept] / total[kept]
+    names, share = _largest(view.sources, 100 * variance[:, kept] / total[kept])
     strain = _percent(view)[kept]
     return _kept(
         make_figure(
@@ -123,15 +136,26 @@ def draw_budget(view: HoseView) -> list[Figure]:
             " are taken as independent; numbers without a stated uncertainty count as known.",
             [
                 line(
-                    strain, row, name=SOURCE_WORDS.get(name, name.replace("_", " ")),
-                    colour=colour(index), width=0.8, stackgroup="share",
+                    strain, row, name=name, colour=colour(index), width=0.8, stackgroup="share"
                 )
-                for index, (name, row) in enumerate(zip(view.sources, share, strict=True))
+                for index, (name, row) in enumerate(zip(names, share, strict=True))
             ],
             synthetic=view.is_synthetic, height=400, xaxis=_strain_axis(),
             yaxis=axis("share of the variance [%]", range=[0, 100]),
         )
     )  # fmt: skip
+
+
+def _largest(sources: Sequence[str], share: Floats) -> tuple[list[str], list[Floats]]:
+    """Return sources by their greatest share, the small ones as one."""
+    most = share.max(axis=1)
+    order = np.argsort(-most, kind="stable")
+    kept = [k for k in order[:_MOST_SOURCES] if most[k] >= _LEAST_SHARE]
+    rest = [k for k in order if k not in kept]
+    names = [SOURCE_WORDS.get(sources[k], sources[k].replace("_", " ")) for k in [*kept, *rest]]
+    if len(rest) < 2:
+        return names, [*share[[*kept, *rest]]]
+    return [*names[: len(kept)], f"{len(rest)} others"], [*share[kept], share[rest].sum(axis=0)]
 
 
 def draw_chart(view: HoseView) -> list[Figure]:
@@ -174,9 +198,6 @@ def draw_chart(view: HoseView) -> list[Figure]:
             xaxis=_strain_axis(range=[0, 104 * last]), yaxis=axis("strain of the cords [%]"),
         )
     )  # fmt: skip
-
-
-_WHERE = {"working": "the hose works", "cord_break": "it breaks"}
 
 
 def draw_limits(view: HoseView) -> list[Figure]:
@@ -264,7 +285,7 @@ def draw_all_hoses(views: Sequence[HoseView]) -> list[Figure]:
     return _kept(
         make_figure(
             "hoses-tension", "Predicted tension of all hoses",
-            f"Net tension against strain of the whole length, with the working loads marked.{about}"
+            f"Net tension against strain of the whole length, events marked.{about}"
             " The hoses need not share a cord or a cross section." + _STATIC,
             data, synthetic=any(view.is_synthetic for view in views), height=480, is_wide=True,
             xaxis=_strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
@@ -272,18 +293,12 @@ def draw_all_hoses(views: Sequence[HoseView]) -> list[Figure]:
     )  # fmt: skip
 
 
-_DASHES = ("solid", "dash", "dot", "dashdot")
-_SYMBOLS = {
-    "deepest_slack": symbol(7), "pick_up": symbol(2), "working": symbol(0), "cord_break": symbol(5),
-}  # fmt: skip
-
-
 def _percent(view: HoseView) -> Floats:
     return 100 * view.array("strain")
 
 
 def _strain_axis(**more: Any) -> dict[str, Any]:
-    return axis(f"{_STRAIN} [%]", **more)
+    return axis("strain of the hose [%]", **more)
 
 
 def _interval(
@@ -303,13 +318,15 @@ def _is_drawn(view: HoseView, event: OneEvent) -> bool:
 
 
 def _events(view: HoseView, quantity: str, unit: Shown) -> list[Trace]:
-    """One mark with its words an event."""
+    """One mark with its words an event; the slackest point is at the bottom of a bowl."""
+    lowest = "bottom center" if quantity == "cord_strain" else "top center"
     return [
         {
             "type": "scatter", "mode": "markers+text", "name": event.words,
             "x": plain_numbers(np.array([100 * event.strain])),
             "y": plain_numbers(np.array([unit.factor * getattr(event, quantity)])),
-            "text": [event.words], "textposition": "top left", "showlegend": False,
+            "text": [event.words], "showlegend": False,
+            "textposition": lowest if event.words == _SLACKEST else "top left",
             "marker": {"symbol": _SYMBOLS[event.name], "size": 10, "color": _NET},
         }
         for event in view.events.values()
