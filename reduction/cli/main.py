@@ -197,6 +197,26 @@ def predict(
 
 
 @app.command()
+def compare(
+    measured: Annotated[
+        Path, typer.Argument(metavar="MEASURED.nc", show_default=False, callback=here)
+    ],
+    spec: SpecPath,
+    out: Annotated[
+        Path | None, typer.Option(help="Write archive, tables and figures to this folder.")
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Hold the archive of a test against the predicted hose of SPEC.toml."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.comparisons import compare_test
+
+        compare_test(measured, spec, out=out, outcome=outcome)
+
+
+@app.command()
 def report(
     processed_dir: Annotated[
         Path,

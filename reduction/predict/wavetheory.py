@@ -181,13 +181,13 @@ def describe_wave(
         f"cnoidal and solitary waves are not computed, and d/L is {relative_depth:.3f}": (
             theory not in ("airy", "stokes")
         ),
-        f"the second harmonic of the surface is {surface:.0%} of the first": (
+        f"the second harmonic of the surface is {100 * surface:.0f} % of the first": (
             theory == "airy" and not is_small
         ),
         f"Stokes' second order is at its end: Ursell number {ursell:.1f} (at most "
-        f"{GREATEST_URSELL_NUMBER:.1f}), second harmonic of the surface {surface:.0%} (at most "
-        f"{_SECONDARY_CREST:.0%})": is_beyond,
-        f"the given length is {mismatch:+.1%} off that of the period": (
+        f"{GREATEST_URSELL_NUMBER:.1f}), second harmonic of the surface {100 * surface:.0f} % (at most "
+        f"{100 * _SECONDARY_CREST:.0f} %)": is_beyond,
+        f"the given length is {100 * mismatch:+.1f} % off that of the period": (
             abs(mismatch) > _LENGTH_TOLERANCE
         ),
     }
