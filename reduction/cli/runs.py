@@ -173,11 +173,18 @@ def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> N
     _say_results(outcome, results)
     experiments = experiments_found(campaign, statuses)
     _say_experiments(outcome, experiments, units)
+    for comparison in campaign.comparisons.values():
+        outcome.say(
+            f"comparison {comparison.name}: {comparison.measured} of {comparison.specimen} "
+            f"against hose {comparison.predicted}"
+        )
     outcome.answer(
         {
             "campaign": campaign.id,
             "tests": [test.document() for test in statuses],
             "experiments": experiments,
+            "hoses": list(campaign.hoses),
+            "comparisons": [asdict(one) for one in campaign.comparisons.values()],
             "results": results,
         }
     )
