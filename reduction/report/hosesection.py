@@ -5,13 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from reduction.notes import Severity
-from reduction.report.figures.hoses import (
-    draw_budget,
-    draw_chart,
-    draw_limits,
-    draw_pressure,
-    draw_tension,
-)
+from reduction.report.figures.hosechart import draw_chart, draw_limits
+from reduction.report.figures.hoses import draw_budget, draw_pressure, draw_tension
 from reduction.report.hosetables import (
     cord_table,
     curve_table,
