@@ -160,5 +160,6 @@ def tension_at_centres(cells: Cells) -> Floats:
     moved = level - slope * offset + bend / 2 * (offset**2 - cells.spread)
     moved = np.where(is_alone & (np.abs(offset) < 0.05), level, moved)
     is_beside = ~is_middle & (np.abs(offset) > _FURTHEST)
-    inward = np.where(np.isfinite(before), offset < 0, offset > 0)  # a bin lies on the other side
+    # the centre lies between these samples and the only neighbour
+    inward = np.where(np.isfinite(before), offset > 0, offset < 0)
     return np.where(is_beside & ~inward, np.nan, moved)

@@ -16,6 +16,7 @@ import numpy as np
 from reduction.compare.difference import strain_at_tension
 from reduction.compare.product import EventDifference, MeasuredCurve
 from reduction.predict.events import find_events
+from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign, HoseEvent
 from reduction.predict.uncertainty import EventUncertainty, propagate_hose
 from reduction.record import Floats
@@ -61,7 +62,8 @@ def event_differences(
     A test does not show where cords pick up: at pick-up the tension is compared, and the strain
     at which the test had that tension.  The difference of strain at the working load is what
     a designer asks for: how much less or more the hose stretches under its safe load.
-    Measured values are on the straight line between two strains of the curve.
+    Between two strains of the curve the difference is taken as straight, since both curves
+    have the kink; near the break, where one of them has no prediction, the measured curve is.
 
     Examples
     --------
@@ -78,19 +80,24 @@ def event_differences(
     """
     found = find_events(design)
     known = propagate_hose(design, np.zeros(1), standard_uncertainty or {})
+    predicted = predict_hose(design, measured.strain).tension
     pairs = (
         (found.pick_up, known.pick_up),
         (found.working, known.working),
         (found.cord_break, known.cord_break),
     )
     return tuple(
-        _compare(name, event, error, measured)
+        _compare(name, event, error, measured, predicted)
         for name, (event, error) in zip(EVENTS, pairs, strict=True)
     )
 
 
 def _compare(
-    name: str, event: HoseEvent, error: EventUncertainty, measured: MeasuredCurve
+    name: str,
+    event: HoseEvent,
+    error: EventUncertainty,
+    measured: MeasuredCurve,
+    predicted: Floats,
 ) -> EventDifference:
     curve = measured.tension_of(measured.judged)
     there = np.isfinite(curve)
@@ -111,7 +118,9 @@ def _compare(
         of_model = error.tension_contribution - _at(at, x, slope) * error.strain_contribution
         return float(np.sqrt(np.sum(of_test**2) + np.sum(of_model**2)))
 
-    test = _at(strain, x, y)
+    # between two strains the difference is straight where both curves have a kink
+    apart = _at(strain, x, predicted[there] - y)
+    test = tension - apart if np.isfinite(apart) else _at(strain, x, y)
     return EventDifference(
         name=name,
         strain=strain,

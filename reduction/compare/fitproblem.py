@@ -26,6 +26,7 @@ __all__ = ["FitProblem", "FitSpread", "parameter_bounds", "spread_of"]
 
 _START_STEPS = (-4.0, -2.0, 0.0, 2.0, 4.0)  # plausible errors, tried in all combinations
 _DIFFERENCE = 1e-3  # of a plausible error, for derivatives
+_LEAST = 1e-14  # information below this part of the greatest is rounding
 
 
 def parameter_bounds(name: str, start: float) -> tuple[float, float]:
@@ -131,7 +132,9 @@ class FitProblem:
         offsets = np.array(list(product(_START_STEPS, repeat=p)))
         tried = np.clip(first + offsets, self.low, self.high)
         error = (self.tension_at(tried) - self.tension) / self.noise
-        return np.asarray(tried[int(np.argmin(np.sum(error**2, axis=1)))])
+        # a number that the curve does not show stays where the design has it
+        cost = np.sum(error**2, axis=1) + 1e-3 * np.sum(offsets**2, axis=1)
+        return np.asarray(tried[int(np.argmin(cost))])
 
     def solve(self, first: Floats, noise: Floats) -> Floats:
         """Least sum of squares, from these numbers; shared errors begin at zero.
@@ -201,7 +204,7 @@ def spread_of(problem: FitProblem, best: Floats, noise: Floats) -> FitSpread:
     Raises
     ------
     Nothing
-        Numbers that do the same have a covariance without bound, by a pseudo-inverse.
+        A number that the curve does not show has a variance beyond all use, not none.
 
     Notes
     -----
@@ -224,7 +227,9 @@ def spread_of(problem: FitProblem, best: Floats, noise: Floats) -> FitSpread:
     jacobian = problem.jacobian(best, noise)
     data, prior = jacobian[:n], jacobian[n:]
     information = data.T @ data / excess + prior.T @ prior
-    scale = np.sqrt(np.maximum(np.diagonal(information), np.finfo(float).tiny))
-    inverse = np.linalg.pinv(information / np.outer(scale, scale), rcond=1e-14, hermitian=True)
+    diagonal = np.diagonal(information)
+    scale = np.sqrt(np.maximum(diagonal, _LEAST * diagonal.max()))
+    size, axes = np.linalg.eigh(information / np.outer(scale, scale))
+    inverse = (axes / np.maximum(size, _LEAST)) @ axes.T
     covariance = inverse / np.outer(scale, scale)
     return FitSpread(covariance[:p, :p], freedom, worth)

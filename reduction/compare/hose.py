@@ -19,8 +19,8 @@ from reduction.compare.difference import cycle_differences, difference_of, energ
 from reduction.compare.events import event_differences
 from reduction.compare.plausibility import plausibility_of_working_strain
 from reduction.compare.product import Comparison, EventDifference, MeasuredCurve
-from reduction.compare.trials import input_contributions
-from reduction.compare.validation import validate_curve
+from reduction.compare.trials import input_draws
+from reduction.compare.validation import N_DRAWS, validate_curve
 from reduction.errors import SettingsError
 from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign, HosePrediction
@@ -101,7 +101,7 @@ def compare_hose(
         )
         for curve in measured.curves()
     }
-    _, inputs = input_contributions(design, known, measured.strain)
+    inputs = input_draws(design, known, measured.strain, n_draws=N_DRAWS)
     events = event_differences(design, measured, standard_uncertainty=known)
     calibration = (
         calibrate_hose(design, measured, calibrate, standard_uncertainty=known)
@@ -116,7 +116,7 @@ def compare_hose(
         events=events,
         energy=energy_difference(prediction.tension, measured),
         cycles=cycle_differences(prediction.tension, measured),
-        validation=validate_curve(prediction.tension, measured, input_contribution=inputs),
+        validation=validate_curve(prediction.tension, measured, input_error=inputs),
         calibration=calibration,
         notes=_notes(design, measured, prediction, events[1]),
     )

@@ -73,14 +73,8 @@ def plausibility_of_working_strain(
         off = degrees(wrap_angle) - angle
         if abs(off) > _NEAR:
             continue
-        low, high = reported - slope, static + slope
-        place = (
-            "inside"
-            if low <= working_strain - off * slope <= high
-            else "below"
-            if working_strain - off * slope < low
-            else "above"
-        )
+        low, high = (stretch + off * slope for stretch in (reported - slope, static + slope))
+        place = "below" if working_strain < low else "above" if working_strain > high else "inside"
         at_angle = "" if abs(off) < 0.05 else f" (moved by {off:+.1f} deg)"
         kind = "static" if loading == "static" else "dynamic"
         return (

@@ -161,5 +161,5 @@ def _pull(tension: Floats, break_in_cycles: int) -> tuple[Integers, Integers]:
         raise DataError("a slow pull has no break-in", found=f"{break_in_cycles} cycles")
     ascending = np.zeros(tension.size, dtype=np.int64)
     if tension.size:
-        ascending[: int(np.argmax(tension)) + 1] = 1
+        ascending[: tension.size - int(np.argmax(tension[::-1]))] = 1
     return ascending, ascending

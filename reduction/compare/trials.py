@@ -5,6 +5,7 @@ References
 .. [1] M. Norgaard, N. K. Poulsen and O. Ravn, "New developments in state estimation for
    nonlinear systems," Automatica, vol. 36, 2000 (divided differences over sqrt(3) standard
    deviations).
+.. [2] JCGM 101:2008, "Propagation of distributions using a Monte Carlo method."
 """
 
 from __future__ import annotations
@@ -23,11 +24,13 @@ from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
 from reduction.predict.sensitivity import hose_sensitivity
 from reduction.record import Floats
 
-__all__ = ["design_with", "input_contributions", "number_of", "trial_tension"]
+__all__ = ["design_with", "input_contributions", "input_draws", "number_of", "trial_tension"]
 
 _WIDTH = sqrt(3.0)
 _LOWEST = {"dead_length_share": 0.0, "rubber_modulus": 0.0}
 _SMALLEST = 1e-6  # of what has to be above zero
+_CUT = 3.0
+_SEED = 20  # any; that it stays makes answers repeatable
 
 
 def number_of(design: HoseDesign, name: str) -> float:
@@ -213,18 +216,8 @@ def input_contributions(
     ('cord_load_scale', 'bend of cord_load_scale') True
     """
     names, rows = [], []
-    for name in HOSE_PARAMETERS:
-        if name not in standard_uncertainty:
-            continue
-        spread, centre = float(standard_uncertainty[name]), number_of(design, name)
-        if not (np.isfinite(spread) and spread >= 0):
-            raise SettingsError(
-                f"the standard uncertainty of {name} cannot be used",
-                found=f"{spread:g}",
-                needed="zero or more",
-            )
-        if spread == 0:
-            continue
+    for name, spread in _known(design, standard_uncertainty).items():
+        centre = number_of(design, name)
         ends = np.clip(centre + _WIDTH * spread * np.array([-1.0, 1.0]), *_range_of(name))
         below, above = (centre - ends[0]) / spread, (ends[1] - centre) / spread
         values = np.array([ends[0], centre, ends[1]])[:, None]
@@ -234,10 +227,91 @@ def input_contributions(
             bend = 2 * ((high - middle) / above - (middle - low) / below) / (above + below)
         names += [name, f"bend of {name}"]
         rows += [(high - low) / (above + below), sqrt(3.0) / 2 * bend]
-    unknown = set(standard_uncertainty) - set(HOSE_PARAMETERS)
-    if unknown:
-        number_of(design, min(unknown))
     return tuple(names), np.array(rows).reshape(-1, strain.size)
+
+
+def input_draws(
+    design: HoseDesign,
+    standard_uncertainty: Mapping[str, float],
+    strain: Floats,
+    *,
+    n_draws: int,
+) -> Floats:
+    """What the tension of a hose may be off by, in draws of its uncertain numbers.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose.
+    standard_uncertainty : mapping of str to float
+        By name of `reduction.predict.product.HOSE_PARAMETERS`, in SI. [rad, m, m-1, Pa or 1]
+    strain : ndarray, shape (n_strain,)
+        Of the whole length. [1]
+    n_draws : int
+        Hoses that are drawn; the same ones every time. [1]
+
+    Returns
+    -------
+    error : ndarray, shape (n_draws, n_strain)
+        Tension of the drawn hose less that of the design; no rows where nothing is uncertain. [N]
+
+    Raises
+    ------
+    SettingsError
+        If there is no such number, an uncertainty is negative or unknown, or so large that
+        what is drawn is no hose.
+
+    Notes
+    -----
+    Normal and independent, cut at three standard uncertainties and at the range of the number
+    (propagation of distributions, [2]_).  Where cords pick up, tension is no linear function
+    of the angle over the width of its uncertainty, and no covariance from derivatives has the
+    shapes of curve that it makes.
+
+    Examples
+    --------
+    >>> from reduction.predict.cordcurve import CordCurve
+    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> error = input_draws(design, {"rubber_modulus": 1e5}, np.array([0.0, 0.2]), n_draws=500)
+    >>> print(error.shape, error[:, 0].max(), bool(abs(error[:, 1].std() / 143 - 1) < 0.1))
+    (500, 2) 0.0 True
+    """
+    known = _known(design, standard_uncertainty)
+    if not known:
+        return np.zeros((0, strain.size))
+    normal = np.random.default_rng(_SEED).standard_normal((n_draws, len(HOSE_PARAMETERS)))
+    steps = np.clip(normal, -_CUT, _CUT)
+    values = np.stack(
+        [
+            np.clip(
+                number_of(design, name) + spread * steps[:, HOSE_PARAMETERS.index(name)],
+                *_range_of(name),
+            )
+            for name, spread in known.items()
+        ],
+        axis=1,
+    )
+    centre = np.array([[number_of(design, name) for name in known]])
+    tension = trial_tension(design, tuple(known), np.vstack([centre, values]), strain)
+    return np.asarray(tension[1:] - tension[0])
+
+
+def _known(design: HoseDesign, standard_uncertainty: Mapping[str, float]) -> dict[str, float]:
+    """Uncertainties above zero, in the order of `HOSE_PARAMETERS`."""
+    for name, spread in standard_uncertainty.items():
+        number_of(design, name)
+        if not (np.isfinite(spread) and spread >= 0):
+            raise SettingsError(
+                f"the standard uncertainty of {name} cannot be used",
+                found=f"{spread:g}",
+                needed="zero or more",
+            )
+    return {
+        name: float(standard_uncertainty[name])
+        for name in HOSE_PARAMETERS
+        if standard_uncertainty.get(name, 0) > 0
+    }
 
 
 def _range_of(name: str) -> tuple[float, float]:

@@ -13,85 +13,100 @@ References
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import chi2
 
 from reduction.checks import as_same_shape
 from reduction.compare.product import MeasuredCurve, Validation
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["joint_coverage_factor", "validate_curve"]
+__all__ = ["N_DRAWS", "validate_curve"]
 
+N_DRAWS = 4000
+"""Draws of all errors that a verdict rests on: 5 % of them are 200."""
 _PROBABILITY = 0.95
-_N_DRAWS = 20_000
 _RANK = 1e-10  # eigenvalues of a correlation matrix below this part of the greatest are rounding
-_OUTSIDE = 1e-6  # part of a squared difference that no stated error can make
+_OUTSIDE = 1e-6
+_SEED = 21  # any; that it stays makes answers repeatable
 
 
-def joint_coverage_factor(independent: ArrayLike, contribution: ArrayLike) -> float:
-    """Factor that the largest of many correlated ratios stays below in 95 % of all cases.
+@dataclass(frozen=True)
+class _Errors:
+    """At the strains that are compared: own (n,), shared (n_source, n), inputs (n_draws, n)."""
 
-    Parameters
-    ----------
-    independent : array_like, shape (n_strain,)
-        Standard uncertainty that no two strains share. [N]
-    contribution : array_like, shape (n_source, n_strain)
-        Signed contributions that they share. [N]
+    own: Floats
+    shared: Floats
+    inputs: Floats
 
-    Returns
-    -------
-    factor : float
-        1.96 for one strain or strains that err as one; 3.3 for fifty that err each for
-        itself. [1]
+    def of_test(self) -> Floats:
+        return np.asarray(np.sqrt(self.own**2 + np.sum(self.shared**2, axis=0)))
 
-    Raises
-    ------
-    DataError
-        If the contributions are not on the strains.
+    def of_model(self) -> Floats:
+        """Root mean square about the nominal hose: the shift of the mean is in it."""
+        if not self.inputs.size:
+            return np.zeros(self.own.size)
+        return np.asarray(np.sqrt(np.mean(self.inputs**2, axis=0)))
 
-    Notes
-    -----
-    With many strains the largest of all ratios exceeds 2 almost always. The factor is the 95 %
-    quantile of the largest ratio in 20 000 draws of normal errors with this covariance; the
-    draws are the same every time.
+    def covariance(self) -> Floats:
+        n_draws = max(self.inputs.shape[0], 1)
+        by_inputs = self.inputs.T @ self.inputs / n_draws
+        return np.asarray(by_inputs + self.shared.T @ self.shared + np.diag(self.own**2))
 
-    Examples
-    --------
-    >>> print(round(joint_coverage_factor(np.zeros(50), np.ones((1, 50))), 2))
-    1.96
-    """
-    own = np.asarray(independent, dtype=np.float64)
-    shared = np.asarray(contribution, dtype=np.float64)
-    if shared.ndim != 2 or shared.shape[1:] != own.shape:
-        raise DataError(
-            "contributions are not on the strains",
-            found=f"{shared.shape} and {own.shape}",
-            needed="(n_source, n_strain) and (n_strain,)",
-        )
-    total = np.sqrt(own**2 + np.sum(shared**2, axis=0))
-    known = total > 0
-    own, shared, total = own[known], shared[:, known], total[known]
-    if not total.size:
-        return float("nan")
-    draws = np.random.default_rng(20).standard_normal
-    largest = np.empty(_N_DRAWS)
-    n_block = max(1, 1_000_000 // total.size)
-    for start in range(0, _N_DRAWS, n_block):
-        n = min(n_block, _N_DRAWS - start)
-        errors = draws((n, shared.shape[0])) @ shared
-        if own.any():
-            errors += draws((n, own.size)) * own
-        largest[start : start + n] = np.max(np.abs(errors) / total, axis=1)
-    return float(np.quantile(largest, _PROBABILITY))
+    def draw(self) -> Floats:
+        """What E may be if the prediction is right, shape (n_draws, n)."""
+        n_draws = self.inputs.shape[0] or N_DRAWS
+        normal = np.random.default_rng(_SEED).standard_normal
+        errors = normal((n_draws, self.shared.shape[0])) @ self.shared
+        errors += normal((n_draws, self.own.size)) * self.own
+        return np.asarray(errors - self.inputs if self.inputs.size else errors)
+
+
+class _Judged(NamedTuple):
+    ratio: float
+    place: int
+    factor: float
+    chi_square: float
+    freedom: int
+    probability: float
+    outside: float  # part of the squared difference that no stated error can make
+
+
+def _judge(error: Floats, errors: _Errors) -> _Judged:
+    nan = float("nan")
+    total = np.hypot(errors.of_test(), errors.of_model())
+    known = np.flatnonzero(total > 0)
+    if not known.size:
+        return _Judged(nan, 0, nan, nan, 0, nan, 0.0)
+    z = error[known] / total[known]
+    draws = errors.draw()[:, known] / total[known]
+    correlation = errors.covariance()[np.ix_(known, known)] / np.outer(total[known], total[known])
+    size, axes = np.linalg.eigh(correlation)
+    kept = size > _RANK * size[-1] * size.size
+    along = axes.T @ z
+    square = float(np.sum(along[kept] ** 2 / size[kept]))
+    of_draws = np.sum((draws @ axes[:, kept]) ** 2 / size[kept], axis=1)
+    whole = float(z @ z)
+    place = int(np.argmax(np.abs(z)))
+    return _Judged(
+        ratio=float(np.abs(z[place])),
+        place=int(known[place]),
+        factor=float(np.quantile(np.max(np.abs(draws), axis=1), _PROBABILITY)),
+        chi_square=square,
+        freedom=int(kept.sum()),
+        probability=float(np.mean(of_draws >= square)),
+        outside=float(np.sum(along[~kept] ** 2)) / whole if whole > 0 else 0.0,
+    )
 
 
 def validate_curve(
     predicted: ArrayLike,
     measured: MeasuredCurve,
     *,
-    input_contribution: ArrayLike,
+    input_error: ArrayLike,
     largest_useful_share: float = 0.3,
 ) -> Validation:
     """Whether prediction and test agree within what both are uncertain by.
@@ -102,8 +117,9 @@ def validate_curve(
         Tension at the strains of the measured curve; NaN where the cords are broken. [N]
     measured : MeasuredCurve
         The test; its judged curve counts. [SI]
-    input_contribution : array_like, shape (n_source, n_strain)
-        To the prediction, from the numbers that went into it, signed. [N]
+    input_error : array_like, shape (n_draws, n_strain)
+        What the prediction may be off by, in draws of the numbers that went into it, from
+        `reduction.compare.trials.input_draws`; no rows where it counts as exact. [N]
     largest_useful_share : float
         Where U is more than this part of the measured tension at half of the strains,
         agreement says little. [1]
@@ -120,16 +136,21 @@ def validate_curve(
 
     Notes
     -----
-    *Verdict.* The largest ratio abs(E) / u_val of the curve against `joint_coverage_factor`: a
-    right prediction is called wrong in 5 % of all cases however many strains there are.  U is
-    that factor times u_val.  Agreement within U means that an error of the model cannot be
-    seen; it does not mean that there is none [1]_.
+    *Verdict.* With many strains the largest ratio abs(E) / u_val exceeds 2 almost always.  It is
+    held against the 95 % quantile of the largest ratio in draws of all errors together, so that
+    a right prediction is called wrong in 5 % of all cases however many strains there are: 1.96
+    for strains that err as one, 3.3 for fifty that err each for itself.  U is that factor
+    times u_val.  Agreement within U means that an error of the model cannot be seen; it does not
+    mean that there is none [1]_.
 
     *Chi square* E' V^-1 E with the full covariance [2]_ sees a wrong shape that stays inside
     the band, and needs the uncertainties to be right in every direction; it is given beside the
-    verdict and does not make it.  Directions in which no stated error can move the curve (as
-    in a test without scatter) have no inverse and are left out; if the difference lies in
-    one of them, a note says so.
+    verdict and does not make it.  Its probability is the share of the draws that exceed it, since
+    tension is no linear function of the angle where cords pick up.  Directions in which no stated
+    error can move the curve have no inverse and are left out; if the difference lies in one of
+    them, a note says so.
+
+    The draws are the same every time.
 
     Nothing is taken for an uncertainty that was not stated: the verdict says which side is
     missing.
@@ -145,18 +166,18 @@ def validate_curve(
     ...     shared=SharedUncertainty(tension_offset=10.0),
     ... )
     >>> found = validate_curve(
-    ...     100 * pull.strain + 42, pull, input_contribution=np.zeros((0, pull.strain.size))
+    ...     100 * pull.strain + 42, pull, input_error=np.zeros((0, pull.strain.size))
     ... )
-    >>> print(found.agrees, found.verdict.split(",")[0])
-    True agrees within U
+    >>> print(found.agrees, found.verdict.split(",")[0], round(found.ratio, 2))
+    True agrees within U 0.8
     """
     model, test = as_same_shape(predicted=predicted, measured=measured.tension_of(measured.judged))
-    inputs = np.asarray(input_contribution, dtype=np.float64)
+    inputs = np.asarray(input_error, dtype=np.float64)
     if inputs.ndim != 2 or inputs.shape[1:] != model.shape:
         raise DataError(
-            "contributions are not on the strains",
+            "errors of the prediction are not on the strains",
             found=str(inputs.shape),
-            needed=f"(n_source, {model.size})",
+            needed=f"(n_draws, {model.size})",
         )
     there = np.isfinite(model) & np.isfinite(test) & np.isfinite(inputs).all(axis=0)
     if not there.any():
@@ -165,19 +186,23 @@ def validate_curve(
             found=f"{int(np.isfinite(test).sum())} measured strains",
             needed="one at which both are known",
         )
-    own = np.where(there, measured.independent_uncertainty(), np.nan)
-    shared = np.vstack([measured.contribution, measured.scatter_contribution])
-    of_test = np.sqrt(own**2 + np.sum(shared**2, axis=0))
-    of_model = np.where(there, np.sqrt(np.sum(inputs**2, axis=0)), np.nan)
-    total = np.sqrt(of_test**2 + of_model**2)
+    errors = _Errors(
+        own=measured.independent_uncertainty()[there],
+        shared=np.vstack([measured.contribution, measured.scatter_contribution])[:, there],
+        inputs=inputs[:, there],
+    )
     error = np.where(there, model - test, np.nan)
-    common = np.vstack([inputs, shared])[:, there]
-    factor = joint_coverage_factor(own[there], common)
-    known = np.where(total > 0, total, np.nan)
-    ratio = np.abs(error) / known
-    place = int(np.nanargmax(ratio)) if np.isfinite(ratio).any() else 0
-    largest = float(ratio[place])
-    square, freedom, outside = _chi_square(error[there], own[there], common)
+    judged = _judge(error[there], errors)
+
+    def on_axis(values: Floats) -> Floats:
+        whole = np.full(model.size, np.nan)
+        whole[there] = values
+        return whole
+
+    of_test, of_model = on_axis(errors.of_test()), on_axis(errors.of_model())
+    total = np.hypot(of_test, of_model)
+    factor, largest = judged.factor, judged.ratio
+    place = int(np.flatnonzero(there)[judged.place])
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(there & (test > 0), factor * total / test, np.nan)
     share = float(np.nanmedian(shares)) if np.isfinite(shares).any() else float("nan")
@@ -191,7 +216,7 @@ def validate_curve(
         ratio=largest,
         factor=factor,
         share=share,
-        middle=float(np.nanmedian(factor * total)),
+        middle=float(np.nanmedian(factor * total)) if np.isfinite(factor) else float("nan"),
     )
     return Validation(
         input_standard_uncertainty=of_model,
@@ -200,35 +225,15 @@ def validate_curve(
         coverage_factor=factor,
         ratio=largest,
         ratio_strain=float(measured.strain[place]) if np.isfinite(largest) else float("nan"),
-        chi_square=square,
-        chi_square_freedom=freedom,
-        chi_square_probability=float(chi2.sf(square, freedom)) if freedom else float("nan"),
+        chi_square=judged.chi_square,
+        chi_square_freedom=judged.freedom,
+        chi_square_probability=judged.probability,
         share=share,
         agrees=agrees,
         is_informative=is_informative,
         verdict=words,
-        notes=_notes(
-            inputs, measured, agrees, float(chi2.sf(square, freedom)) if freedom else 1.0, outside
-        ),
+        notes=_notes(inputs, measured, agrees, judged),
     )
-
-
-def _chi_square(error: Floats, own: Floats, shared: Floats) -> tuple[float, int, float]:
-    """E' V^-1 E, the rank of V, and the part of the squared difference that V cannot make."""
-    total = np.sqrt(own**2 + np.sum(shared**2, axis=0))
-    known = total > 0
-    if not known.any():
-        return float("nan"), 0, 0.0
-    z = error[known] / total[known]
-    rows = shared[:, known] / total[known]
-    correlation = rows.T @ rows + np.diag((own[known] / total[known]) ** 2)
-    size, axes = np.linalg.eigh(correlation)
-    kept = size > _RANK * size[-1] * size.size
-    along = axes.T @ z
-    square = float(np.sum(along[kept] ** 2 / size[kept]))
-    whole = float(z @ z)
-    outside = float(np.sum(along[~kept] ** 2)) / whole if whole > 0 else 0.0
-    return square, int(kept.sum()), outside
 
 
 def _verdict(
@@ -257,7 +262,7 @@ def _verdict(
 
 
 def _notes(
-    inputs: Floats, measured: MeasuredCurve, agrees: bool, probability: float, outside: float
+    inputs: Floats, measured: MeasuredCurve, agrees: bool, judged: _Judged
 ) -> tuple[str, ...]:
     notes = []
     if not inputs.any():
@@ -267,13 +272,14 @@ def _notes(
         )
     if not measured.contribution.any():
         notes.append("no uncertainty of the calibration is stated: the test counts as unbiased")
-    if agrees and probability < 1 - _PROBABILITY:
+    if agrees and judged.probability < 1 - _PROBABILITY:
         notes.append(
             f"no strain differs by more than U, but the shape of the difference is one that the "
-            f"stated errors make in {100 * probability:.2g} % of all cases alone"
+            f"stated errors make in {100 * judged.probability:.2g} % of all cases alone"
         )
-    if outside > _OUTSIDE:
+    if judged.outside > _OUTSIDE:
         notes.append(
-            f"{100 * outside:.2g} % of the squared difference lies where no stated error can be"
+            f"{100 * judged.outside:.2g} % of the squared difference lies where no stated error "
+            "can be"
         )
     return tuple(notes)

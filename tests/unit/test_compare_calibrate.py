@@ -1,0 +1,341 @@
+import numpy as np
+import pytest
+from measured_hoses import Truth
+
+from reduction.compare import fitproblem
+from reduction.compare.calibrate import calibrate_hose
+from reduction.compare.fitproblem import parameter_bounds
+from reduction.compare.identifiability import CALIBRATED, identify_directions, plausible_error
+from reduction.compare.measured import SharedUncertainty, measured_curve
+from reduction.compare.residuals import autocorrelation_length
+from reduction.compare.trials import trial_tension
+from reduction.errors import DataError, FitError, SettingsError
+
+TRUTH = Truth(dead_length_share=0.04)
+
+
+def pull(truth, *, top=1.0, noise=0.0, seed=0, n=600, bend=0.0, **shared):
+    strain = np.linspace(0, top, n)
+    tension = truth.tension(strain) + np.random.default_rng(seed).normal(0, noise, n)
+    if bend:
+        tension = tension * (1 + bend * np.sin(7 * strain))
+    return measured_curve(strain, tension, loading="static", shared=SharedUncertainty(**shared))
+
+
+def cyclic(truth, rng, *, scatter=0.003, noise=30.0, load_cell=0.0, n_cycles=10):
+    phase = np.linspace(0, n_cycles, n_cycles * 200, endpoint=False)
+    strain = 1 - np.abs(2 * (phase % 1) - 1)
+    branch, number = np.where(phase % 1 < 0.5, 1, 2), phase.astype(int) + 1
+    tension = truth.tension(strain) * (1 + np.where(branch == 1, 0.03, -0.03))
+    tension *= (1 + scatter * rng.standard_normal(n_cycles + 1))[number]
+    tension *= 1 + load_cell * rng.standard_normal()
+    return measured_curve(
+        strain, tension + rng.normal(0, noise, strain.size), loading="static",
+        cycle_number=number, branch=branch, shared=SharedUncertainty(tension_scale=load_cell),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong", "tolerance"),
+    [
+        ("wrap_angle", np.radians(66.0), np.radians(0.02)),
+        ("rubber_modulus", 1.0e6, 2e3),
+        ("cord_load_scale", 1.3, 0.005),
+        ("cord_strain_scale", 0.8, 0.003),
+        ("dead_length_share", 0.0, 0.0006),
+    ],
+)
+def test_each_number_alone_comes_back(name, wrong, tolerance):
+    test = pull(TRUTH, noise=5, seed=1)
+    found = calibrate_hose(TRUTH.but(**{name: wrong}).design(), test, [name])
+    assert found.value[0] == pytest.approx(getattr(TRUTH, name), abs=tolerance)
+    assert found.low[0] < getattr(TRUTH, name) < found.high[0]
+    assert found.identifiability.is_identified and not found.is_at_bound[0]
+    assert found.after.rms < 0.1 * found.before.rms
+    assert getattr(found.design, name) == found.value[0]
+
+
+def test_modulus_and_angle_of_a_good_curve_are_told_apart_without_a_warning():
+    wrong = TRUTH.but(wrap_angle=np.radians(65.5), rubber_modulus=1.1e6).design()
+    test = cyclic(TRUTH, np.random.default_rng(2))
+    found = calibrate_hose(wrong, test, ["wrap_angle", "rubber_modulus"])
+    assert found.identifiability.is_identified and found.identifiability.words == ""
+    assert not any("apart" in text for text in found.notes)
+    assert found.low[0] < TRUTH.wrap_angle < found.high[0]
+    assert found.low[1] < TRUTH.rubber_modulus < found.high[1]
+
+
+@pytest.mark.parametrize("angle", [62.0, 64.0, 68.0])
+@pytest.mark.parametrize("cord_strain", [0.05, 0.09, 0.14])
+def test_modulus_and_angle_are_told_apart_and_angle_scale_and_dead_length_are_not(
+    angle, cord_strain
+):
+    truth = Truth(wrap_angle=np.radians(angle), dead_length_share=0.03)
+    strain = np.linspace(0, 3, 3001)
+    top = strain[np.argmax(truth.cord_stretch(1 + strain) > 1 + cord_strain)] * 0.97
+    test = pull(truth, top=top, noise=10, seed=3)
+    pair = calibrate_hose(truth.design(), test, ["wrap_angle", "rubber_modulus"])
+    assert pair.identifiability.is_identified
+    three = ["wrap_angle", "cord_load_scale", "dead_length_share"]
+    found = calibrate_hose(truth.design(), test, three)
+    assert not found.identifiability.is_identified
+    told = next(text for text in found.notes if "cannot tell" in text)
+    assert "wrap_angle and cord_load_scale and dead_length_share apart" in told
+
+
+def test_the_direction_that_is_not_seen_hardly_changes_the_curve():
+    test = pull(TRUTH, noise=5, seed=4)
+    names = ["wrap_angle", "cord_load_scale", "dead_length_share"]
+    found = calibrate_hose(TRUTH.design(), test, names)
+    step = found.identifiability.direction
+    moved = Truth(
+        wrap_angle=found.value[0] + step[0],
+        cord_load_scale=found.value[1] + step[1],
+        dead_length_share=found.value[2] + step[2],
+    )
+    here = Truth(**dict(zip(names, found.value, strict=True)))
+    strain = test.strain
+    change = moved.tension(strain) - here.tension(strain)
+    relative = np.sqrt(np.mean(change**2) / np.mean(here.tension(strain) ** 2))
+    assert relative == pytest.approx(found.identifiability.least_change, rel=0.25)
+    sizes = np.abs(step) / [plausible_error(name, 1.0) for name in names]
+    assert np.linalg.norm(sizes) == pytest.approx(1, rel=1e-6)
+
+
+def test_a_scale_of_cords_that_were_never_taut_is_not_shown():
+    test = pull(TRUTH, top=0.5, noise=5, seed=5)
+    found = calibrate_hose(TRUTH.design(), test, ["rubber_modulus", "cord_load_scale"])
+    assert not found.identifiability.is_identified
+    assert "cord_load_scale +10.0 %" in found.identifiability.words
+    alone = calibrate_hose(TRUTH.design(), test, ["cord_load_scale"])
+    assert any("does not show cord_load_scale" in text for text in alone.notes)
+    assert any("not determined" in text for text in alone.notes)
+
+
+@pytest.mark.parametrize(
+    ("names", "options", "n_draws"),
+    [
+        (("wrap_angle", "rubber_modulus"), {}, 200),
+        (("dead_length_share",), {"scatter": 0.0}, 100),
+        (("wrap_angle", "rubber_modulus"), {"load_cell": 0.005}, 100),
+    ],
+)
+def test_intervals_hold_the_truth_in_19_of_20_draws(names, options, n_draws):
+    rng = np.random.default_rng(6)
+    truth = np.array([getattr(TRUTH, name) for name in names])
+    hits = []
+    for _ in range(n_draws):
+        found = calibrate_hose(TRUTH.design(), cyclic(TRUTH, rng, **options), names)
+        hits.append((found.low <= truth) & (truth <= found.high))
+    share = np.mean(hits, axis=0)
+    assert np.all(share >= 0.90) and np.all(share <= 1 - 0.5 / n_draws * (n_draws > 100))
+
+
+def test_a_model_that_is_wrong_has_wide_intervals_that_hold_the_truth():
+    # one percent of error along the curve, as smooth as a wrong law: noise alone is 1 N
+    test = pull(TRUTH, noise=5, seed=7, bend=0.01)
+    found = calibrate_hose(TRUTH.design(), test, ["wrap_angle", "rubber_modulus"])
+    good = calibrate_hose(
+        TRUTH.design(), pull(TRUTH, noise=5, seed=7), ["wrap_angle", "rubber_modulus"]
+    )
+    assert found.model_error > 5 * max(good.model_error, 1.0)
+    assert found.effective_points < test.strain.size / 4
+    ratio = found.standard_uncertainty / good.standard_uncertainty
+    assert np.all(ratio > 10)
+    assert found.low[0] < TRUTH.wrap_angle < found.high[0]
+    assert found.low[1] < TRUTH.rubber_modulus < found.high[1]
+
+
+def test_a_load_cell_that_may_be_off_widens_what_it_can_imitate():
+    exact = calibrate_hose(TRUTH.design(), pull(TRUTH, noise=5, seed=8), ["rubber_modulus"])
+    test = pull(TRUTH, noise=5, seed=8, tension_scale=0.02)
+    unsure = calibrate_hose(TRUTH.design(), test, ["rubber_modulus"])
+    assert unsure.standard_uncertainty[0] > 3 * exact.standard_uncertainty[0]
+    assert unsure.shared_error == ("tension_scale",)
+    # fitted errors are the same as generalised least squares with the whole covariance
+    slope = (
+        Truth(rubber_modulus=1.39e6, dead_length_share=0.04).tension(test.strain)
+        - Truth(rubber_modulus=1.37e6, dead_length_share=0.04).tension(test.strain)
+    ) / 0.02e6
+    own = np.hypot(test.independent_uncertainty(), unsure.model_error)
+    covariance = np.diag(own**2) + test.contribution.T @ test.contribution
+    expected = 1 / np.sqrt(slope @ np.linalg.solve(covariance, slope))
+    assert unsure.standard_uncertainty[0] == pytest.approx(expected, rel=0.15)
+
+
+def test_numbers_that_are_not_fitted_are_uncertain_too():
+    test = pull(TRUTH, noise=5, seed=9)
+    alone = calibrate_hose(TRUTH.design(), test, ["dead_length_share"])
+    known = {"rubber_modulus": 0.05 * TRUTH.rubber_modulus, "dead_length_share": 0.001}
+    found = calibrate_hose(TRUTH.design(), test, ["dead_length_share"], standard_uncertainty=known)
+    assert found.standard_uncertainty[0] > 1.5 * alone.standard_uncertainty[0]
+    assert "rubber_modulus" in found.shared_error
+    assert "dead_length_share" not in found.shared_error  # it does not hold itself back
+
+
+def test_a_number_far_from_what_was_stated_is_noted():
+    test = pull(TRUTH, noise=5, seed=10)
+    found = calibrate_hose(
+        TRUTH.but(wrap_angle=np.radians(66)).design(), test, ["wrap_angle"],
+        standard_uncertainty={"wrap_angle": np.radians(0.5)},
+    )  # fmt: skip
+    assert "wrap_angle moved by -4.0 of its stated standard uncertainty" in found.notes
+
+
+def test_an_instrument_that_would_have_to_be_far_off_is_noted():
+    test = pull(TRUTH, noise=5, seed=11, tension_scale=0.002)
+    wrong = TRUTH.but(dead_length_share=0.0, cord_load_scale=1.0, rubber_modulus=1.3e6)
+    found = calibrate_hose(wrong.design(), test, ["dead_length_share"])
+    assert any(text.startswith("tension_scale would have to be") for text in found.notes)
+
+
+def test_a_fit_that_is_stopped_at_a_bound_says_so():
+    test = pull(TRUTH, noise=5, seed=12)
+    found = calibrate_hose(
+        TRUTH.but(rubber_modulus=1.0e6).design(), test, ["rubber_modulus"],
+        bounds={"rubber_modulus": (0.8e6, 1.2e6)},
+    )  # fmt: skip
+    assert found.is_at_bound[0] and found.value[0] == pytest.approx(1.2e6, rel=1e-3)
+    assert "rubber_modulus was stopped at a bound: its interval does not hold" in found.notes
+
+
+def test_a_hose_without_dead_length_lies_at_the_bound():
+    test = pull(Truth(), noise=5, seed=13)
+    found = calibrate_hose(Truth(dead_length_share=0.1).design(), test, ["dead_length_share"])
+    assert found.value[0] < 0.001
+
+
+def test_trial_hoses_that_would_break_do_not_stop_the_fit():
+    # measured up to cord strain 21 %, where a design that is two degrees off is broken long since
+    strain = np.linspace(0, 3, 3001)
+    top = strain[np.argmax(TRUTH.cord_stretch(1 + strain / 0.96) > 1.21)]
+    test = pull(TRUTH, top=top, noise=10, seed=14)
+    found = calibrate_hose(
+        TRUTH.but(wrap_angle=np.radians(61.0)).design(), test, ["wrap_angle", "rubber_modulus"]
+    )
+    assert found.value[0] == pytest.approx(TRUTH.wrap_angle, abs=np.radians(0.05))
+    assert found.before.n_strain < found.after.n_strain
+
+
+def test_strains_beyond_the_break_of_the_fitted_hose_are_noted():
+    softer = TRUTH.but(cord_strain_scale=1.2)
+    test = pull(softer, top=1.48, noise=10, seed=15)
+    found = calibrate_hose(TRUTH.design(), test, ["rubber_modulus"])
+    assert any("cords of the fitted hose are broken at" in text for text in found.notes)
+
+
+def test_a_curve_goes_on_along_its_tangent_where_cords_are_broken():
+    names, value = ["wrap_angle"], np.array([[TRUTH.wrap_angle]])
+    strain = np.arange(1.0, 1.8, 0.001)
+    tension = trial_tension(TRUTH.design(), names, value, strain)[0]
+    assert np.isfinite(tension).all()
+    broken = np.isnan(TRUTH.tension(strain))
+    assert broken.any() and not broken.all()
+    first = int(np.argmax(broken))
+    steps = np.diff(tension)
+    assert steps[first] == pytest.approx(steps[first - 2], rel=0.01)
+    assert np.ptp(steps[first:]) < 1e-6
+
+
+def test_fitted_modulus_and_scale_trade_as_their_correlation_says():
+    rng = np.random.default_rng(16)
+    names = ("rubber_modulus", "cord_load_scale")
+    fits = [
+        calibrate_hose(TRUTH.design(), pull(TRUTH, noise=40, seed=k), names)
+        for k in rng.integers(0, 10_000, 60)
+    ]
+    values = np.array([one.value for one in fits])
+    stated = np.median([one.correlation[0, 1] for one in fits])
+    assert np.corrcoef(values.T)[0, 1] == pytest.approx(stated, abs=0.25)
+    ratio = np.std(values, axis=0) / np.median([one.standard_uncertainty for one in fits], axis=0)
+    assert np.all(ratio > 0.75) and np.all(ratio < 1.2)
+
+
+def test_residuals_that_err_together_count_as_few_points():
+    rng = np.random.default_rng(17)
+    white = [autocorrelation_length(rng.standard_normal(200)) for _ in range(100)]
+    assert 1.0 <= np.mean(white) < 1.6
+    # first order with 0.8: (1 + 0.8) / (1 - 0.8) = 9
+    lengths = []
+    for _ in range(100):
+        noise, series = rng.standard_normal(2000), np.zeros(2000)
+        for k in range(1, 2000):
+            series[k] = 0.8 * series[k - 1] + noise[k]
+        lengths.append(autocorrelation_length(series))
+    assert np.mean(lengths) == pytest.approx(9, rel=0.15)
+    assert autocorrelation_length(np.zeros(10)) == 1
+    with pytest.raises(DataError, match="not finite"):
+        autocorrelation_length([np.nan, 1.0, 2.0])
+
+
+def test_what_shared_errors_imitate_is_not_seen():
+    strain = np.linspace(0, 1, 50)
+    slope = np.column_stack([strain])
+    plain = identify_directions(
+        slope, tension=1 + 0 * strain, names=["cord_load_scale"], plausible=[0.1], value=[1.0],
+        contribution=np.zeros((0, 50)), misfit=0.0,
+    )  # fmt: skip
+    assert plain.is_identified and plain.least_change == pytest.approx(0.0582, abs=1e-3)
+    hidden = identify_directions(
+        slope, tension=1 + 0 * strain, names=["cord_load_scale"], plausible=[0.1], value=[1.0],
+        contribution=strain[None, :], misfit=0.0,
+    )  # fmt: skip
+    assert not hidden.is_identified
+    poor = identify_directions(
+        slope, tension=1 + 0 * strain, names=["cord_load_scale"], plausible=[0.1], value=[1.0],
+        contribution=np.zeros((0, 50)), misfit=0.07,
+    )  # fmt: skip
+    assert not poor.is_identified and poor.needed_change == pytest.approx(0.07)
+
+
+def test_a_number_without_effect_has_no_collinearity():
+    found = identify_directions(
+        np.zeros((5, 1)), tension=np.ones(5), names=["cord_load_scale"], plausible=[0.1],
+        value=[1.0], contribution=np.zeros((0, 5)), misfit=0.0,
+    )  # fmt: skip
+    assert np.isinf(found.collinearity) and not found.is_identified
+
+
+def test_bounds_of_each_number():
+    assert np.degrees(parameter_bounds("wrap_angle", np.radians(64))) == pytest.approx([54, 74])
+    assert np.degrees(parameter_bounds("wrap_angle", np.radians(85)))[1] == pytest.approx(89)
+    assert parameter_bounds("dead_length_share", 0.0) == (0.0, 0.5)
+    assert parameter_bounds("rubber_modulus", 1e6) == pytest.approx((2e5, 5e6))
+    assert len(CALIBRATED) == 5
+
+
+def test_bad_input_is_refused(monkeypatch):
+    test = pull(TRUTH, noise=5)
+    design = TRUTH.design()
+    with pytest.raises(SettingsError, match="what to calibrate cannot be read; found nothing"):
+        calibrate_hose(design, test, [])
+    with pytest.raises(SettingsError, match="what to calibrate cannot be read; found wrap_angle"):
+        calibrate_hose(design, test, ["wrap_angle", "wrap_angle"])
+    with pytest.raises(SettingsError, match="no such number of a hose; found colour"):
+        calibrate_hose(design, test, ["colour"])
+    with pytest.raises(SettingsError, match="'outer_diameter' cannot be calibrated"):
+        calibrate_hose(design, test, ["outer_diameter"])
+    with pytest.raises(SettingsError, match="rubber_modulus has no size to start"):
+        calibrate_hose(TRUTH.design(rubber_modulus=0.0), test, ["rubber_modulus"])
+    with pytest.raises(SettingsError, match="bounds of wrap_angle leave nothing"):
+        calibrate_hose(design, test, ["wrap_angle"], bounds={"wrap_angle": (1.1, 1.1)})
+    with pytest.raises(SettingsError, match="a comparison is of one hose"):
+        calibrate_hose(TRUTH.design(rubber_modulus=np.array([1e6, 2e6])), test, ["wrap_angle"])
+    with pytest.raises(SettingsError, match="uncertainty of wrap_angle cannot be used"):
+        calibrate_hose(design, test, ["rubber_modulus"], standard_uncertainty={"wrap_angle": -1})
+    with pytest.raises(SettingsError, match="no such number of a hose; found colour"):
+        calibrate_hose(design, test, ["rubber_modulus"], standard_uncertainty={"colour": 1})
+    with pytest.raises(DataError, match="too few strains were measured to calibrate 1 numbers"):
+        calibrate_hose(design, pull(TRUTH, top=0.01, n=5), ["wrap_angle"])
+    with pytest.raises(DataError, match="sensitivities do not pair up"):
+        identify_directions(
+            [[1.0]], tension=[1.0, 2.0], names=["cord_load_scale"], plausible=[0.1],
+            value=[1.0], contribution=np.zeros((0, 2)), misfit=0.0,
+        )  # fmt: skip
+
+    class Unfinished:
+        success, nfev = False, 100
+
+    monkeypatch.setattr(fitproblem, "least_squares", lambda *_, **__: Unfinished)
+    with pytest.raises(FitError, match="the calibration did not come to an end; found 100 trials"):
+        calibrate_hose(design, test, ["wrap_angle"])

@@ -1,0 +1,274 @@
+import time
+
+import numpy as np
+import pytest
+from measured_hoses import Truth
+
+from reduction.compare.cells import fill_cells, tension_at_centres
+from reduction.compare.measured import SharedUncertainty, measured_curve
+from reduction.compare.product import MeasuredCurve
+from reduction.compare.samples import select_samples
+from reduction.compare.scatter import branch_scatter, shared_scatter
+from reduction.errors import DataError, SettingsError
+
+
+def strokes(n_cycles, n_samples, *, low=0.0, high=1.0):
+    """Triangular strain, branch and cycle number."""
+    phase = np.linspace(0, n_cycles, n_cycles * n_samples, endpoint=False)
+    rise = 1 - np.abs(2 * (phase % 1) - 1)
+    branch = np.where(phase % 1 < 0.5, 1, 2)
+    return low + (high - low) * rise, branch, phase.astype(int) + 1
+
+
+def test_a_parabola_comes_back_exactly_from_uneven_samples():
+    rng = np.random.default_rng(4)
+    strain = np.sort(rng.uniform(0.0, 0.6, 4000))
+    curve = measured_curve(strain, 300 + 5000 * strain**2, loading="static", strain_step=0.02)
+    inner = slice(1, -1)
+    expected = 300 + 5000 * curve.strain**2
+    # neighbouring bins have not quite the same spread of strain
+    assert curve.branch_tension[0][inner] == pytest.approx(expected[inner], abs=0.05)
+
+
+def test_noise_does_not_pull_the_mean_curve_to_one_side():
+    strain, branch, number = strokes(50, 400)
+    rng = np.random.default_rng(5)
+    tension = 2000 * strain + 3000 * strain**3 + rng.normal(0, 30, strain.size)
+    curve = measured_curve(strain, tension, loading="static", cycle_number=number, branch=branch)
+    error = curve.midline_tension - 2000 * curve.strain - 3000 * curve.strain**3
+    ratio = (error / curve.midline_standard_uncertainty)[1:-1]
+    error = error[1:-1]
+    assert abs(np.mean(error)) < 3 * 30 / np.sqrt(strain.size)
+    assert 0.7 < np.std(ratio) < 1.2
+
+
+def test_a_drifting_time_in_a_bin_does_not_shift_a_steep_curve():
+    # samples crowd at the upper edge of every bin: their mean is off the centre by 0.3 of it
+    centre = np.arange(1, 60) * 0.01
+    strain = (centre[:, None] + [0.002, 0.003, 0.004]).ravel()
+    curve = measured_curve(strain, 8000 * strain, loading="static", strain_step=0.01)
+    inside = slice(1, -1)
+    assert curve.branch_tension[0][inside] == pytest.approx(8000 * curve.strain[inside], abs=1e-8)
+
+
+def test_branches_and_cycles_stay_apart():
+    strain, branch, number = strokes(3, 400)
+    tension = 1000 * strain + np.where(branch == 1, 40, -60) + 10 * number
+    curve = measured_curve(strain, tension, loading="dynamic", cycle_number=number, branch=branch)
+    k = np.searchsorted(curve.strain, 0.4999)
+    assert curve.tension[:, 0, k] == pytest.approx([550, 560, 570])
+    assert curve.tension[:, 1, k] == pytest.approx([450, 460, 470])
+    assert curve.branch_tension[:, k] == pytest.approx([560, 460])
+    assert curve.midline_tension[k] == pytest.approx(510)
+    assert curve.judged == "midline" and curve.loading == "dynamic"
+    assert curve.curves() == ("ascending", "descending", "midline")
+
+
+def test_break_in_cycles_are_kept_and_in_no_mean():
+    strain, branch, number = strokes(4, 400)
+    tension = 1000 * strain + np.where(number == 1, 500, 0)
+    curve = measured_curve(
+        strain, tension, loading="static", cycle_number=number, branch=branch, break_in_cycles=1
+    )
+    k = np.searchsorted(curve.strain, 0.4999)
+    assert curve.tension[0, 0, k] == pytest.approx(1000)
+    assert curve.midline_tension[k] == pytest.approx(500)
+
+
+def test_a_slow_pull_ends_at_its_greatest_tension_and_has_one_branch():
+    strain = np.concatenate([np.linspace(0, 1, 500), np.ones(100), np.linspace(1, 0.2, 200)])
+    tension = 900 * strain
+    tension[500:600] -= np.linspace(0.1, 80, 100)  # relaxes, then is let off
+    tension[600:] -= 100
+    curve = measured_curve(strain, tension, loading="static")
+    assert curve.judged == "ascending" and curve.curves() == ("ascending",)
+    assert curve.tension.shape[:2] == (1, 2)
+    assert np.isnan(curve.tension[0, 1]).all()
+    assert curve.branch_tension[0] == pytest.approx(900 * curve.strain, abs=1e-6)
+    assert "one branch was measured" in curve.notes[0]
+
+
+def test_missing_samples_are_left_out_and_bins_not_visited_are_nan():
+    strain = np.linspace(0, 1, 2001)
+    tension = 500 * strain
+    tension[(strain > 0.3) & (strain < 0.4)] = np.nan
+    curve = measured_curve(strain, tension, loading="static")
+    gap = (curve.strain > 0.311) & (curve.strain < 0.389)
+    assert np.isnan(curve.branch_tension[0][gap]).all()
+    assert np.isfinite(curve.branch_tension[0][~gap]).sum() > 80
+    assert curve.count[0, 0][gap].sum() == 0
+
+
+def test_a_mean_needs_half_of_the_cycles():
+    strain, branch, number = strokes(5, 400)
+    strain = np.where(number == 5, strain * 1.2, strain)
+    curve = measured_curve(
+        strain, 100 * strain, loading="static", cycle_number=number, branch=branch
+    )
+    beyond = curve.strain > 1.02
+    assert np.isnan(curve.midline_tension[beyond]).all()
+    assert np.isfinite(curve.tension[4, 0][beyond][:-1]).all()
+
+
+def test_few_samples_widen_the_bins_and_a_step_can_be_given():
+    strain, branch, number = strokes(4, 40)
+    wide = measured_curve(strain, strain, loading="static", cycle_number=number, branch=branch)
+    assert np.diff(wide.strain)[0] == pytest.approx(0.1)  # 1.5 samples of 0.05, on 1, 2, 5
+    dense = measured_curve(np.linspace(0, 1, 5000), np.linspace(0, 9, 5000), loading="static")
+    assert np.diff(dense.strain)[0] == pytest.approx(0.01)
+
+
+def test_calibration_errors_are_signed_shifts_of_the_curve():
+    strain = np.linspace(0, 1, 5001)
+    truth = lambda x: 3000 * x + 2000 * x**2  # noqa: E731
+    shared = SharedUncertainty(
+        tension_offset=5, tension_scale=0.01, strain_offset=0.002, strain_scale=0.005
+    )
+    curve = measured_curve(strain, truth(strain), loading="static", shared=shared)
+    inner = slice(2, -2)
+    # the same pull, read by instruments that are one standard uncertainty high
+    for name, read_strain, read_tension in (
+        ("tension_offset", strain, truth(strain) + 5),
+        ("tension_scale", strain, truth(strain) * 1.01),
+        ("strain_offset", strain + 0.002, truth(strain)),
+        ("strain_scale", strain * 1.005, truth(strain)),
+    ):
+        wrong = measured_curve(read_strain, read_tension, loading="static")
+        n = min(wrong.strain.size, curve.strain.size)
+        moved = (wrong.branch_tension[0][:n] - curve.branch_tension[0][:n])[inner]
+        row = curve.contribution[curve.source.index(name)][:n][inner]
+        assert row == pytest.approx(moved, abs=0.3), name  # second order
+
+
+def test_what_cycles_share_is_kept_apart_from_what_they_do_not():
+    strain, branch, number = strokes(12, 600)
+    rng = np.random.default_rng(11)
+    scale = 1 + 0.01 * rng.standard_normal(13)
+    tension = (500 + 4000 * strain) * scale[number] + rng.normal(0, 10, strain.size)
+    curve = measured_curve(strain, tension, loading="static", cycle_number=number, branch=branch)
+    common = np.sqrt(np.sum(curve.scatter_contribution**2, axis=0))
+    # Student's ratio for 12 cycles, 1.123, over the scatter of these very cycles
+    expected = 1.123 * (500 + 4000 * curve.strain) * np.std(scale[1:], ddof=1) / np.sqrt(12)
+    inner = slice(5, -5)
+    assert common[inner] == pytest.approx(expected[inner], rel=0.1)
+    n_in_bin = 12 * 600 / curve.strain.size  # both branches
+    own = np.nanmedian(curve.independent_uncertainty())
+    assert own == pytest.approx(10 / np.sqrt(n_in_bin), rel=0.2)
+
+
+def test_cycles_without_common_scatter_have_no_common_error():
+    rng = np.random.default_rng(12)
+    found = [shared_scatter(rng.normal(0, 1, (8, 80)), np.zeros(80))[0].shape[0] for _ in range(50)]
+    assert np.mean(np.array(found) > 0) < 0.2
+
+
+def test_one_cycle_has_no_common_scatter():
+    parts, rest = shared_scatter(np.ones((1, 30)), np.ones(30))
+    assert parts.shape == (0, 30) and rest.shape == (1, 30)
+
+
+def test_scatter_of_two_cycles_is_pooled_over_the_branch():
+    rng = np.random.default_rng(13)
+    cycles = rng.normal(0, 6, (2, 1, 200))
+    _, variance = branch_scatter(cycles, np.zeros((2, 1, 200)))
+    assert np.sqrt(variance).min() > 0.8 * 6 / np.sqrt(2)
+    assert np.sqrt(variance.mean()) == pytest.approx(6 / np.sqrt(2), rel=0.15)
+
+
+def test_noise_of_a_single_pull_is_that_of_its_bins():
+    rng = np.random.default_rng(14)
+    ratios = []
+    for _ in range(20):
+        strain = np.linspace(0, 1, 3000)
+        truth = Truth()
+        pull = measured_curve(
+            strain, truth.tension(strain) + rng.normal(0, 20, 3000), loading="static"
+        )
+        error = pull.branch_tension[0] - truth.tension(pull.strain)
+        ratios.append(np.nanstd((error / pull.branch_standard_uncertainty[0])[2:-2]))
+    assert 0.8 < np.mean(ratios) < 1.15
+
+
+def test_noise_slower_than_the_samples_is_seen_from_bin_to_bin():
+    rng = np.random.default_rng(15)
+    strain = np.linspace(0, 1, 20_000)
+    slow = np.repeat(rng.normal(0, 20, 200), 100)  # constant within half a bin
+    pull = measured_curve(strain, 1000 * strain + slow, loading="static")
+    error = pull.branch_tension[0] - 1000 * pull.strain
+    assert np.std(error[1:-1]) < 1.5 * np.median(pull.branch_standard_uncertainty[0])
+
+
+def test_more_than_a_thousand_cycles_are_kept_as_means_of_consecutive_ones():
+    strain, branch, number = strokes(2500, 40)
+    curve = measured_curve(
+        strain, 100 * strain + number, loading="dynamic", cycle_number=number, branch=branch,
+        strain_step=0.1,
+    )  # fmt: skip
+    assert curve.cycles_pooled == 3 and curve.tension.shape[0] == 834
+    assert curve.cycle_number[:3].tolist() == [1, 4, 7]
+    k = np.searchsorted(curve.strain, 0.4999)
+    assert curve.tension[1, 0, k] == pytest.approx(55, abs=0.5)  # cycles 4, 5, 6
+    assert "pools 3 consecutive cycles" in curve.notes[0]
+
+
+def test_a_million_samples_take_less_than_two_seconds():
+    strain, branch, number = strokes(500, 2000)
+    tension = 100 * strain
+    start = time.perf_counter()
+    measured_curve(strain, tension, loading="static", cycle_number=number, branch=branch)
+    assert time.perf_counter() - start < 2
+
+
+def test_end_bins_are_not_extrapolated():
+    # samples of the last bin lie at its far edge, and none beyond
+    strain = np.array([0.10, 0.20, 0.26, 0.27])
+    cells, centre = fill_cells(strain, strain, row=np.zeros(4, int), n_rows=1, step=0.1)
+    tension = tension_at_centres(cells)
+    assert centre == pytest.approx([0.1, 0.2, 0.3])
+    assert np.isfinite(tension[0]).tolist() == [True, True, False]
+
+
+def test_bad_input_is_refused():
+    with pytest.raises(SettingsError, match="loading is unknown; found quick"):
+        measured_curve([0.0, 0.1], [0.0, 1.0], loading="quick")
+    with pytest.raises(SettingsError, match="strain_step cannot be used; found -1"):
+        measured_curve([0.0, 0.1], [0.0, 1.0], loading="static", strain_step=-1)
+    with pytest.raises(DataError, match="series do not pair up"):
+        measured_curve([0.0, 0.1], [0.0], loading="static")
+    with pytest.raises(DataError, match="not series"):
+        measured_curve([[0.0]], [[1.0]], loading="static")
+    with pytest.raises(SettingsError, match="cycle_number and branch go together"):
+        measured_curve([0.0], [1.0], loading="static", branch=[1])
+    with pytest.raises(DataError, match="do not pair up with the samples"):
+        measured_curve([0.0], [1.0], loading="static", branch=[1, 1], cycle_number=[1, 1])
+    with pytest.raises(DataError, match="no sample belongs to a branch"):
+        measured_curve([0.0], [1.0], loading="static", branch=[0], cycle_number=[0])
+    with pytest.raises(DataError, match="no sample belongs to a branch"):
+        measured_curve([np.nan], [1.0], loading="static")
+    with pytest.raises(DataError, match="no cycle is left after break-in"):
+        measured_curve(
+            [0.0], [1.0], loading="static", branch=[1], cycle_number=[1], break_in_cycles=1
+        )
+    with pytest.raises(DataError, match="a slow pull has no break-in"):
+        measured_curve([0.0], [1.0], loading="static", break_in_cycles=2)
+    with pytest.raises(DataError, match="no sample of a branch has a strain"):
+        measured_curve([-0.5], [1.0], loading="static")
+    with pytest.raises(SettingsError, match="uncertainty of strain_offset cannot be used"):
+        SharedUncertainty(strain_offset=-0.1)
+
+
+def test_a_measured_curve_checks_its_shapes():
+    one = np.zeros(3)
+    with pytest.raises(DataError, match="branch_tension does not fit the measured curve"):
+        MeasuredCurve(
+            one, np.zeros((1, 2, 3)), np.zeros((1, 2, 3), int), np.ones(1, int), np.zeros((2, 4)),
+            np.zeros((2, 3)), one, one, np.zeros((0, 3)), (), np.zeros((0, 3)), "static",
+        )  # fmt: skip
+
+
+def test_rows_are_ascending_then_descending():
+    found = select_samples(
+        [0.1, 0.2, 0.1], [1.0, 2.0, 1.0], cycle_number=[2, 2, 2], branch=[1, 1, 2],
+        break_in_cycles=0,
+    )  # fmt: skip
+    assert found.row.tolist() == [2, 2, 3] and found.cycle_number.tolist() == [1, 2]
