@@ -13,7 +13,7 @@ from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign, HosePrediction
 from reduction.predict.uncertainty import propagate_hose
 from reduction.prediction import HelicalLayer, HosePlan, LayerResponse, PredictedHose
-from reduction.record import Floats
+from reduction.record import Bools, Floats
 
 __all__ = ["predict_from_plan"]
 
@@ -149,15 +149,23 @@ def _notes_of_design(plan: HosePlan, prediction: HosePrediction) -> list[str]:
         ("is_jammed", "neighbouring cords touch"),
         ("is_bore_too_small", "the bore is below its limit"),
     ):
-        at = prediction.strain[getattr(prediction, name)]
-        if at.size:
-            notes.append(
-                f"{what} from {100 * at[0]:.1f} to {100 * at[-1]:.1f} % strain: "
-                "the prediction does not hold there"
-            )
+        where = _ranges(prediction.strain, getattr(prediction, name))
+        if where:
+            notes.append(f"{what} {where} % strain: the prediction does not hold there")
     beyond = prediction.strain[prediction.is_broken]
     if beyond.size:
         notes.append(f"the cords are broken from {100 * beyond[0]:.1f} % strain: no load is given")
     if not plan.standard_uncertainty:
         notes.append("no number of the hose has a stated uncertainty: none is given")
     return notes
+
+
+def _ranges(strain: Floats, is_so: Bools) -> str:
+    """Where something is so; cords of a steep hose may touch at rest and, again, near the end."""
+    place = np.flatnonzero(is_so)
+    if not place.size:
+        return ""
+    runs = np.split(place, np.flatnonzero(np.diff(place) > 1) + 1)
+    return " and ".join(
+        f"from {100 * strain[run[0]]:.1f} to {100 * strain[run[-1]]:.1f}" for run in runs
+    )

@@ -1,0 +1,186 @@
+"""A hose from its plan: how far it is predicted, what its layers bear, what is said of it."""
+
+import numpy as np
+import pytest
+from predicted_hoses import (
+    AT_WORK,
+    LAYERS,
+    UNCERTAIN,
+    pick_up_strain,
+    plan,
+    predicted,
+    rubber_tension,
+    stretch_at,
+    working_tension,
+)
+
+from reduction.errors import SettingsError
+from reduction.pipeline.prediction import predict_from_plan
+from reduction.prediction import HelicalLayer
+
+BREAK = 0.22
+"""Cord strain of the last measured point."""
+
+
+def said(hose, start):
+    return [note for note in hose.notes if note.startswith(start)]
+
+
+def idle(degrees, strain_limit=np.nan, compression_limit=np.nan):
+    """A hose with one layer that carries no load."""
+    return predicted(
+        layers=[HelicalLayer("K", np.radians(degrees), strain_limit, compression_limit)]
+    )
+
+
+def layer_strain(stretch, degrees):
+    """Eq. (8) of WHOI-2004-06 for the layer: L2 cos2 + sin2 / L."""
+    cos2 = np.cos(np.radians(degrees)) ** 2
+    return np.sqrt(stretch**2 * cos2 + (1 - cos2) / stretch) - 1
+
+
+def test_strains_are_whole_steps_up_to_the_break_and_the_break_itself():
+    strain = predicted(strain_step=0.1).prediction.strain
+    last = stretch_at(68, BREAK) - 1
+    assert strain[:-1] == pytest.approx(np.arange(strain.size - 1) * 0.1)
+    assert strain[-1] == pytest.approx(last, rel=1e-12)
+    assert last - strain[-2] < 0.1
+
+
+def test_the_break_itself_carries_load():
+    hose = predicted()
+    assert np.isfinite(hose.prediction.tension).all()
+    assert not hose.prediction.is_broken.any()
+    assert hose.prediction.tension[-1] == pytest.approx(float(hose.events.cord_break.tension))
+
+
+def test_a_stated_end_is_met_in_whole_steps():
+    hose = predicted(greatest_strain=0.6, strain_step=0.2)
+    assert hose.prediction.strain == pytest.approx([0, 0.2, 0.4, 0.6])
+    assert predicted(greatest_strain=0.5, strain_step=0.2).prediction.strain[-1] == 0.4
+
+
+def test_an_end_beyond_the_break_is_told_and_has_no_load():
+    hose = predicted(greatest_strain=2.4, strain_step=0.1)
+    (note,) = said(hose, "the cords are broken from")
+    first = hose.prediction.strain[hose.prediction.strain > stretch_at(68, BREAK) - 1][0]
+    assert note == f"the cords are broken from {100 * first:.1f} % strain: no load is given"
+    assert np.isnan(hose.prediction.tension[-1])
+
+
+@pytest.mark.parametrize("options", [{"strain_step": 1e-6}, {"greatest_strain": 500.0}])
+def test_steps_without_end_are_refused(options):
+    with pytest.raises(SettingsError, match="hose 'gumby' has no end of strains") as caught:
+        predict_from_plan(plan(**options))
+    assert "at most 20000" in str(caught.value) and "Make strain_step larger" in str(caught.value)
+
+
+def test_dead_length_takes_its_share_of_every_strain():
+    hose = predicted(dead_length_share=0.04, layers=())
+    assert float(hose.events.pick_up.strain) == pytest.approx(0.96 * pick_up_strain(68))
+    assert hose.prediction.free_strain == pytest.approx(hose.prediction.strain / 0.96)
+
+
+def test_ribbons_and_cords_are_those_of_the_fabric():
+    hose = predicted()
+    width = np.pi * np.array([3.4, 3.6]) * 0.0254 * np.cos(np.radians(68))
+    assert hose.ribbon_width == pytest.approx(tuple(width))
+    # WHOI-2004-06, sec. 1.2.2: 280 cords at 68 degrees, 3.5 in and 34 an inch
+    assert hose.number_of_cords == pytest.approx(280.1, abs=0.05)
+
+
+def test_a_layer_is_followed_to_the_working_load_and_to_the_break():
+    (one,) = idle(66).layers
+    way = np.linspace(1, stretch_at(68, AT_WORK), 100_001)
+    assert one.least_strain == pytest.approx(layer_strain(way, 66).min(), abs=1e-9)
+    assert one.greatest_strain == pytest.approx(layer_strain(way[-1], 66))
+    assert one.break_strain == pytest.approx(layer_strain(stretch_at(68, BREAK), 66))
+    assert np.isnan([one.least_angle, one.greatest_angle]).all()
+
+
+def test_a_layer_within_its_limits_or_without_any_is_not_spoken_of():
+    assert said(idle(66), "layer") == said(idle(78, 0.01, 0.3), "layer") == []
+
+
+def test_a_layer_stretched_too_far_is_told_the_angle_that_it_needs():
+    hose = idle(66, strain_limit=0.02)
+    (note,) = said(hose, "layer K")
+    needed = np.degrees(hose.layers[0].least_angle)
+    assert layer_strain(stretch_at(68, AT_WORK), needed) == pytest.approx(0.02)
+    strain = 100 * layer_strain(stretch_at(68, AT_WORK), 66)
+    assert note == (
+        f"layer K is stretched by {strain:.1f} % at the working load, above its 2 %: it needs "
+        f"{needed:.1f} degrees or more"
+    )
+
+
+def test_a_layer_compressed_too_far_is_told_the_angle_that_it_may_have():
+    hose = idle(78, compression_limit=0.05)
+    (note,) = said(hose, "layer K")
+    allowed = np.degrees(hose.layers[0].greatest_angle)
+    way = np.linspace(1, stretch_at(68, AT_WORK), 100_001)
+    assert layer_strain(way, allowed).min() == pytest.approx(-0.05, abs=1e-9)
+    assert note.startswith(f"layer K is compressed by {-100 * layer_strain(way, 78).min():.1f} %")
+    assert note.endswith(f"on the way, above its 5 %: it needs {allowed:.1f} degrees or less")
+
+
+def test_limits_that_no_angle_meets_together_are_told():
+    hose = predicted(layers=LAYERS)
+    assert said(hose, "layer Kevlar: no angle") == [
+        "layer Kevlar: no angle keeps it within both limits up to the working load"
+    ]
+
+
+def test_a_hose_below_the_neutral_angle_has_no_slack_zone():
+    (note,) = said(predicted(degrees=50.0, layers=()), "at 50.00 degrees")
+    assert note.endswith("there is no slack zone: the cords carry from the first")
+    assert not said(predicted(), "at ")
+
+
+def test_cords_that_touch_and_a_narrow_bore_are_told_with_their_range():
+    hose = predicted(cord_diameter=0.00075, minimum_inner_diameter=0.05, layers=())
+    (touch,) = said(hose, "neighbouring cords touch")
+    (bore,) = said(hose, "the bore is below its limit")
+    at = hose.prediction.strain[hose.prediction.cord_spacing < 0.00075]
+    assert touch == (
+        f"neighbouring cords touch from {100 * at[0]:.1f} to {100 * at[-1]:.1f} % strain: "
+        "the prediction does not hold there"
+    )
+    # constant volume: 63.5 mm over the root of the stretch is 50 mm at (63.5/50)**2
+    first = hose.prediction.strain[hose.prediction.strain > (63.5 / 50) ** 2 - 1][0]
+    assert f"from {100 * first:.1f} to " in bore
+
+
+def test_cords_that_touch_at_rest_and_again_near_the_end_are_told_apart():
+    # spacing goes with the root of the stretch over that of the cord: it rises, then falls
+    hose = predicted(degrees=43.0, cord_diameter=1.005 * 0.0254 / 34, layers=(), strain_step=0.01)
+    strain = hose.prediction.strain
+    spacing = np.sqrt(1 + strain) / (1 + layer_strain(1 + strain, 43))
+    touch = np.flatnonzero(spacing < 1.005)
+    gap = int(np.flatnonzero(np.diff(touch) > 1)[0])
+    ends = [strain[touch[k]] for k in (0, gap, gap + 1, -1)]
+    (note,) = said(hose, "neighbouring cords touch")
+    assert note.startswith(
+        "neighbouring cords touch from {:.1f} to {:.1f} and from {:.1f} to {:.1f} % strain".format(
+            *(100 * end for end in ends)
+        )
+    )
+
+
+def test_without_a_stated_uncertainty_none_is_given():
+    hose = predicted(uncertain={}, layers=())
+    assert hose.notes == ("no number of the hose has a stated uncertainty: none is given",)
+    assert hose.uncertainty.source == ()
+
+
+def test_a_safe_working_load_that_is_little_known_is_told_with_its_share():
+    hose = predicted(uncertain={"rubber_modulus": 0.5 * 200 * 6894.757293168}, layers=())
+    (note,) = said(hose, "the safe working load is uncertain by")
+    rubber = 1 - hose_cord_load(68) / working_tension(68)
+    assert note.endswith(f" by {50 * rubber:.0f} % (k = 1)")
+    assert not said(predicted(uncertain=UNCERTAIN), "the safe working load")
+
+
+def hose_cord_load(degrees):
+    """Load of the cords less the end cap at the working load."""
+    return working_tension(degrees) - rubber_tension(stretch_at(degrees, AT_WORK))
