@@ -16,6 +16,7 @@ from reduction.pipeline.prediction import predict_from_plan
 from reduction.predict.product import HoseEvent
 from reduction.prediction import PredictedHose
 from reduction.report.page import write_report
+from reduction.report.style import shown
 from reduction.tables.write import write_tables
 from reduction.units import UnitSystem, display_unit
 from reduction.vocabulary import quantity
@@ -74,10 +75,12 @@ def _events(hose: PredictedHose) -> dict[str, HoseEvent]:
 def _show(hose: PredictedHose, outcome: Outcome, system: UnitSystem) -> None:
     force, per_newton = display_unit("N", system)
     pressure, per_pascal = display_unit("Pa", system)
+    small = shown("small length", system)
     outcome.say(
         f"hose {hose.plan.name}: {np.degrees(float(hose.plan.design.wrap_angle)):.4g} degrees from "
         f"the axis, {hose.number_of_cords:.1f} cords, ribbon "
-        f"{' and '.join(f'{1000 * width:.1f}' for width in hose.ribbon_width)} mm wide"
+        f"{' and '.join(short(small.factor * width, 4) for width in hose.ribbon_width)} "
+        f"{small.unit} wide"
     )
     table = table_of(
         "event", "strain [%]", "u [%]", f"tension [{force}]", f"u [{force}]",
