@@ -228,7 +228,7 @@ def spread_of(problem: FitProblem, best: Floats, noise: Floats) -> FitSpread:
     data, prior = jacobian[:n], jacobian[n:]
     information = data.T @ data / excess + prior.T @ prior
     diagonal = np.diagonal(information)
-    scale = np.sqrt(np.maximum(diagonal, _LEAST * diagonal.max()))
+    scale = np.sqrt(np.maximum(diagonal, _LEAST * max(diagonal.max(), 1.0)))
     size, axes = np.linalg.eigh(information / np.outer(scale, scale))
     inverse = (axes / np.maximum(size, _LEAST)) @ axes.T
     covariance = inverse / np.outer(scale, scale)
