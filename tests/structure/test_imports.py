@@ -35,16 +35,29 @@ LAYER = {
     "pipeline": 4,
     "ingest": 4,
     "archive": 4,
+    "published": 4,
     "campaign": 5,
     "tables": 5,
     "report": 5,
+    "reproduce": 5,
     "batch": 6,
     "cli": 7,
     "__main__": 8,
 }
 # data flow, left to right
 STAGES = ["phases", "strain", "cycles", "moduli", "holds", "line", "surface", "outcomes"]
-EDGES = {"ingest", "archive", "campaign", "tables", "report", "batch", "cli", "__main__"}
+EDGES = {
+    "ingest",
+    "archive",
+    "published",
+    "campaign",
+    "tables",
+    "report",
+    "reproduce",
+    "batch",
+    "cli",
+    "__main__",
+}
 UNITS_AT = EDGES  # pint stands at the edges only
 # numpy everywhere; scipy where the mathematics is
 BELOW_THE_EDGE = {"numpy", "scipy", "reduction"}

@@ -1,0 +1,1 @@
+"""Printed numbers again, from other printed numbers or from theory."""
