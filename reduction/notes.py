@@ -40,7 +40,9 @@ _DOUBT = re.compile(
     r"|only \d+% of the branches|which no specimen does|cut off|marks differ|reversals give"
     r"|has no time|have no time|two amplitudes|is not constant|given up for|failed"
     r"|goes slack|drifts over the order|goes below zero"
-    r"|does not hold there|is (stretched|compressed) by|no angle keeps it|load is uncertain by",
+    r"|does not hold there|is (stretched|compressed) by|no angle keeps it|load is uncertain by"
+    r"|this curve (cannot tell|does not show)|stopped at a bound|was allowed: not determined"
+    r"|where no stated error|is one that the stated errors",
     re.IGNORECASE,
 )
 

@@ -149,7 +149,7 @@ def _render(
         faults=faults,
         comparisons=[part for part in comparisons if part.figures],
         across="Across the tests" if tests else "Across the hoses",
-        chapters=[section for _, section in (*whole.experiments, *whole.hoses)],
+        chapters=whole.chapters,
         sections=[*(section for _, section in whole.outcomes), *sections],
         units="US customary" if units == "us" else "SI",
         version=__version__,

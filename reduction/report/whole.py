@@ -1,4 +1,4 @@
-"""What the page shows of a whole campaign besides its tests: outcomes, experiments, hoses."""
+"""What the page shows of a whole campaign besides its tests: experiments, hoses and the like."""
 
 from __future__ import annotations
 
@@ -11,9 +11,17 @@ import xarray as xr
 
 from reduction.archive.open import open_archive
 from reduction.errors import ArchiveError
+from reduction.report.comparisonsection import (
+    comparison_findings,
+    comparison_tiles,
+    make_comparison_section,
+)
+from reduction.report.comparisontables import verdict_table
+from reduction.report.comparisonview import ComparisonView, view_comparisons
 from reduction.report.experimentsection import make_experiment_section
 from reduction.report.experimentview import ExperimentView
 from reduction.report.experimentwords import experiment_findings
+from reduction.report.figures.comparisons import draw_all_comparisons
 from reduction.report.figures.hoses import draw_all_hoses
 from reduction.report.hosesection import hose_findings, hose_tiles, make_hose_section
 from reduction.report.hosetables import answer_of_hoses
@@ -29,7 +37,7 @@ from reduction.units import UnitSystem
 
 __all__ = ["WholeCampaign", "is_there", "read_whole"]
 
-_SHOWN = ("outcomes", "surfaces", "predictions")
+_SHOWN = ("outcomes", "surfaces", "predictions", "comparisons")
 _Read = TypeVar("_Read")
 
 
@@ -40,15 +48,23 @@ class WholeCampaign:
     outcomes: tuple[tuple[OutcomeView, Section], ...]
     experiments: tuple[tuple[ExperimentView, Section], ...]
     hoses: tuple[tuple[HoseView, Section], ...]
+    compared: tuple[tuple[ComparisonView, Section], ...]
 
     @property
-    def views(self) -> list[OutcomeView | ExperimentView | HoseView]:
+    def views(self) -> list[OutcomeView | ExperimentView | HoseView | ComparisonView]:
         """All of them; the first speaks for the campaign where there is no test."""
         return [
             *(view for view, _ in self.experiments),
             *(view for view, _ in self.outcomes),
             *(view for view, _ in self.hoses),
+            *(view for view, _ in self.compared),
         ]
+
+    @property
+    def chapters(self) -> list[Section]:
+        """Sections that stand before those of the tests."""
+        pairs = (*self.experiments, *self.hoses, *self.compared)
+        return [section for _, section in pairs]
 
     @property
     def is_synthetic(self) -> bool:
@@ -68,6 +84,7 @@ class WholeCampaign:
     def findings(self) -> list[Finding]:
         """What a reader must know first."""
         found = [one for view, _ in self.experiments for one in experiment_findings(view)]
+        found += [one for view, _ in self.compared for one in comparison_findings(view)]
         return found + [one for view, _ in self.hoses for one in hose_findings(view)]
 
     @property
@@ -79,13 +96,18 @@ class WholeCampaign:
             if view.surfaces is not None
         ]
         found.append(answer_of_hoses([view for view, _ in self.hoses]))
+        found.append(verdict_table([view for view, _ in self.compared]))
         return [table for table in found if table is not None]
 
     @property
     def comparisons(self) -> list[Part]:
         """Figures over several of a kind."""
         hoses = draw_all_hoses([view for view, _ in self.hoses])
-        return [make_part("All predicted hoses in one figure", hoses)]
+        compared = draw_all_comparisons([view for view, _ in self.compared])
+        return [
+            make_part("All predicted hoses in one figure", hoses),
+            make_part("All comparisons in one figure", compared),
+        ]
 
     def with_tiles(self, of_tests: list[Tile]) -> list[Tile]:
         """Numbers at the top, before and among those of the tests."""
@@ -98,7 +120,8 @@ class WholeCampaign:
             size = len(self.experiments)
             noun = "experiment" if size == 1 else "experiments"
             found.append(Tile(f"{size:,}", noun, self.experiments[0][0].key))
-        return [*found, *hose_tiles([view for view, _ in self.hoses]), *of_tests]
+        found += hose_tiles([view for view, _ in self.hoses])
+        return [*found, *comparison_tiles([view for view, _ in self.compared]), *of_tests]
 
 
 def is_there(processed: Path) -> bool:
@@ -138,10 +161,14 @@ def read_whole(
     def hoses(data: xr.Dataset) -> list[tuple[HoseView, Section]]:
         return [(view, make_hose_section(view)) for view in view_hoses(data, units)]
 
+    def compared(data: xr.Dataset) -> list[tuple[ComparisonView, Section]]:
+        return [(view, make_comparison_section(view)) for view in view_comparisons(data, units)]
+
     return WholeCampaign(
         outcomes=_read(processed / "outcomes.nc", outcomes, unreadable),
         experiments=_read(processed / "surfaces.nc", experiments, unreadable),
         hoses=_read(processed / "predictions.nc", hoses, unreadable),
+        compared=_read(processed / "comparisons.nc", compared, unreadable),
     )
 
 
