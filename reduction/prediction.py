@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from reduction.predict.product import HoseDesign, HoseEvents, HosePrediction
 from reduction.predict.uncertainty import HoseUncertainty
 
-__all__ = ["HelicalLayer", "HosePlan", "LayerResponse", "PredictedHose"]
+__all__ = ["HelicalLayer", "HosePlan", "HoseTarget", "LayerResponse", "PredictedHose"]
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,18 @@ class HosePlan:
     strain_step: float = 0.01
     greatest_strain: float = float("nan")
     layers: tuple[HelicalLayer, ...] = ()
+
+
+@dataclass(frozen=True)
+class HoseTarget:
+    """What a hose is to do where its cords bear their working share.
+
+    ``strain`` is of the whole length [1], ``tension`` the safe working load, None where any
+    will do [N].
+    """
+
+    strain: float
+    tension: float | None
 
 
 @dataclass(frozen=True)

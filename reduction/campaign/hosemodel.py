@@ -80,6 +80,13 @@ class HoseSection(HoseKeys):
     cord: CordSection
 
 
+class TargetSection(_Section):
+    """``[target]``: what a hose like this one is to do at its safe working load."""
+
+    strain: Number
+    tension: str | None = None
+
+
 class ComparisonKeys(_Section):
     """``[comparison]``: how a measured curve meets the prediction."""
 
@@ -96,6 +103,7 @@ class HoseSpecFile(_Section):
 
     hose: HoseKeys
     cord: CordSection
+    target: TargetSection | None = None
     comparison: ComparisonKeys = ComparisonKeys()
 
 

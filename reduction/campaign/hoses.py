@@ -18,10 +18,10 @@ from reduction.campaign.toml import read_toml
 from reduction.errors import SettingsError
 from reduction.predict.cordcurve import CordCurve
 from reduction.predict.product import HoseDesign
-from reduction.prediction import HelicalLayer, HosePlan
+from reduction.prediction import HelicalLayer, HosePlan, HoseTarget
 from reduction.units import Dimension
 
-__all__ = ["hose_of", "load_hose"]
+__all__ = ["hose_of", "load_hose", "target_of"]
 
 _DIMENSIONS: dict[str, Dimension] = {
     "wrap_angle": "angle",
@@ -230,3 +230,32 @@ def load_hose(path: Path) -> tuple[HosePlan, HoseSpecFile]:
         keys="docs/predictions.md lists every key",
     )
     return hose_of(path, path.stem, "hose", file.hose, file.cord), file
+
+
+def target_of(path: Path, file: HoseSpecFile) -> HoseTarget | None:
+    """What SPEC.toml asks of a hose, in SI; None where it asks nothing.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file, for the messages.
+    file : HoseSpecFile
+        As written.
+
+    Returns
+    -------
+    target : HoseTarget or None
+        In SI.
+
+    Raises
+    ------
+    SettingsError
+        If a unit is missing or wrong.
+    """
+    if file.target is None:
+        return None
+    read = TableReader(path, "target")
+    return HoseTarget(
+        strain=read.value("strain", file.target.strain, "strain"),
+        tension=read.optional("tension", file.target.tension, "force"),
+    )

@@ -8,10 +8,12 @@ from typing import Any, cast
 import numpy as np
 
 from reduction.batch.predictions import write_hoses
-from reduction.campaign.hoses import load_hose
+from reduction.campaign.hoses import load_hose, target_of
+from reduction.cli.hosedesigns import designed, show_designs
 from reduction.cli.numbers import plain, short, table_of
 from reduction.cli.outcome import Outcome
 from reduction.ingest.source import hash_source
+from reduction.pipeline.hosedesigns import design_hoses
 from reduction.pipeline.prediction import predict_from_plan
 from reduction.predict.product import HoseEvent
 from reduction.prediction import PredictedHose
@@ -41,10 +43,14 @@ _EVENTS = {
 
 def predict_hose(path: Path, *, out: Path | None, outcome: Outcome) -> None:
     """Predict the hose of SPEC.toml and print it; with ``out``, write archive, tables and page."""
-    plan, _ = load_hose(path)
+    plan, file = load_hose(path)
+    target = target_of(path, file)
     hose = predict_from_plan(plan)
+    designs = () if target is None else design_hoses(plan, target)
     units = cast("UnitSystem", outcome.units)
     _show(hose, outcome, units)
+    if target is not None:
+        show_designs(designs, target, outcome, units)
     if out is not None:
         write_hoses(
             [hose],
@@ -59,7 +65,11 @@ def predict_hose(path: Path, *, out: Path | None, outcome: Outcome) -> None:
         outcome.say(f"archive: {out / 'predictions.nc'}")
         outcome.say(f"tables: {len(tables)} in {out / 'tables'}")
         outcome.say(f"figures: {page}")
-    outcome.answer(document(hose) | {"out": None if out is None else str(out)})
+    outcome.answer(
+        document(hose)
+        | {"designs": [designed(one) for one in designs]}
+        | {"out": None if out is None else str(out)}
+    )
 
 
 def _events(hose: PredictedHose) -> dict[str, HoseEvent]:

@@ -32,7 +32,7 @@ def test_the_comparison_that_is_shown_is_valid():
 def test_every_key_is_explained():
     models = (
         hosemodel.HoseSection, hosemodel.LayerSection, hosemodel.CordSection,
-        hosemodel.ComparisonSection,
+        hosemodel.ComparisonSection, hosemodel.TargetSection,
     )  # fmt: skip
     named = {name for one in models for name in one.model_fields} - {"cord"}
     assert not {name for name in named if f"`{name}`" not in PAGE}
