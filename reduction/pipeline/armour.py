@@ -26,8 +26,7 @@ from reduction.predict.armourlayers import (
 from reduction.predict.armourspacing import fill_factor, wire_gap
 from reduction.record import Floats
 
-__all__ = ["PredictedArmour", "predict_armour_case"]
-
+__all__ = ["PredictedArmour", "predict_armour_case", "wound_at_all_angles"]
 
 _UNBALANCED = 0.1
 _ANGLES = np.radians(np.arange(5.0, 85.5, 0.5))
@@ -107,7 +106,7 @@ def predict_armour_case(
         responses=responses,
         errors=theory_errors(design, strain),
         use=tuple(
-            angles_of_use(_at_all_angles(design, place), float(strain[0]), tolerance=tolerance)
+            angles_of_use(wound_at_all_angles(design, place), float(strain[0]), tolerance=tolerance)
             for place in range(len(names))
         ),
         together=together,
@@ -119,8 +118,21 @@ def predict_armour_case(
     )
 
 
-def _at_all_angles(design: ArmourDesign, place: int) -> ArmourDesign:
-    """Wires of a layer, wound at any angle."""
+def wound_at_all_angles(design: ArmourDesign, place: int) -> ArmourDesign:
+    """Wires of a layer, wound at any angle from 5 to 85 deg.
+
+    Parameters
+    ----------
+    design : ArmourDesign
+        Of all layers.
+    place : int
+        Of the layer among them; 0 is the innermost.
+
+    Returns
+    -------
+    designs : ArmourDesign
+        One wire, of shape (n_angles,).
+    """
 
     def of_layer(value: float | Floats) -> float:
         return float(np.broadcast_to(value, design.shape)[place])

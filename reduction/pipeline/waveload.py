@@ -9,6 +9,7 @@ from reduction.predict.coefficients import FlowRegime, flow_regime
 from reduction.predict.difference import LoadDifference, load_difference
 from reduction.predict.environment import AnchorForce, anchor_force
 from reduction.predict.extremes import LoadExtremes, find_extremes
+from reduction.predict.harmonics import WaveHarmonics
 from reduction.predict.immersion import immerse_hose
 from reduction.predict.morison import VerticalWidth, WaveLoad, wave_load
 from reduction.predict.theorytable import WaveTheoryName
@@ -22,12 +23,20 @@ __all__ = ["PredictedWaveLoad", "predict_wave_load"]
 class PredictedWaveLoad:
     """Loads per length over time, their extremes, and where the case stands.
 
-    ``elevation`` is that at which the water was taken, from the mean level up [m].
+    ``elevation`` is that at which the water was taken, from the mean level up [m]; ``used`` the
+    theory that computed ``wave``.  Coefficients [1], velocities [m s-1] and length of the hose
+    [m] as given.
     """
 
     theory: WaveTheory
     used: str
+    wave: WaveHarmonics
     elevation: float
+    drag_coefficient: float
+    inertia_coefficient: float
+    current_velocity: float
+    wind_velocity: float
+    hose_length: float
     load: WaveLoad
     extremes: LoadExtremes
     difference: LoadDifference
@@ -139,7 +148,13 @@ def predict_wave_load(
     return PredictedWaveLoad(
         theory=described,
         used=used,
+        wave=wave,
         elevation=at,
+        drag_coefficient=drag_coefficient,
+        inertia_coefficient=inertia_coefficient,
+        current_velocity=current_velocity,
+        wind_velocity=wind_velocity,
+        hose_length=hose_length,
         load=load,
         extremes=extremes,
         difference=load_difference(load, extremes),

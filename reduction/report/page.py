@@ -1,21 +1,11 @@
-"""The report of a campaign: one page, made from its archives alone, that opens from disk.
-
-Nothing is fetched: plotly stands in the page once, figures are JSON beside their captions
-and are drawn when a reader comes to them.  Names out of files are escaped wherever they
-show, in the text by the template and in the figures by `reduction.report.figure`.
-"""
+"""The report of a campaign: one page, made from its archives alone, that opens from disk."""
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 from pathlib import Path
 
-from jinja2 import Environment, StrictUndefined
-from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
-
-from reduction import __version__
 from reduction.archive.open import open_archive
 from reduction.archive.products import archives_of_tests
 from reduction.archive.write import write_whole
@@ -28,6 +18,7 @@ from reduction.report.figures.campaign import (
     draw_ratios,
     draw_static_dynamic,
 )
+from reduction.report.render import Page, about_page, render_page
 from reduction.report.section import Section, make_part, make_section
 from reduction.report.specimentables import specimen_notes, specimen_table
 from reduction.report.stepwisetables import interval_table
@@ -40,6 +31,13 @@ from reduction.units import UnitSystem
 __all__ = ["write_report"]
 
 _LAST = 10**9
+_OF_TESTS = (
+    "Strain is nominal strain of the splice-free length; stress is tension over the area at zero"
+    " tension."
+)
+_OF_HOSES = (
+    "Strain of a predicted hose is nominal strain of its whole relaxed length, ends included."
+)
 Name = tuple[tuple[int, int, str], ...]
 Place = tuple[int, str, Name, bool, str, float, Name]
 
@@ -94,13 +92,13 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     tests = [tests[place] for place in order]
     ordered = [sections[place] for place in order]
     whole = read_whole(processed, by_id, units, unreadable)
-    html = _render(tests, whole, ordered, statuses, unreadable, units, processed.name)
+    content = _page_of(tests, whole, ordered, statuses, unreadable, units, processed.name)
     page = out / "index.html"
-    write_whole(page, html)
+    write_whole(page, render_page(content))
     return page
 
 
-def _render(
+def _page_of(
     tests: Sequence[TestView],
     whole: WholeCampaign,
     sections: Sequence[Section],
@@ -108,12 +106,7 @@ def _render(
     unreadable: dict[str, str],
     units: UnitSystem,
     folder: str,
-) -> str:
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    room = files("reduction.report")
-    template = environment.from_string((room / "templates" / "page.html").read_text("utf-8"))
+) -> Page:
     faults = find_faults(tests, statuses, unreadable, whole.findings)
     comparisons = [
         make_part("All tests in one figure", draw_all_moduli(tests)),
@@ -129,16 +122,25 @@ def _render(
     of_tests = tiles(tests, statuses, faults)
     if not (tests or statuses):
         of_tests = [one for one in of_tests if one.target == "wrong"]
-    return template.render(
+    definitions = [_OF_TESTS] if tests or statuses or not whole.hoses else []
+    definitions += [_OF_HOSES] if whole.hoses else []
+    return Page(
         title=(first.attribute("title") if first else "") or f"Campaign {folder}",
         campaign=first.attribute("campaign") if first else folder,
         summary=summary_sentence(tests) or whole.summary,
-        institution=first.attribute("institution").rstrip(".") if first else "",
-        references=first.attribute("references") if first else "",
+        about=about_page(
+            units,
+            "the archives alone",
+            in_si="Notes, settings and history are as in the archives, in SI.",
+            institution=first.attribute("institution") if first else "",
+            references=first.attribute("references") if first else "",
+            definitions=definitions,
+        ),
+        tiles=whole.with_tiles(of_tests),
+        faults=faults,
+        chapters=whole.chapters,
         synthetic=any_synthetic(tests) or whole.is_synthetic,
         has_tests=bool(tests or statuses),
-        has_hoses=bool(whole.hoses),
-        tiles=whole.with_tiles(of_tests),
         specimens=specimen_table(tests, units),
         specimen_notes=specimen_notes(tests),
         tests=test_table(tests, statuses),
@@ -146,16 +148,9 @@ def _render(
         designs=design_tables(tests),
         segments=segment_table(tests),
         intervals=[table for table in intervals if table is not None],
-        faults=faults,
         comparisons=[part for part in comparisons if part.figures],
         across="Across the tests" if tests else "Across the hoses",
-        chapters=whole.chapters,
         sections=[*(section for _, section in whole.outcomes), *sections],
-        units="US customary" if units == "us" else "SI",
-        version=__version__,
-        style=(room / "static" / "page.css").read_text("utf-8"),
-        script=(room / "static" / "page.js").read_text("utf-8"),
-        plotly=get_plotlyjs(),
     )
 
 

@@ -1,0 +1,113 @@
+"""What stands on a page, and the page made of it: one template, one style, one script for all.
+
+Nothing is fetched: plotly stands in the page once, figures are JSON beside their captions
+and are drawn when a reader comes to them.  Names out of files are escaped wherever they
+show, in the text by the template and in the figures by `reduction.report.figure`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+
+from jinja2 import Environment, StrictUndefined
+from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
+
+from reduction import __version__
+from reduction.report.htmltable import Table
+from reduction.report.section import Part, Section
+from reduction.report.summary import Finding, Tile
+from reduction.units import UnitSystem
+
+__all__ = ["Page", "about_page", "render_page"]
+
+
+@dataclass(frozen=True)
+class Page:
+    """What stands on a page, from the top down; all texts are plain.
+
+    Parameters
+    ----------
+    title, campaign, summary : str
+        Of the whole; ``campaign`` heads the list of contents.
+    about : sequence of str
+        Sentences under the numbers at the top.
+    tiles : sequence of Tile
+        Those numbers.
+    faults : sequence of Finding
+        What a reader must know first, most serious first.
+    chapters : sequence of Section
+        What follows.
+    synthetic : bool
+        Whether the banner says that no specimen was ever pulled.
+    has_tests : bool
+        Whether it is a page of tests; the fields behind it are for those alone.
+    specimens, tests, segments : Table or None
+        What was tested, and straight-line segments.
+    specimen_notes : sequence of str
+        Under the specimens.
+    answers, designs, intervals : sequence of Table
+        The first screen.
+    comparisons : sequence of Part
+        Figures over several of a kind, headed by ``across``.
+    sections : sequence of Section
+        One a test.
+    """
+
+    title: str
+    campaign: str
+    summary: str
+    about: Sequence[str]
+    tiles: Sequence[Tile]
+    faults: Sequence[Finding]
+    chapters: Sequence[Section]
+    synthetic: bool = False
+    has_tests: bool = False
+    specimens: Table | None = None
+    specimen_notes: Sequence[str] = ()
+    tests: Table | None = None
+    answers: Sequence[Table] = ()
+    designs: Sequence[Table] = ()
+    segments: Table | None = None
+    intervals: Sequence[Table] = ()
+    comparisons: Sequence[Part] = ()
+    across: str = ""
+    sections: Sequence[Section] = ()
+
+
+def about_page(
+    units: UnitSystem,
+    made_from: str,
+    *,
+    in_si: str = "",
+    institution: str = "",
+    references: str = "",
+    definitions: Sequence[str] = (),
+) -> list[str]:
+    """Return the sentences that say in which units a page is and what it was made from."""
+    is_us = units == "us"
+    found = [f"Units: {'US customary' if is_us else 'SI'}."]
+    if is_us and in_si:
+        found.append(in_si)
+    found += [
+        f"{name}: {text}."
+        for name, text in (("Laboratory", institution.rstrip(".")), ("Reference", references))
+        if text
+    ]
+    return [*found, f"Made by mooring-reduction {__version__} from {made_from}.", *definitions]
+
+
+def render_page(page: Page) -> str:
+    """Return a page as HTML that opens from disk."""
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    room = files("reduction.report")
+    template = environment.from_string((room / "templates" / "page.html").read_text("utf-8"))
+    return template.render(
+        **{name: getattr(page, name) for name in Page.__dataclass_fields__},
+        style=(room / "static" / "page.css").read_text("utf-8"),
+        script=(room / "static" / "page.js").read_text("utf-8"),
+        plotly=get_plotlyjs(),
+    )
