@@ -32,6 +32,7 @@ LAYER = {
     "experiment": 3,
     "compare": 3,
     "prediction": 3,
+    "lookup": 3,
     "pipeline": 4,
     "ingest": 4,
     "archive": 4,

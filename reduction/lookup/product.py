@@ -1,0 +1,227 @@
+"""What a look-up takes and gives.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
+   R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4 ("range of usefulness"), 6.3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from reduction.errors import DataError
+from reduction.record import Bools, Floats, Integers, freeze_arrays
+
+__all__ = ["DesignValues", "LineCurve", "LineSource", "LineSurface"]
+
+
+@dataclass(frozen=True)
+class LineSurface:
+    """A quadratic surface of one quantity over coded factors.
+
+    Parameters
+    ----------
+    quantity : str
+        Of the vocabulary.
+    coefficient : ndarray, shape (n_terms,)
+        Coded units, on the scale of ``exponent``. [unit of the quantity]
+    exponents : ndarray of int, shape (n_terms, n_factors)
+        Power of each factor in each term.
+    low, high : ndarray, shape (n_factors,)
+        Levels that are -1 and +1. [SI unit of each factor]
+    covariance_factor : ndarray, shape (n_terms, n_terms)
+        Covariance of the coefficients over sigma squared. [1]
+    sigma : float
+        Standard deviation of a run about the surface; NaN where not known. [as coefficient]
+    degrees_of_freedom : float
+        Of sigma. [1]
+    greatest_leverage : float
+        Of any run: where a point has more, nothing was tested. [1]
+    exponent : float
+        Of Box and Cox; 1 where the quantity was fitted as it is, 0 for its logarithm. [1]
+    errata : tuple of str
+        Ids that touch it.
+    notes : tuple of str
+        What is open, what fails, what else to know.
+    """
+
+    quantity: str
+    coefficient: Floats
+    exponents: Integers
+    low: Floats
+    high: Floats
+    covariance_factor: Floats
+    sigma: float
+    degrees_of_freedom: float
+    greatest_leverage: float
+    exponent: float = 1.0
+    errata: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check that terms and factors pair up, and make the arrays read-only."""
+        freeze_arrays(self)
+        n_terms, n_factors = self.exponents.shape
+        shapes = {
+            "coefficient": (n_terms,),
+            "low": (n_factors,),
+            "high": (n_factors,),
+            "covariance_factor": (n_terms, n_terms),
+        }
+        for name, shape in shapes.items():
+            found = getattr(self, name).shape
+            if found != shape:
+                raise DataError(
+                    f"{name} does not fit the surface", found=str(found), needed=str(shape)
+                )
+
+
+@dataclass(frozen=True)
+class LineCurve:
+    """A quantity over one variable, as a polynomial or through points.
+
+    Parameters
+    ----------
+    quantity, variable : str
+        Of the vocabulary: ``quasi_static_spring_constant`` over ``mean_tension``, ``strain`` over
+        ``tension``, ``tangent_modulus`` over ``strain``.
+    low, high : float
+        Range of the variable that was tested. [SI]
+    coefficient : ndarray, shape (n_terms,)
+        Of rising powers of the variable; empty where the curve is given by points. [SI]
+    at, value : ndarray, shape (n_points,)
+        Points, rising; straight lines between them. [SI]
+    standard_uncertainty : ndarray, shape (n_points,)
+        Of the points; empty where not known. [SI]
+    branch : {"", "ascending", "descending"}
+        Of a cycle, where the quantity differs.
+    is_inverse_slope : bool
+        The value is the inverse of the slope of the polynomial: K_0 from strain on tension.
+    errata, notes : tuple of str
+        As `LineSurface`.
+    """
+
+    quantity: str
+    variable: str
+    low: float
+    high: float
+    coefficient: Floats = field(default_factory=lambda: np.empty(0))
+    at: Floats = field(default_factory=lambda: np.empty(0))
+    value: Floats = field(default_factory=lambda: np.empty(0))
+    standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
+    branch: Literal["", "ascending", "descending"] = ""
+    is_inverse_slope: bool = False
+    errata: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class LineSource:
+    """A line or tether of which something is known.
+
+    Parameters
+    ----------
+    name : str
+        By which it is asked for.
+    source : str
+        Report, or campaign and file.
+    material, construction, condition : str
+        In words.
+    diameter : float
+        NaN where not stated. [m]
+    rated_break_strength : float
+        NaN where not stated. [N]
+    factor_names : tuple of str
+        Of the surfaces, in the order of their levels.
+    surfaces : dict of str to LineSurface
+        By quantity.
+    curves : tuple of LineCurve
+        Quantities over one variable.
+    linear_density, wet_linear_density : float
+        NaN where not stated. [kg m-1]
+    absent : dict of str to str
+        Quantities that were not measured, or are lost, with the reason.
+    notes : tuple of str
+        What holds of all of it.
+    """
+
+    name: str
+    source: str
+    material: str
+    construction: str
+    condition: str
+    diameter: float
+    rated_break_strength: float
+    factor_names: tuple[str, ...] = ()
+    surfaces: dict[str, LineSurface] = field(default_factory=dict)
+    curves: tuple[LineCurve, ...] = ()
+    linear_density: float = float("nan")
+    wet_linear_density: float = float("nan")
+    absent: dict[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """What can be asked for."""
+        return tuple(dict.fromkeys([*self.surfaces, *(one.quantity for one in self.curves)]))
+
+
+@dataclass(frozen=True)
+class DesignValues:
+    """Values of one quantity at points.  Arrays have the shape (...) of the points.
+
+    Parameters
+    ----------
+    quantity, unit : str
+        What was asked for, and its SI unit.
+    value : ndarray
+        The median where the surface is of a transform. [unit]
+    low, high : ndarray
+        95 % interval of one more test there; NaN where nothing is known of the scatter. [unit]
+    surface_low, surface_high : ndarray
+        95 % interval of the surface itself. [unit]
+    is_inside : ndarray of bool
+        Between the levels, or the ends of the range, that were tested.
+    is_untested : ndarray of bool
+        Inside, but farther from the runs than any run is.
+    peak_tension, minimum_tension : ndarray
+        Mean tension and amplitude together; NaN where neither was given. [N]
+    peak_share, minimum_share : ndarray
+        Of the rated break strength; NaN where that is not known. [1]
+    is_above_rule : ndarray of bool
+        The peak is above 60 % of the break strength, or above 30 % where the line goes slack.
+    source : str
+        Where the numbers are from.
+    errata, notes : tuple of str
+        What is known against them.
+    """
+
+    quantity: str
+    unit: str
+    value: Floats
+    low: Floats
+    high: Floats
+    surface_low: Floats
+    surface_high: Floats
+    is_inside: Bools
+    is_untested: Bools
+    peak_tension: Floats
+    minimum_tension: Floats
+    peak_share: Floats
+    minimum_share: Floats
+    is_above_rule: Bools
+    source: str
+    errata: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
