@@ -37,7 +37,8 @@ class PredictedArmour:
     """An armour at one strain.
 
     ``responses`` are of one wire of each layer by theory, shape (n_layers, 1); ``use`` is
-    of each layer; ``axial_stiffness`` is of the cable held from turning, and free to [N].
+    of each layer, at the ``tolerance`` [1]; ``axial_stiffness`` is of the cable held from
+    turning, and free to [N].
     """
 
     layer_names: tuple[str, ...]
@@ -46,6 +47,7 @@ class PredictedArmour:
     responses: dict[ArmourTheory, ArmourResponse]
     errors: TheoryErrors
     use: tuple[AnglesOfUse, ...]
+    tolerance: float
     together: LayersResponse
     axial_stiffness: tuple[float, float]
     strength: CableStrength | None
@@ -109,6 +111,7 @@ def predict_armour_case(
             angles_of_use(wound_at_all_angles(design, place), float(strain[0]), tolerance=tolerance)
             for place in range(len(names))
         ),
+        tolerance=tolerance,
         together=together,
         axial_stiffness=cable_stiffness(layers),
         strength=cable_strength(layers) if known.all() else None,

@@ -1,0 +1,185 @@
+"""Figures of an armour: one wire by every theory over its winding angle, and their errors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from reduction.pipeline.armour import PredictedArmour, wound_at_all_angles
+from reduction.predict.armour import predict_armour
+from reduction.predict.armourdesign import ArmourTheory
+from reduction.predict.armourerror import theory_errors
+from reduction.record import Floats
+from reduction.report.figure import Figure, Trace, axis, line, make_figure
+from reduction.report.style import COLOURS, Shown, plot_text, shown
+from reduction.units import UnitSystem
+
+__all__ = ["THEORY_WORDS", "draw_errors", "draw_wire", "moment_unit", "of_layers"]
+
+THEORY_WORDS = {
+    "small": "small angles",
+    "intermediate": "intermediate angles",
+    "large": "large angles, a spring",
+    "exact": "exact",
+    "conjugate": "with an energy",
+}
+_COLOUR = {name: COLOURS[k] for name, k in zip(THEORY_WORDS, (4, 1, 3, 0, 2), strict=True)}
+_DASH = {
+    "small": "dash", "intermediate": "dot", "large": "longdash", "exact": "solid",
+    "conjugate": "dashdot",
+}  # fmt: skip
+_WORDS = {
+    "axial_force": "axial force",
+    "shear_force": "shear force",
+    "bending_moment": "bending moment",
+    "torsion_moment": "torsion moment",
+}
+_DRAWN: tuple[ArmourTheory, ...] = ("exact", "conjugate", "small", "intermediate", "large")
+"""Those that nearly agree lie dashed on the exact one."""
+_MARGIN = 0.35
+_LEAST_ERROR, _MOST_ERROR = -3.0, 3.0
+"""Powers of ten of a percent that are drawn."""
+_ABOUT = {
+    "axial_force": "Along the wire: the cross section times its stress.",
+    "shear_force": "On the section of the wire, along its binormal.",
+    "bending_moment": "Above zero where it bends the wire more.",
+    "torsion_moment": "About the wire. By the report's moments it vanishes at 45 degrees and"
+    " changes sign; a rod with an energy has torsion there.",
+}
+
+
+def of_layers(found: PredictedArmour, name: str) -> Floats:
+    """Return a number of the design, one a layer."""
+    design = found.layers.design
+    return np.broadcast_to(np.asarray(getattr(design, name), dtype=np.float64), design.shape)
+
+
+def moment_unit(units: UnitSystem) -> Shown:
+    """Return how a moment is shown."""
+    force, length = shown("tension", units), shown("length", units)
+    return Shown(f"{force.unit} {length.unit}", force.factor * length.factor)
+
+
+def draw_wire(found: PredictedArmour, units: UnitSystem) -> list[Figure]:
+    """Draw forces and moments of one wire of the first layer, were it wound at any angle."""
+    designs = wound_at_all_angles(found.layers.design, 0)
+    angle = np.degrees(designs.winding_angle)
+    responses = {theory: predict_armour(designs, found.strain, theory=theory) for theory in _DRAWN}
+    figures = []
+    for name, words in _WORDS.items():
+        unit = shown("tension", units) if name.endswith("force") else moment_unit(units)
+        curves = {
+            theory: unit.factor * getattr(response, name)[:, 0]
+            for theory, response in responses.items()
+        }
+        reach, beyond = _reach(curves)
+        figures.append(
+            make_figure(
+                f"armour-{name.replace('_', '-')}", f"{words.capitalize()} of one wire",
+                f"{_ABOUT[name]} {_of_wire(found)}{beyond}",
+                [
+                    line(
+                        angle, curve,
+                        name=THEORY_WORDS[theory], colour=_COLOUR[theory], dash=_DASH[theory],
+                        width=3 if theory == "exact" else 1.8,
+                    )
+                    for theory, curve in curves.items()
+                ],
+                synthetic=False, height=400, xaxis=_angle_axis(),
+                yaxis=axis(unit.label(words), range=reach),
+                **_own_angle(found),
+            )
+        )  # fmt: skip
+    return figures
+
+
+def draw_errors(found: PredictedArmour) -> list[Figure]:
+    """Draw the size of the error of each theory against the exact rod, heavy where it holds."""
+    designs = wound_at_all_angles(found.layers.design, 0)
+    errors, use = theory_errors(designs, found.strain), found.use[0]
+    angle = np.degrees(designs.winding_angle)
+    tolerance = 100 * found.tolerance
+    figures = []
+    for j, quantity in enumerate(errors.quantity):
+        words = _WORDS[quantity]
+        data: list[Trace] = []
+        for i, theory in enumerate(errors.theory):
+            size = 100 * np.abs(errors.error[i, j, :, 0])
+            size = np.where(size > 0, size, np.nan)  # a logarithm has no zero
+            within = np.where(use.is_within[i, j], size, np.nan)
+            tint, name = _COLOUR[theory], THEORY_WORDS[theory]
+            data.append(line(angle, size, name=name, colour=tint, dash=_DASH[theory], width=1.4))
+            data.append(
+                line(angle, within, name=f"{name}, holds", colour=tint, width=4, showlegend=False)
+            )
+        data.append(
+            line(angle[[0, -1]], np.full(2, tolerance), name=f"tolerance, {tolerance:g} %",
+                 colour=COLOURS[6], dash="solid", width=1)
+        )  # fmt: skip
+        relative = (
+            " Over the torsion moment of the whole change of curvature and torsion, since its own"
+            " passes zero."
+            if quantity == "torsion_moment"
+            else ""
+        )
+        figures.append(
+            make_figure(
+                f"armour-error-{quantity.replace('_', '-')}", f"Error of the {words}",
+                f"Size of theory less exact, over exact; heavy: within {tolerance:g} %. More than"
+                f" 1000 % and less than 0.001 % are not drawn.{relative}"
+                f" {_of_wire(found)}",
+                data, synthetic=False, height=400, xaxis=_angle_axis(),
+                yaxis=axis("error against exact [%]", type="log", exponentformat="power",
+                           **_decades(data)),
+                **_own_angle(found),
+            )
+        )  # fmt: skip
+    return figures
+
+
+def _of_wire(found: PredictedArmour) -> str:
+    return (
+        f"Wire and core of layer {found.layer_names[0]} at {100 * float(found.strain[0]):g} % of"
+        " strain of the cable, wound at any angle; dotted: its own."
+    )
+
+
+def _angle_axis() -> dict[str, Any]:
+    return axis("winding angle from the axis [deg]", range=[0, 90], dtick=15)
+
+
+def _own_angle(found: PredictedArmour) -> dict[str, Any]:
+    """Mark the angle at which the layer is wound."""
+    own = float(np.degrees(of_layers(found, "winding_angle")[0]))
+    return {
+        "shapes": [
+            {
+                "type": "line", "xref": "x", "yref": "paper", "x0": own, "x1": own, "y0": 0,
+                "y1": 1, "line": {"color": COLOURS[6], "dash": "dot", "width": 1.5},
+            }
+        ],
+        "annotations": [
+            {
+                "text": plot_text(f"{found.layer_names[0]}, {own:.4g} deg", 24), "x": own,
+                "y": 1.0, "xref": "x", "yref": "paper", "yanchor": "bottom", "showarrow": False,
+                "font": {"size": 10},
+            }
+        ],
+    }  # fmt: skip
+
+
+def _reach(curves: dict[ArmourTheory, Floats]) -> tuple[list[float], str]:
+    """Range of the theories of a wire on a core, and what to say where the spring leaves it."""
+    on_core = np.concatenate([curve for theory, curve in curves.items() if theory != "large"])
+    spare = _MARGIN * np.ptp(on_core) or 1.0  # nothing happens without strain
+    low, high = float(on_core.min() - spare), float(on_core.max() + spare)
+    is_beyond = bool(np.any((curves["large"] < low) | (curves["large"] > high)))
+    return [low, high], " The spring leaves the figure." if is_beyond else ""
+
+
+def _decades(data: list[Trace]) -> dict[str, Any]:
+    """Keep a zero of an error, and a theory that is quite wrong, from taking all the height."""
+    known = np.array([y for trace in data for y in trace["y"] if y is not None], dtype=np.float64)
+    top, bottom = np.ceil(np.log10(known.max())), np.floor(np.log10(known.min()))
+    return {"range": [max(float(bottom), _LEAST_ERROR), min(float(top), _MOST_ERROR)], "dtick": 1}
