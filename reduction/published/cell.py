@@ -13,6 +13,7 @@ Confidence = Literal["", "certain", "high", "open"]
 """Of a correction; open: the page is wrong or doubtful, and nothing says what is right."""
 
 _NUMBER = re.compile(r"[-+]?(?:\d[\d,]*\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_FRACTION = re.compile(r"([-+]?)(?:(\d+) )?(\d+)/([1-9]\d*)(?![/\d])")
 
 
 @dataclass(frozen=True)
@@ -88,13 +89,21 @@ def number_of(text: str) -> float | None:
     --------
     >>> number_of("1,725"), number_of("-.188"), number_of("about 30"), number_of("n/a")
     (1725.0, -0.188, 30.0, None)
+    >>> number_of("-3/2"), number_of("1 1/4 in")
+    (-1.5, 1.25)
     """
     found = _NUMBER.search(text)
-    return None if found is None else float(found[0].replace(",", ""))
+    if found is None:
+        return None
+    fraction = _FRACTION.match(text, found.start())
+    if fraction is not None:
+        sign, whole, over, under = fraction.groups()
+        return (-1 if sign == "-" else 1) * (int(whole or 0) + int(over) / int(under))
+    return float(found[0].replace(",", ""))
 
 
 def printed_step(text: str) -> float:
-    """One unit of the last printed digit; 0 where there is no number.
+    """One unit of the last printed digit; 0 where there is no number, or a fraction.
 
     Examples
     --------
@@ -102,7 +111,7 @@ def printed_step(text: str) -> float:
     (0.001, 1.0, 0.01, 1e-13)
     """
     found = _NUMBER.search(text)
-    if found is None:
+    if found is None or _FRACTION.match(text, found.start()):
         return 0.0
     mantissa, _, power = found[0].lower().replace(",", "").partition("e")
     decimals = len(mantissa.partition(".")[2])
