@@ -225,9 +225,14 @@ def correlation_table(view: ComparisonView) -> Table | None:
             for name, row in zip(names, table, strict=True)
         ],
         synthetic=view.is_synthetic,
-        remarks=[f"Collinearity index: {number_text(view.scalar('collinearity'), 3)}; above 10 to"
-                 " 15 it is called poor."],
+        remarks=[_collinearity(view.scalar("collinearity"))],
     )  # fmt: skip
+
+
+def _collinearity(index: float) -> str:
+    if np.isinf(index):
+        return "Collinearity index: none, since the curve does not answer to one of them at all."
+    return f"Collinearity index: {number_text(index, 3)}; above 10 to 15 it is called poor."
 
 
 def _interval(one: FittedNumber, unit: Shown) -> Cell:
