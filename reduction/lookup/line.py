@@ -21,7 +21,7 @@ from reduction.lookup.surface import evaluate_surface
 from reduction.record import Bools, Floats
 from reduction.vocabulary import quantity as quantity_of
 
-__all__ = ["look_up"]
+__all__ = ["Branch", "look_up"]
 
 _LEVERAGE = 1 + 1e-9
 _K = 1.96

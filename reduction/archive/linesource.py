@@ -1,0 +1,217 @@
+"""Archives as sources of design values: surfaces of an experiment, curves of a test."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.surface_read import surface_names, surfaces_of
+from reduction.errors import ArchiveError
+from reduction.lookup.line import Branch
+from reduction.lookup.product import LineCurve, LineSource, LineSurface
+from reduction.record import Floats
+from reduction.surface.fit import variance_factor
+from reduction.surface.product import ResponseSurfaces
+from reduction.surface.terms import model_matrix
+from reduction.vocabulary import RESPONSES, quantity
+
+__all__ = ["line_of_experiment", "line_of_test"]
+
+_SCALES = ("log_", "box_cox_", "")
+"""A surface on a scale that was asked for stands before the one of the quantity itself."""
+_OVER_STRAIN = ("tangent_modulus", "branch_tension")
+
+
+def line_of_experiment(dataset: xr.Dataset, experiment: str) -> LineSource:
+    """Surfaces of an experiment as a source of design values.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An archive of experiments.
+    experiment : str
+        Name of one.
+
+    Returns
+    -------
+    line : LineSource
+        With a surface of each response that was fitted.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive has no such experiment, it has no surface, or its levels are shares of
+        break strengths that differ.
+    """
+    names = surface_names(dataset, experiment)
+    if not names:
+        raise ArchiveError(f"experiment '{experiment}' has no surface", needed="a Box-Behnken one")
+    row = dataset["experiment"].values.astype(str).tolist().index(experiment)
+    fitted = surfaces_of(dataset, experiment)
+    factors = fitted.factor_names
+    units = dataset["factor_unit"].values[row].astype(str)[: len(factors)]
+    strength = _one_strength(dataset, row)
+    scale = np.array(
+        [
+            _scale(name, unit, strength, experiment)
+            for name, unit in zip(factors, units, strict=True)
+        ]
+    )
+    surfaces = {}
+    for response in RESPONSES:
+        name = next((f"{one}{response}" for one in _SCALES if f"{one}{response}" in names), None)
+        if name is not None:
+            surfaces[response] = _surface(fitted, names.index(name), response, name, scale)
+    return LineSource(
+        name=experiment,
+        source=f"{dataset.attrs.get('id', 'surfaces')}, experiment {experiment}",
+        material="",
+        construction="",
+        condition="",
+        diameter=float("nan"),
+        rated_break_strength=strength,
+        factor_names=factors,
+        surfaces=surfaces,
+        notes=_synthetic(dataset),
+    )
+
+
+def _surface(
+    fitted: ResponseSurfaces, index: int, response: str, name: str, scale: Floats
+) -> LineSurface:
+    covariance = fitted.covariance_factor[fitted.pattern[index]]
+    used = fitted.is_used[fitted.pattern[index]]
+    runs = model_matrix(fitted.coded[used], fitted.exponents)
+    n_terms = len(fitted.exponents)
+    notes = [] if name == response else [f"from the surface of {name}, brought back"]
+    if not np.isfinite(fitted.coefficient[index]).all():
+        notes.append("the surface was refused")
+    return LineSurface(
+        quantity=response,
+        coefficient=np.array(fitted.coefficient[index]),
+        exponents=np.array(fitted.exponents),
+        low=scale * fitted.low,
+        high=scale * fitted.high,
+        covariance_factor=np.array(covariance[:n_terms, :n_terms]),
+        sigma=float(fitted.sigma[index]),
+        degrees_of_freedom=float(fitted.degrees_of_freedom[index]),
+        greatest_leverage=float(
+            np.max(variance_factor(runs, covariance[:n_terms, :n_terms]), initial=0.0)
+        ),
+        exponent=float(fitted.transform_exponent[index]),
+        notes=tuple(notes),
+    )
+
+
+def _one_strength(dataset: xr.Dataset, row: int) -> float:
+    """Break strength of the runs; NaN where it is not known, or they differ."""
+    if "run_rated_break_strength" not in dataset:
+        return float("nan")
+    found = dataset["run_rated_break_strength"].values[row]
+    known = np.unique(found[np.isfinite(found)])
+    return float(known[0]) if known.size == 1 else float("nan")
+
+
+def _scale(name: str, unit: str, strength: float, experiment: str) -> float:
+    """From the unit of the levels to SI: a share of a break strength becomes a tension."""
+    try:
+        own = quantity(name).unit
+    except KeyError:
+        return 1.0
+    if unit == own:
+        return 1.0
+    if own == "N" and unit == "1" and np.isfinite(strength):
+        return strength
+    raise ArchiveError(
+        f"levels of {name} of experiment '{experiment}' are no {own}",
+        found=f"unit {unit}", needed="one rated_break_strength of all its specimens",
+    )  # fmt: skip
+
+
+def line_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
+    """Curves of one specimen of a reduced test as a source of design values.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An archive of a reduced test.
+    specimen : str
+        One of its specimens.
+
+    Returns
+    -------
+    line : LineSource
+        Tangent modulus and tension over strain on each branch.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive has no such specimen, or no curve.
+    """
+    known = [] if "specimen" not in dataset else dataset["specimen"].values.astype(str).tolist()
+    if specimen not in known:
+        raise ArchiveError(
+            "the archive has no such specimen", found=specimen, needed=", ".join(known) or "none"
+        )
+    place = known.index(specimen)
+    curves = tuple(
+        curve
+        for name in _OVER_STRAIN
+        if name in dataset
+        for curve in _branches(dataset, name, place)
+    )
+    if not curves:
+        raise ArchiveError(
+            f"the archive of test {dataset.attrs.get('test', '')} has no curve over strain",
+            needed="a cyclic test",
+        )
+
+    def number(name: str) -> float:
+        return float(dataset[name].values[place]) if name in dataset else float("nan")
+
+    def text(name: str) -> str:
+        return str(dataset[name].values[place]) if name in dataset else ""
+
+    return LineSource(
+        name=specimen,
+        source=f"{dataset.attrs.get('id', '')}, specimen {specimen}",
+        material=text("specimen_material"),
+        construction=text("specimen_construction"),
+        condition=text("specimen_condition"),
+        diameter=number("diameter"),
+        rated_break_strength=number("rated_break_strength"),
+        curves=curves,
+        notes=_synthetic(dataset),
+    )
+
+
+def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
+    spread = f"{name}_standard_uncertainty"
+    strain = dataset["strain_bin"].values
+    curves = []
+    branches: tuple[Branch, Branch] = ("ascending", "descending")
+    for index, branch in enumerate(branches):
+        value = dataset[name].values[place, index]
+        seen = np.isfinite(value)
+        if seen.sum() < 2:
+            continue
+        at = strain[seen]
+        curves.append(
+            LineCurve(
+                quantity=name,
+                variable="strain",
+                low=float(at[0]),
+                high=float(at[-1]),
+                at=np.array(at),
+                value=np.array(value[seen]),
+                standard_uncertainty=np.array(dataset[spread].values[place, index][seen])
+                if spread in dataset
+                else np.empty(0),
+                branch=branch,
+            )
+        )
+    return curves
+
+
+def _synthetic(dataset: xr.Dataset) -> tuple[str, ...]:
+    return ("synthetic data",) if dataset.attrs.get("synthetic") == "yes" else ()
