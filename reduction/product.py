@@ -62,6 +62,7 @@ class History:
     ``permanent_set`` is how much longer it is when it first becomes taut than it was at the
     start of its first test, over the free length: what is left of the earlier tests after
     rest. NaN where one of the two records does not begin slack. [1]
+    ``earlier_flex_cycles`` is None where nothing is known of flexing.
     """
 
     earlier_tests: tuple[tuple[str, ...], ...]
@@ -70,6 +71,7 @@ class History:
     earlier_cycles: Floats
     permanent_set: Floats
     permanent_set_standard_uncertainty: Floats
+    earlier_flex_cycles: Floats | None = None
 
 
 @dataclass(frozen=True)

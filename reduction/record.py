@@ -81,6 +81,10 @@ class Specimen:
         Stated once for a specimen. [N]
     gauge_length : float or None
         Distance between gauge marks at zero tension, where marked. [m]
+    gauge_length_standard_uncertainty : float or None
+        Its standard uncertainty, where stated. [m]
+    earlier_cycles, earlier_flex_cycles : int or None
+        Cycles of tension, and of flexing, before the first test of the campaign. [1]
     material, condition, construction : str
         In the laboratory's words; empty where not given.
     """
@@ -96,6 +100,9 @@ class Specimen:
     gauge_length: float | None = None
     notes: tuple[str, ...] = ()
     construction: str = ""
+    gauge_length_standard_uncertainty: float | None = None
+    earlier_cycles: int | None = None
+    earlier_flex_cycles: int | None = None
 
     @property
     def mean_diameter(self) -> float:
@@ -115,14 +122,20 @@ class Specimen:
 
     @property
     def is_rubber(self) -> bool:
-        """Whether laws of rubber apply: not to a rope or a wire."""
-        return self.kind not in ("rope", "wire")
+        """Whether laws of rubber apply: not where cords, fibres or wires carry."""
+        return self.kind in ("rubber tether", "elastomer")
+
+    @property
+    def is_rope(self) -> bool:
+        """Whether a rope laboratory's programme applies."""
+        return self.kind in ("rope", "wire")
 
 
 def areas_of(specimens: tuple[Specimen, ...]) -> Floats:
-    """Cross-sectional area of each specimen; NaN for a rope or a wire without diameter. [m2].
+    """Cross-sectional area of each specimen; NaN without diameter, but of rubber. [m2].
 
-    A rope is known by its spring constants, which need no area; rubber without one is refused.
+    A rope or a hose is known by its spring constants, which need no area; rubber without one
+    is refused.
     """
     return np.array([one.area if one.diameter or one.is_rubber else np.nan for one in specimens])
 

@@ -162,6 +162,7 @@ _ROWS = chain(
     stated("earlier_maximum_strain", _S, "bound: greatest value seen"),
     stated("earlier_maximum_tension", _S, "bound: greatest value seen"),
     stated("earlier_cycles", _S, "count"),
+    stated("earlier_flex_cycles", _S, "count"),
     measured("permanent_set", _S),
     # samples
     measured(

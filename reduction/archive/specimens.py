@@ -44,11 +44,13 @@ def specimen_values(specimens: Sequence[Specimen]) -> Values:
 
 def history_values(history: History) -> Values:
     """Return what each specimen had seen before the test."""
+    flex = history.earlier_flex_cycles
     return {
         "earlier_tests": texts([", ".join(tests) for tests in history.earlier_tests]),
         "earlier_maximum_strain": history.earlier_maximum_strain,
         "earlier_maximum_tension": history.earlier_maximum_tension,
         "earlier_cycles": history.earlier_cycles,
+        **({} if flex is None else {"earlier_flex_cycles": flex}),
         "permanent_set": history.permanent_set,
         "permanent_set_standard_uncertainty": history.permanent_set_standard_uncertainty,
     }

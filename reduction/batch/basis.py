@@ -65,7 +65,7 @@ def basis_of(
     basis : Basis
         As it stands in this run.
     """
-    history = history_of(survey, surveys, models)
+    history = history_of(survey, surveys, models, campaign)
     of_run = pulls_of(campaign, survey, pulls)
     names = [(survey.plan.id, specimen) for specimen in survey.plan.specimens]
     of_test = tuple(models[name] for name in names if name in models)
@@ -74,6 +74,6 @@ def basis_of(
         models=of_test,
         pulls=of_run,
         settings=settings_json(campaign, survey, of_test, history, of_run),
-        remarks=tuple(history_remarks(survey, surveys, models)),
+        remarks=tuple(history_remarks(survey, surveys, models, campaign)),
         failed=failed_beside(survey, surveys, failed),
     )

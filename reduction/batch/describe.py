@@ -89,6 +89,11 @@ def settings_json(
             "earlier_maximum_tension": _plain(history.earlier_maximum_tension),
             "earlier_cycles": _plain(history.earlier_cycles),
             "permanent_set": _plain(history.permanent_set),
+            **(
+                {}
+                if history.earlier_flex_cycles is None
+                else {"earlier_flex_cycles": _plain(history.earlier_flex_cycles)}
+            ),
         },
     }
     if pulls is not None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from reduction.batch.survey import Survey
+from reduction.campaign.plan import Campaign
 from reduction.moduli.slack import slack_crossings
 from reduction.product import History
 from reduction.strain.evaluate import strain_by_model
@@ -56,12 +57,17 @@ def _set_after_rest(
     return float(growth), float(spread)
 
 
-def _place(survey: Survey, surveys: Sequence[Survey]) -> tuple[int, int] | None:
-    """Place in the order of tests; a test that is a part of another has the place of that one."""
-    order = survey.plan.order
+def _whole(survey: Survey, surveys: Sequence[Survey]) -> Survey:
+    """The test itself, or that of which it repeats a part."""
     for entry in surveys:
         if entry.plan.log == survey.plan.part_of:
-            order = entry.plan.order
+            return entry
+    return survey
+
+
+def _place(survey: Survey, surveys: Sequence[Survey]) -> tuple[int, int] | None:
+    """Place in the order of tests; a test that is a part of another has the place of that one."""
+    order = _whole(survey, surveys).plan.order
     return None if order is None else (order, survey.plan.step_place)
 
 
@@ -82,7 +88,38 @@ def _earlier(survey: Survey, surveys: Sequence[Survey], name: str) -> list[Surve
     ]
 
 
-def history_of(survey: Survey, surveys: Sequence[Survey], models: Models) -> History | None:
+def _earlier_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) -> float:
+    """Cycles of tension before a test, logged or not; NaN where an earlier test failed."""
+    if any(entry.error is not None for entry in earlier):
+        return float("nan")
+    return float(_unlogged_cycles(earlier, own, before) + sum(one.n_cycles for one in earlier))
+
+
+def _unlogged_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) -> int:
+    """Cycles of tension before a test of which the campaign has the number alone."""
+    # the steps of a log share what came before it
+    between = {entry.plan.log: entry.plan.unlogged_cycles or 0 for entry in (*earlier, own)}
+    return (before or 0) + sum(between.values())
+
+
+def _earlier_flex_cycles(
+    earlier: Sequence[Survey], survey: Survey, before: int | None, surveys: Sequence[Survey]
+) -> float:
+    """Cycles of flexing before a test.
+
+    NaN where the campaign says nothing of flexing of the specimen, or the test is a later step
+    of a log in which it was flexed: how much of it came before is not known.
+    """
+    is_counted = any(entry.plan.n_flex_cycles is not None for entry in surveys)
+    flexed = {entry.plan.log: entry.plan.n_flex_cycles or 0 for entry in earlier}
+    if (before is None and not is_counted) or flexed.get(survey.plan.log):
+        return float("nan")
+    return float((before or 0) + sum(flexed.values()))
+
+
+def history_of(
+    survey: Survey, surveys: Sequence[Survey], models: Models, campaign: Campaign
+) -> History | None:
     """Earlier maximum strain and tension and cumulative cycles of each specimen.
 
     Parameters
@@ -93,6 +130,8 @@ def history_of(survey: Survey, surveys: Sequence[Survey], models: Models) -> His
         All tests of the campaign.
     models : mapping of (test, specimen) to StrainModel
         How position becomes strain.
+    campaign : Campaign
+        What its specimens had seen before.
 
     Returns
     -------
@@ -104,14 +143,17 @@ def history_of(survey: Survey, surveys: Sequence[Survey], models: Models) -> His
         return None
     nothing = float("nan")
     tests: list[tuple[str, ...]] = []
-    strain, tension, cycles, left = [], [], [], []
+    strain, tension, cycles, flex, left = [], [], [], [], []
+    own = _whole(survey, surveys)
     for name in survey.plan.specimens:
         earlier = _earlier(survey, surveys, name)
         tests.append(tuple(entry.plan.id for entry in earlier))
         strain.append(_greatest([_greatest_strain(entry, name, models) for entry in earlier]))
         tension.append(_greatest([entry.greatest_tension.get(name, nothing) for entry in earlier]))
-        failed = any(entry.error is not None for entry in earlier)
-        cycles.append(nothing if failed else float(sum(entry.n_cycles for entry in earlier)))
+        specimen = campaign.specimens[name]
+        cycles.append(_earlier_cycles(earlier, own, specimen.earlier_cycles))
+        of_name = [entry for entry in surveys if name in entry.plan.specimens]
+        flex.append(_earlier_flex_cycles(earlier, survey, specimen.earlier_flex_cycles, of_name))
         model = models.get((survey.plan.id, name))
         free = None if model is None else model.coefficients.get("relaxed_free_length")
         left.append(_set_after_rest(survey, earlier, name, nothing if free is None else free))
@@ -122,6 +164,7 @@ def history_of(survey: Survey, surveys: Sequence[Survey], models: Models) -> His
         earlier_cycles=np.array(cycles),
         permanent_set=np.array([value for value, _ in left]),
         permanent_set_standard_uncertainty=np.array([spread for _, spread in left]),
+        earlier_flex_cycles=None if np.isnan(flex).all() else np.array(flex),
     )
 
 
@@ -130,7 +173,9 @@ def _greatest(values: Sequence[float]) -> float:
     return float(np.max(values)) if values else float("nan")
 
 
-def history_remarks(survey: Survey, surveys: Sequence[Survey], models: Models) -> tuple[str, ...]:
+def history_remarks(
+    survey: Survey, surveys: Sequence[Survey], models: Models, campaign: Campaign
+) -> tuple[str, ...]:
     """What the campaign leaves open about the place of a test in its specimens' history.
 
     Parameters
@@ -141,6 +186,8 @@ def history_remarks(survey: Survey, surveys: Sequence[Survey], models: Models) -
         All tests of the campaign.
     models : mapping of (test, specimen) to StrainModel
         How position becomes strain.
+    campaign : Campaign
+        What its specimens had seen before.
 
     Returns
     -------
@@ -148,7 +195,7 @@ def history_remarks(survey: Survey, surveys: Sequence[Survey], models: Models) -
         Sentences for a reader of the product; empty where nothing is open.
     """
     plan = survey.plan
-    remarks = _unknown(survey, surveys, models)
+    remarks = (*_unknown(survey, surveys, models), *_unlogged(survey, surveys, campaign))
     if plan.part_of is not None:
         return (
             f"a part of {plan.part_of}: its history is that of the whole; cycles of the whole "
@@ -163,9 +210,26 @@ def history_remarks(survey: Survey, surveys: Sequence[Survey], models: Models) -
     if plan.order is None and shared:
         return (
             f"no place in the order of tests is given for {', '.join(shared)}: what earlier tests "
-            "did to the rubber is not known here; set order",
+            "did to them is not known here; set order",
         )
     return remarks
+
+
+def _unlogged(survey: Survey, surveys: Sequence[Survey], campaign: Campaign) -> tuple[str, ...]:
+    """Earlier cycles of which the campaign has the number alone."""
+    if _place(survey, surveys) is None:
+        return ()
+    remarks = []
+    own = _whole(survey, surveys)
+    for name in survey.plan.specimens:
+        before = campaign.specimens[name].earlier_cycles
+        count = _unlogged_cycles(_earlier(survey, surveys, name), own, before)
+        if count:
+            remarks.append(
+                f"{name}: {count} earlier cycles are in no log: earlier_maximum_strain and "
+                "earlier_maximum_tension are of the logged tests alone"
+            )
+    return tuple(remarks)
 
 
 def _unknown(survey: Survey, surveys: Sequence[Survey], models: Models) -> tuple[str, ...]:

@@ -38,6 +38,7 @@ _KEPT = (
     "rate", "medium", "soak", "temperature", "machine", "load_cell", "calibration_due",
     "operator", "procedure", "note",
 )  # fmt: skip
+_KEPT_OF_TEST = ("date", "rest", "unlogged_cycles", "n_flex_cycles", "flex_angle")
 
 
 def _hint(path: Path) -> str | None:
@@ -149,7 +150,13 @@ def _plan(
     if len({step.name.replace(" ", "-") for step in test.steps}) < len(test.steps):
         raise in_toml(path, f"two steps of test '{name}' have one name")
     attributes = {key: given(key) for key in _KEPT if given(key)}
-    attributes |= {key: getattr(test, key) for key in ("date", "rest") if getattr(test, key)}
+    attributes |= {
+        key: str(getattr(test, key))
+        for key in _KEPT_OF_TEST
+        if getattr(test, key) not in (None, "")
+    }
+    if test.flex_angle is not None:
+        quantity_of(path, f"tests.{name}.flex_angle", test.flex_angle, "angle")
     return TestPlan(
         id=name,
         kind=kind,
@@ -165,6 +172,8 @@ def _plan(
         part_of=test.part_of,
         log=name,
         failed=test.failed,
+        unlogged_cycles=test.unlogged_cycles,
+        n_flex_cycles=test.n_flex_cycles,
         steps=tuple(
             StepPlan(
                 name=step.name,

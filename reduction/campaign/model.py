@@ -100,6 +100,11 @@ class SpecimenSection(_Section):
     rated_break_strength: str | None = None
     rated_break_strength_source: Text = ""
     gauge_length: str | None = None
+    gauge_length_standard_uncertainty: str | None = None
+    earlier_cycles: int | None = Field(default=None, ge=0)
+    """Cycles of tension before the first test of the campaign; none where left out."""
+    earlier_flex_cycles: int | None = Field(default=None, ge=0)
+    """Cycles of flexing before it; not known where left out."""
     note: Text = ""
 
 
@@ -180,6 +185,12 @@ class TestSection(_Kept):
     """Time at rest before this test."""
     target_strain: tuple[float, ...] = ()
     n_cycles: int | None = Field(default=None, ge=1)
+    unlogged_cycles: int | None = Field(default=None, ge=0)
+    """Cycles of tension between the test before and this one, of which there is no log."""
+    n_flex_cycles: int | None = Field(default=None, ge=0)
+    """Cycles of flexing in this test, while it is pulled."""
+    flex_angle: str | None = None
+    """Half the range of the flexing: ``30 deg`` to either side."""
     failed: bool | None = None
     """Whether the specimens broke in this test, in the laboratory's word; else the log decides."""
     steps: tuple[StepSection, ...] = ()

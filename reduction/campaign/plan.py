@@ -70,6 +70,10 @@ class TestPlan:
     failed: bool | None = None
     """Whether the specimens broke, where the laboratory says so."""
     steps: tuple[StepPlan, ...] = ()
+    unlogged_cycles: int | None = None
+    """Cycles since the test before that are in no log."""
+    n_flex_cycles: int | None = None
+    """Cycles of flexing in the log, all its steps together."""
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,12 @@ def specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
         for reading in at_stretch
     )
     strength = section.rated_break_strength
-    gauge = section.gauge_length
+    gauge, spread = section.gauge_length, section.gauge_length_standard_uncertainty
+    if gauge is None and spread is not None:
+        raise in_toml(
+            path, f"specimens.{name}.gauge_length_standard_uncertainty stands alone",
+            found=spread, needed="gauge_length beside it",
+        )  # fmt: skip
     return Specimen(
         name=name,
         kind=section.kind,
@@ -47,5 +52,10 @@ def specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
         gauge_length=None
         if gauge is None
         else _length(gauge, f"specimens.{name}.gauge_length", path),
+        gauge_length_standard_uncertainty=None
+        if spread is None
+        else _length(spread, f"specimens.{name}.gauge_length_standard_uncertainty", path),
+        earlier_cycles=section.earlier_cycles,
+        earlier_flex_cycles=section.earlier_flex_cycles,
         notes=(section.note,) if section.note else (),
     )

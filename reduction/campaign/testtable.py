@@ -15,7 +15,7 @@ from reduction.errors import SettingsError
 __all__ = ["merge_tests", "read_test_table"]
 
 _LISTS = ("specimens", "target_strain")
-_WHOLE = ("order", "n_cycles")
+_WHOLE = ("order", "n_cycles", "unlogged_cycles", "n_flex_cycles")
 _STRAIN = ("method", "marks")
 # tables of campaign.toml, which no cell can hold
 _TABLES = ("strain", "reduction", "steps")

@@ -56,14 +56,17 @@ def _unequal(first: Specimen, other: Specimen, index: int, history: History | No
             f"unequal histories in the campaign: {cycles[0]:.0f} earlier cycles against "
             f"{cycles[1]:.0f}"
         )
+    if history.earlier_flex_cycles is not None:
+        flex = history.earlier_flex_cycles[[index, 0]]
+        if not np.array_equal(flex[:1], flex[1:], equal_nan=True):
+            told = " against ".join("not known" if np.isnan(n) else f"{n:.0f}" for n in flex)
+            found.append(f"unequal histories in the campaign: {told} earlier flex cycles")
     is_known = np.isfinite(strain)
     if is_known[0] != is_known[1] or np.ptp(strain) > _SAME_STRAIN * np.max(strain):
         told = " against ".join(
             f"{value:.0%}" if known else "none known"
             for value, known in zip(strain, is_known, strict=True)
         )
-        found.append(
-            f"unequal histories in the campaign: greatest earlier strain {told}; rubber is softer "
-            "below what it has seen"
-        )
+        softer = "; rubber is softer below what it has seen" if other.is_rubber else ""
+        found.append(f"unequal histories in the campaign: greatest earlier strain {told}{softer}")
     return found

@@ -49,6 +49,11 @@ def _elastomers(
     return tuple(replace(fit, notes=(*fit.notes, note)) for fit in fits), ""
 
 
+def _is_new(history: History, index: int) -> bool:
+    """Whether a specimen had seen nothing before the test, logged or not."""
+    return not (history.earlier_tests[index] or history.earlier_cycles[index] > 0)
+
+
 def parts_of_first_loading(
     located: Located,
     strain: Floats,
@@ -57,13 +62,13 @@ def parts_of_first_loading(
     settings: ReductionSettings,
     history: History | None,
 ) -> dict[str, Any]:
-    """The first rise of a record that begins slack: curve, stress at elongation, laws."""
+    """The first rise of a record that begins slack: curve; of rubber, stress and laws too."""
     begins = [force[np.isfinite(force).argmax()] for force in tension]
     if all(start > located.standstills.slack_tension for start in begins):
         return {}
     area = areas_of(specimens)
     if np.isnan(area).any():
-        return {}  # the slow pull of a rope is `reduction.line`'s, without an area
+        return {}  # the slow pull of a rope or hose is `reduction.line`'s, without an area
     curves = first_loading_curves(
         strain, tension, area=area, settings=settings.modulus, standstills=located.standstills
     )
@@ -71,6 +76,11 @@ def parts_of_first_loading(
         return {}
     rise = curves.branch_tension[:, 0]
     names = located.record.specimens
+    parts: dict[str, Any] = {"first_loading": curves}
+    rubber = np.array([specimen.is_rubber for specimen in specimens])
+    if not rubber.any():
+        # cords carry a hose: neither a law of rubber nor its trade's stress at an elongation
+        return parts
     levels = settings.modulus.stress_at_strain
     is_still = located.standstills.covers(located.record.n_samples)
     stresses = run_blocks(
@@ -81,19 +91,23 @@ def parts_of_first_loading(
     )
     notes = [
         f"{name}: stress at {100 * level:g} % not given: {reason}"
-        for name, (_, _, reasons) in zip(names, stresses, strict=True)
+        for name, (_, _, reasons), given in zip(names, stresses, rubber, strict=True)
+        if given
         for level, reason in zip(levels, reasons, strict=True)
         if reason
     ]
-    parts: dict[str, Any] = {
-        "first_loading": curves,
-        "stress_at_strain": np.array([stress for stress, _, _ in stresses]),
-        "stress_at_strain_standard_uncertainty": np.array([spread for _, spread, _ in stresses]),
+    stress, spread = (
+        np.where(rubber[:, None], np.array([one[part] for one in stresses]), np.nan)
+        for part in (0, 1)
+    )
+    parts |= {
+        "stress_at_strain": stress,
+        "stress_at_strain_standard_uncertainty": spread,
         "stress_at_strain_levels": levels,
         "notes": notes,
     }
     earlier = np.full(area.size, np.nan) if history is None else history.earlier_maximum_strain
-    is_first = [True] * area.size if history is None else [not one for one in history.earlier_tests]
+    is_first = [history is None or _is_new(history, index) for index in range(area.size)]
     found = [
         _elastomers(
             name,
@@ -103,7 +117,7 @@ def parts_of_first_loading(
             is_first=is_first[index],
         )
         for index, name in enumerate(names)
-        if specimens[index].is_rubber
+        if rubber[index]
     ]
     parts["elastomers"] = tuple(fit for fits, _ in found for fit in fits)
     notes += [reason for _, reason in found if reason]

@@ -92,7 +92,7 @@ def rope_step(
     DataError
         If a rated break strength is not positive.
     """
-    is_rope = any(not specimen.is_rubber for specimen in specimens)
+    is_rope = any(specimen.is_rope for specimen in specimens)
     if kind not in _NAMES or not (is_rope or kind in _OF_ALL):
         return None
     strength = np.array(

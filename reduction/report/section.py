@@ -109,7 +109,7 @@ def make_section(view: TestView) -> Section:
             refusals=refusals(view),
         ),
         make_part(
-            "Strain" if view.is_rope else "Strain and splices", (),
+            "Strain and splices" if view.is_rubber else "Strain", (),
             [coefficient_table(view), mark_table(view)], slope_sentences(view),
         ),
         make_part("First loading", draw_mooney(view), [stress_table(view), elastomer_table(view)]),

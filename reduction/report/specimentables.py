@@ -77,11 +77,12 @@ def history_table(view: TestView) -> Table | None:
     if "earlier_cycles" not in view.data:
         return None
     percent, force = shown("strain", view.units), shown("tension", view.units)
+    flex = ["earlier_flex_cycles"] if "earlier_flex_cycles" in view.data else []
     rows = [
         [
             words(name),
             words(_text(view, "earlier_tests", place) or "none"),
-            count(_value(view, "earlier_cycles", place)),
+            *(count(_value(view, cycles, place)) for cycles in ("earlier_cycles", *flex)),
             number(_value(view, "earlier_maximum_strain", place), percent),
             number(_value(view, "earlier_maximum_tension", place), force),
             number(_value(view, "permanent_set", place), percent),
@@ -89,7 +90,8 @@ def history_table(view: TestView) -> Table | None:
         for place, name in enumerate(view.specimens)
     ]
     columns = (
-        "specimen", "earlier tests", "earlier cycles [1]", percent.label("greatest strain seen"),
+        "specimen", "earlier tests", "earlier cycles [1]",
+        *("earlier flex cycles [1]" for _ in flex), percent.label("greatest strain seen"),
         force.label("greatest tension seen"), percent.label("permanent set"),
     )  # fmt: skip
     return make_table(

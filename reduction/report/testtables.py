@@ -25,7 +25,7 @@ def segment_table(tests: Sequence[TestView]) -> Table | None:
     if not rows:
         return None
     units = tests[0].units
-    of = "" if all(view.is_rope for view in tests) else " of the rubber"
+    of = " of the rubber" if any(view.is_rubber for view in tests) else ""
     columns = (
         "test", "specimen", "branch", "segment",
         shown("stress", units).label("segment modulus"),

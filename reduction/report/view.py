@@ -77,9 +77,15 @@ class TestView:
 
     @property
     def is_rope(self) -> bool:
-        """True where no specimen is of rubber."""
+        """True where every specimen is a rope or a wire."""
         kinds = self.texts("specimen_kind")
         return bool(kinds) and set(kinds) <= {"rope", "wire"}
+
+    @property
+    def is_rubber(self) -> bool:
+        """False where cords, fibres or wires carry in every specimen."""
+        kinds = self.texts("specimen_kind")
+        return not kinds or not set(kinds) <= {"rope", "wire", "stretch hose"}
 
     @property
     def n_cycles(self) -> int:

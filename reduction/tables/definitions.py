@@ -242,6 +242,7 @@ TABLES = (
             "earlier_maximum_strain",
             "earlier_maximum_tension",
             "earlier_cycles",
+            "earlier_flex_cycles",
             "permanent_set",
         ),
         ("earlier_tests",),

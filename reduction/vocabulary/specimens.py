@@ -54,7 +54,8 @@ OF_SPECIMENS = (
     Quantity("rated_break_strength", "N", "rated break strength", "003 Table 2"),
     Quantity("earlier_maximum_strain", "1", "greatest strain in the specimen's earlier tests"),
     Quantity("earlier_maximum_tension", "N", "greatest tension in the specimen's earlier tests"),
-    Quantity("earlier_cycles", "1", "cycles in the specimen's earlier tests"),
+    Quantity("earlier_cycles", "1", "cycles of the specimen before this test"),
+    Quantity("earlier_flex_cycles", "1", "cycles of flexing of the specimen before this test"),
     Quantity("earlier_tests", "", "the specimen's earlier tests, oldest first"),
     Quantity(
         "permanent_set",

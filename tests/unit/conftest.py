@@ -309,6 +309,7 @@ def rich_test():
             np.array([20.0, 0.0]),
             np.array([0.02, np.nan]),
             np.array([0.001, np.nan]),
+            np.array([1e6, np.nan]),
         ),
         standstills=Standstills(
             first=np.array([0, 30]),

@@ -57,6 +57,64 @@ def test_defaults_fill_what_a_test_leaves_out(folder):
     assert campaign.specimens["a"].mean_diameter == pytest.approx(1.1 * 0.0254)
 
 
+def test_what_a_specimen_had_seen_and_how_a_test_flexes_it(folder):
+    # WHOI-2004-06, sec. 3.0: 1,000,000 flex cycles at +/-30 deg, 600,000 of tension
+    seen = "earlier_cycles = 115000\nearlier_flex_cycles = 0\n"
+    text = BASE.replace("[layouts.l]", seen + "[layouts.l]")
+    flexed = 'unlogged_cycles = 600000\nn_flex_cycles = 1000000\nflex_angle = "30 deg"\n'
+    campaign = load(folder, text + TEST + flexed)
+    specimen, plan = campaign.specimens["a"], campaign.tests["T"]
+    assert (specimen.earlier_cycles, specimen.earlier_flex_cycles) == (115_000, 0)
+    assert (plan.unlogged_cycles, plan.n_flex_cycles) == (600_000, 1_000_000)
+    kept = {name: plan.attributes[name] for name in ("unlogged_cycles", "n_flex_cycles")}
+    assert kept == {"unlogged_cycles": "600000", "n_flex_cycles": "1000000"}
+    assert plan.attributes["flex_angle"] == "30 deg"
+    bare = load(folder, BASE + TEST)
+    assert bare.specimens["a"].earlier_flex_cycles is None
+    assert "n_flex_cycles" not in bare.tests["T"].attributes
+
+
+def test_a_row_of_the_table_says_how_it_was_flexed(folder):
+    (folder / "tests.csv").write_text(
+        "id,file,unlogged_cycles,n_flex_cycles,flex_angle\nT,T.csv,3,0,30 deg\n"
+    )
+    plan = load(folder, 'tests = "tests.csv"\n' + BASE).tests["T"]
+    assert (plan.unlogged_cycles, plan.n_flex_cycles) == (3, 0)
+    assert plan.attributes["n_flex_cycles"] == "0"
+
+
+@pytest.mark.parametrize(
+    ("key", "message"),
+    [
+        ('flex_angle = "30 ft"', r"tests\.T\.flex_angle"),
+        ("n_flex_cycles = -1", r"tests\.T\.n_flex_cycles"),
+        ("unlogged_cycles = -1", r"tests\.T\.unlogged_cycles"),
+    ],
+)
+def test_flexing_that_cannot_be_is_refused(folder, key, message):
+    with pytest.raises(SettingsError, match=message):
+        load(folder, BASE + TEST + key + "\n")
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ('gauge_length_standard_uncertainty = "1 mm"', "stands alone"),
+        ('gauge_length = "1 m"\ngauge_length_standard_uncertainty = "0 mm"', "not positive"),
+        ("earlier_cycles = -1", r"specimens\.a\.earlier_cycles"),
+    ],
+)
+def test_a_specimen_that_cannot_be_so_is_refused(folder, keys, message):
+    with pytest.raises(SettingsError, match=message):
+        load(folder, BASE.replace("[layouts.l]", keys + "\n[layouts.l]") + TEST)
+
+
+def test_the_uncertainty_of_a_gauge_length_is_a_length(folder):
+    keys = 'gauge_length = "96 in"\ngauge_length_standard_uncertainty = "0.05 in"\n'
+    campaign = load(folder, BASE.replace("[layouts.l]", keys + "[layouts.l]") + TEST)
+    assert campaign.specimens["a"].gauge_length_standard_uncertainty == pytest.approx(0.00127)
+
+
 def test_a_test_overrides_the_defaults(folder):
     text = BASE + TEST + '[tests.T.reduction.modulus]\nwindow = "12 %"\n'
     assert load(folder, text).tests["T"].settings.modulus.window == pytest.approx(0.12)

@@ -1,5 +1,7 @@
 """Specimens of one test side by side: each against the first, and what makes them unequal."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,22 @@ def test_three_specimens_give_two_ratios_over_the_first():
     assert [(one.numerator, one.denominator) for one in found] == [("b", "a"), ("c", "a")]
     assert [float(one.ratio[0, 0]) for one in found] == pytest.approx([2.0, 0.5])
     assert found[1].notes[-1].startswith("c over a: two specimens in one test")
+
+
+def test_unequal_flexing_is_named_and_softening_is_said_of_rubber_alone():
+    past = replace(history([1.0, 1.3], [10.0, 10.0]), earlier_flex_cycles=np.array([1e6, np.nan]))
+    hoses = (Specimen("a", kind="stretch hose"), Specimen("b", kind="stretch hose"))
+    found = remarks(*hoses, past)
+    assert found[1:] == [
+        "b over a: unequal histories in the campaign: not known against 1000000 earlier flex "
+        "cycles",
+        "b over a: unequal histories in the campaign: greatest earlier strain 130% against 100%",
+    ]
+    assert remarks(Specimen("a"), Specimen("b"), past)[-1].endswith(
+        "rubber is softer below what it has seen"
+    )
+    alike = replace(past, earlier_flex_cycles=np.full(2, np.nan), earlier_maximum_strain=np.ones(2))
+    assert len(remarks(*hoses, alike)) == 1
 
 
 def test_one_specimen_is_compared_with_nothing():

@@ -53,7 +53,24 @@ def test_a_rope_without_a_diameter_has_no_area_and_rubber_is_refused():
     assert np.isnan(areas_of((rope,))).all()
     assert areas_of((Specimen("b", kind="rope", diameter=(2.0,)),)) == pytest.approx(math.pi)
     with pytest.raises(DataError, match="'c' has no diameter"):
-        areas_of((rope, Specimen("c", kind="stretch hose")))
+        areas_of((rope, Specimen("c", kind="rubber tether")))
+
+
+@pytest.mark.parametrize(
+    ("kind", "is_rubber", "is_rope"),
+    [
+        ("rubber tether", True, False),
+        ("elastomer", True, False),
+        ("stretch hose", False, False),
+        ("rope", False, True),
+        ("wire", False, True),
+    ],
+)
+def test_laws_of_rubber_and_programmes_of_ropes_are_not_for_a_hose(kind, is_rubber, is_rope):
+    one = Specimen("a", kind=kind)
+    assert (one.is_rubber, one.is_rope) == (is_rubber, is_rope)
+    if not is_rubber:
+        assert np.isnan(areas_of((one,))).all()
 
 
 def test_a_mark_row_that_contradicts_itself_is_refused_with_its_test_and_hold():

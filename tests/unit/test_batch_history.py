@@ -1,0 +1,117 @@
+"""What a specimen had seen before a test: cycles in logs, between them, and of a wagger."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from reduction.batch.history import history_of, history_remarks
+from reduction.batch.survey import Survey
+from reduction.campaign.plan import TestPlan
+from reduction.errors import DataError
+from reduction.record import Specimen
+from reduction.settings import ReductionSettings
+
+
+def survey(name, order, *, n_cycles=0, log="", place=0, error=None, specimens=("hose",), **told):
+    plan = TestPlan(
+        id=name, kind="cyclic", files=((f"{name}.csv", "ram"),), specimens=specimens, order=order,
+        control="position", waveform="triangular", target_strain=(), attributes={},
+        settings=ReductionSettings(), log=log or name, step_place=place, **told,
+    )  # fmt: skip
+    return Survey(plan, n_cycles=n_cycles, error=error)
+
+
+def past(surveys, *specimens):
+    """Earlier cycles and earlier flex cycles of the first specimen, by test."""
+    campaign = SimpleNamespace(specimens={one.name: one for one in specimens})
+    found = {}
+    for entry in surveys:
+        history = history_of(entry, surveys, {}, campaign)
+        flex = history.earlier_flex_cycles
+        found[entry.plan.id] = (history.earlier_cycles[0], None if flex is None else flex[0])
+    return found
+
+
+def test_cycles_before_the_campaign_and_between_its_logs_are_counted_with_the_logged_ones():
+    surveys = [
+        survey("A", 1, n_cycles=3),
+        survey("B", 2, n_cycles=12, unlogged_cycles=114_997),
+        survey("C", 3),
+    ]
+    hose = Specimen("hose", kind="stretch hose", earlier_cycles=500)
+    assert past(surveys, hose) == {
+        "A": (500, None), "B": (500 + 3 + 114_997, None), "C": (500 + 3 + 114_997 + 12, None),
+    }  # fmt: skip
+
+
+def test_flexing_is_counted_where_the_campaign_says_something_of_it():
+    # WHOI-2004-06, sec. 3.0: flexed 1,000,000 times
+    surveys = [
+        survey("A", 1, n_cycles=3), survey("B", 2, n_flex_cycles=1_000_000), survey("C", 3),
+    ]  # fmt: skip
+    assert [flex for _, flex in past(surveys, Specimen("hose")).values()] == [0, 0, 1_000_000]
+    before = Specimen("hose", earlier_flex_cycles=200)
+    assert [flex for _, flex in past(surveys, before).values()] == [200, 200, 1_000_200]
+
+
+def test_one_specimen_of_two_that_was_never_said_to_be_flexed_has_no_number():
+    both = survey("A", 1, specimens=("hose", "other"))
+    campaign = SimpleNamespace(
+        specimens={"hose": Specimen("hose", earlier_flex_cycles=0), "other": Specimen("other")}
+    )
+    flex = history_of(both, [both], {}, campaign).earlier_flex_cycles
+    assert flex[0] == 0 and np.isnan(flex[1])
+
+
+def test_the_steps_of_a_log_share_what_came_before_it():
+    told = {"log": "L", "unlogged_cycles": 100, "n_flex_cycles": 40}
+    surveys = [
+        survey("L.a", 1, n_cycles=5, place=1, **told),
+        survey("L.b", 1, n_cycles=6, place=2, **told),
+        survey("M", 2),
+    ]
+    found = past(surveys, Specimen("hose"))
+    assert found["L.a"] == (100, 0)
+    # some of the flexing of the log came before its second step: how much is not known
+    assert found["L.b"] == (105, None)
+    assert found["M"] == (111, 40)
+
+
+def test_a_part_of_a_test_has_what_came_before_the_whole():
+    surveys = [
+        survey("A", 1, n_cycles=5, unlogged_cycles=100),
+        survey("burst", None, n_cycles=2, part_of="A"),
+    ]
+    assert past(surveys, Specimen("hose"))["burst"] == (100, None)
+
+
+def test_a_failed_test_leaves_its_cycles_unknown_but_not_the_stated_flexing():
+    surveys = [survey("A", 1, n_flex_cycles=7, error=DataError("lost")), survey("B", 2)]
+    cycles, flex = past(surveys, Specimen("hose"))["B"]
+    assert np.isnan(cycles) and flex == 7
+
+
+@pytest.mark.parametrize(
+    ("before", "between", "count"), [(None, None, None), (0, 0, None), (500, None, 500), (5, 7, 12)]
+)
+def test_cycles_in_no_log_are_named_since_no_strain_of_them_is_known(before, between, count):
+    surveys = [survey("A", 1, unlogged_cycles=between)]
+    campaign = SimpleNamespace(specimens={"hose": Specimen("hose", earlier_cycles=before)})
+    remarks = history_remarks(surveys[0], surveys, {}, campaign)
+    expected = f"hose: {count} earlier cycles are in no log: earlier_maximum_strain and "
+    assert [text.startswith(expected) for text in remarks] == ([] if count is None else [True])
+
+
+def test_a_test_without_a_place_has_no_history():
+    alone = survey("A", None, unlogged_cycles=5)
+    campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
+    assert history_of(alone, [alone], {}, campaign) is None
+    assert history_remarks(alone, [alone], {}, campaign) == ()
+
+
+def test_specimens_that_share_tests_without_an_order_are_asked_for_one():
+    surveys = [survey("A", None), survey("B", None)]
+    campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
+    (remark,) = history_remarks(surveys[0], surveys, {}, campaign)
+    assert remark.endswith("what earlier tests did to them is not known here; set order")
