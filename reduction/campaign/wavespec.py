@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict
 from reduction.campaign.faults import in_toml
 from reduction.campaign.quantities import Number, TableReader
 from reduction.campaign.toml import read_toml
+from reduction.errors import SettingsError
 from reduction.predict.coefficients import CODE_OF_HYDROLOGY
 from reduction.predict.environment import AIR_DENSITY
 from reduction.predict.morison import SEAWATER_DENSITY, VerticalWidth
@@ -19,6 +20,7 @@ from reduction.record import Floats
 
 __all__ = ["WaveLoadCase", "WaveLoadFile", "WaveLoadKeys", "load_wave_case"]
 
+_MAY_FOLLOW = ("wave_length", "hose_length")
 _MOST_TIMES = 1_000_000
 _STEPS_A_PERIOD = 200
 
@@ -127,24 +129,30 @@ def load_wave_case(path: Path) -> WaveLoadCase:
     values["wave_period"] = read.value("wave_period", keys.wave_period, "time")
     for name in ("current_velocity", "wind_velocity"):
         values[name] = read.value(name, getattr(keys, name), "velocity")
-    may_be_zero = {"content_density", "air_density", "current_velocity", "wind_velocity"}
-    for name, value in values.items():
-        if not np.isfinite(value) or (value <= 0 and name not in may_be_zero):
-            raise in_toml(
-                path, f"wave_load.{name} is not positive", found=f"{value:g} in SI",
-                needed="above zero",
-            )  # fmt: skip
-    length = read.optional("hose_length", keys.hose_length, "length")
+    given = {name: read.optional(name, getattr(keys, name), "length") for name in _MAY_FOLLOW}
+    of_any_sign = {"current_velocity", "wind_velocity"}
+    for name, value in {**values, **given}.items():
+        if value is None or (np.isfinite(value) and name in of_any_sign):
+            continue
+        if name == "content_density":
+            if not (np.isfinite(value) and value >= 0):
+                raise _fault(path, f"{name} is negative", value, "zero or more")
+        elif not (np.isfinite(value) and value > 0):
+            raise _fault(path, f"{name} is not positive", value, "above zero")
     return WaveLoadCase(
         name=path.stem,
         **values,
-        wave_length=read.optional("wave_length", keys.wave_length, "length"),
+        wave_length=given["wave_length"],
         wave_theory=keys.wave_theory,
         elevation=read.optional("elevation", keys.elevation, "length"),
         vertical_width=keys.vertical_width,
-        hose_length=1.0 if length is None else length,
+        hose_length=1.0 if given["hose_length"] is None else given["hose_length"],
         time=_times(path, read, keys, values["wave_period"]),
     )
+
+
+def _fault(path: Path, problem: str, value: float, needed: str) -> SettingsError:
+    return in_toml(path, f"wave_load.{problem}", found=f"{value:g} in SI", needed=needed)
 
 
 def _times(path: Path, read: TableReader, keys: WaveLoadKeys, period: float) -> Floats:

@@ -163,6 +163,7 @@ def describe_wave(
         )
         length, mismatch = 2 * pi / number, 0.0
     else:
+        as_positive("wave_length", wave_length)
         length, number = wave_length, 2 * pi / wave_length
         mismatch = float(
             check_wave_length(
@@ -185,8 +186,8 @@ def describe_wave(
             theory == "airy" and not is_small
         ),
         f"Stokes' second order is at its end: Ursell number {ursell:.1f} (at most "
-        f"{GREATEST_URSELL_NUMBER:.1f}), second harmonic of the surface {100 * surface:.0f} % (at most "
-        f"{100 * _SECONDARY_CREST:.0f} %)": is_beyond,
+        f"{GREATEST_URSELL_NUMBER:.1f}), second harmonic of the surface {100 * surface:.0f} % "
+        f"(at most {100 * _SECONDARY_CREST:.0f} %)": is_beyond,
         f"the given length is {100 * mismatch:+.1f} % off that of the period": (
             abs(mismatch) > _LENGTH_TOLERANCE
         ),

@@ -19,7 +19,7 @@ def test_the_second_printed_example_is_at_the_edge():
     assert wave.breaking_ratio == pytest.approx(0.0625 / 0.105, abs=0.005)
     assert wave.is_beyond_stokes and not wave.is_breaking
     assert any("Stokes' second order is at its end" in one for one in wave.reasons)
-    assert any("the given length is +22.7% off" in one for one in wave.reasons)
+    assert any("the given length is +22.7 % off" in one for one in wave.reasons)
 
 
 @pytest.mark.parametrize(("depth", "period"), [(3.0, 3.57), (6.0, 3.57), (40.0, 5.0), (1.0, 2.0)])
@@ -57,10 +57,16 @@ def test_an_airy_wave_whose_second_harmonic_counts_says_so():
     steep = describe_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0)
     assert steep.theory == "airy"
     # kH/8 (2 + 3 / sinh^2 kd) coth kd by hand: 12 %
-    assert any("the second harmonic of the surface is 12%" in one for one in steep.reasons)
+    assert any("the second harmonic of the surface is 12 %" in one for one in steep.reasons)
     flat = describe_wave(wave_height=0.2, wave_period=3.57, water_depth=6.0)
     assert flat.is_second_order_small and flat.reasons == ()
     assert flat.length_mismatch == 0
+
+
+@pytest.mark.parametrize("length", [0.0, -20.0])
+def test_a_length_that_no_wave_has_is_refused(length):
+    with pytest.raises(DataError, match="values of wave_length are not positive"):
+        describe_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0, wave_length=length)
 
 
 def test_a_breaking_wave_is_flagged():

@@ -1,0 +1,152 @@
+"""A wave load from the file's numbers on, against formulas written out here."""
+
+from dataclasses import asdict, replace
+
+import numpy as np
+import pytest
+from predicted_cases import LEAST_WAVE, WAVE
+
+from reduction.campaign.wavespec import load_wave_case
+from reduction.errors import DataError
+from reduction.pipeline.waveload import predict_wave_load
+
+DIAMETER, DENSITY, DRAG, INERTIA = 0.114, 1025.0, 1.2, 2.0
+HEIGHT, PERIOD, LENGTH, DEPTH, CURRENT = 1.25, 3.57, 20.0, 6.0, 0.5
+
+
+@pytest.fixture
+def predict(tmp_path):
+    def predicted(text=WAVE, **changes):
+        path = tmp_path / "w.toml"
+        path.write_text(text, encoding="utf-8")
+        given = asdict(replace(load_wave_case(path), **changes))
+        given.pop("name")
+        return predict_wave_load(**given)
+
+    return predicted
+
+
+def submerged():
+    """Weight of wall and content over that of the water, and the depth of such a segment."""
+    bore = DIAMETER - 0.012
+    wall = np.pi / 4 * (DIAMETER**2 - bore**2)
+    area = (1250 * wall + 830 * np.pi / 4 * bore**2) / DENSITY
+    depths = np.linspace(0, DIAMETER, 200_001)
+    radius, below = DIAMETER / 2, DIAMETER / 2 - depths
+    segments = radius**2 * np.arccos(below / radius) - below * np.sqrt(
+        np.maximum(radius**2 - below**2, 0)
+    )
+    return area, float(np.interp(area, segments, depths))
+
+
+def airy(time, elevation):
+    """Velocities of a linear wave, and accelerations as the drifting water has them."""
+    k, omega = 2 * np.pi / LENGTH, 2 * np.pi / PERIOD
+    seen = omega - k * CURRENT  # by one who drifts with the current
+    size = seen * HEIGHT / 2 / np.sinh(k * DEPTH)
+    level = k * (elevation + DEPTH)
+    phase = -omega * time
+    across = size * np.cosh(level) * np.array([np.cos(phase), seen * np.sin(phase)])
+    upward = size * np.sinh(level) * np.array([np.sin(phase), -seen * np.cos(phase)])
+    return across, upward
+
+
+def morison(velocity, acceleration, *, width, area):
+    drag = DRAG * DENSITY / 2 * width * velocity * np.abs(velocity)
+    return drag + INERTIA * DENSITY * area * acceleration
+
+
+def test_the_hose_floats_as_deep_as_it_is_heavy(predict):
+    """Zhang (2015), eq. (11): 95.1 mm and 0.0091 m2."""
+    section = predict().load.section
+    area, depth = submerged()
+    assert float(section.submerged_section_area) == pytest.approx(area, rel=1e-12)
+    assert float(section.immersion_depth) == pytest.approx(depth, abs=1e-8)
+    assert float(section.immersion_depth) == pytest.approx(0.0951, abs=0.5e-4)
+    assert float(section.submerged_section_area) == pytest.approx(0.0091, abs=0.5e-4)
+
+
+def test_loads_over_time_are_those_of_the_formula(predict):
+    found = predict()
+    area, depth = submerged()
+    across, upward = airy(found.load.time, DIAMETER / 2 - depth)
+    whole = np.pi / 4 * DIAMETER**2
+    expected = {
+        "horizontal": morison(across[0] + CURRENT, across[1], width=depth, area=area),
+        "horizontal_classic": morison(across[0] + CURRENT, across[1], width=DIAMETER, area=whole),
+        "vertical": morison(upward[0], upward[1], width=DIAMETER, area=area),
+        "vertical_classic": morison(upward[0], upward[1], width=DIAMETER, area=whole),
+    }
+    for name, load in expected.items():
+        np.testing.assert_allclose(getattr(found.load, name), load, rtol=1e-6, atol=1e-5)
+
+
+def test_extremes_are_those_of_a_fine_search(predict):
+    found = predict()
+    area, depth = submerged()
+    time = np.linspace(0, PERIOD, 400_001)
+    across, _ = airy(time, DIAMETER / 2 - depth)
+    load = morison(across[0] + CURRENT, across[1], width=depth, area=area)
+    own = found.extremes.horizontal
+    assert float(own.maximum) == pytest.approx(load.max(), rel=1e-7)
+    assert float(own.minimum) == pytest.approx(load.min(), rel=1e-7)
+    assert float(own.time_of_maximum) == pytest.approx(time[load.argmax()], abs=1e-4)
+
+
+def test_the_wave_that_computed_the_load_goes_with_it(predict):
+    found = predict()
+    assert found.wave.elevation == pytest.approx([HEIGHT / 2])
+    assert 2 * np.pi / found.wave.angular_frequency == pytest.approx(PERIOD)
+    assert 2 * np.pi / found.wave.wave_number == pytest.approx(LENGTH)
+    assert (found.drag_coefficient, found.inertia_coefficient) == (DRAG, INERTIA)
+    assert (found.current_velocity, found.wind_velocity, found.hose_length) == (0.5, 10, 100)
+
+
+def test_the_water_is_taken_at_the_centre_of_the_hose_unless_said(predict):
+    _, depth = submerged()
+    assert predict().elevation == pytest.approx(DIAMETER / 2 - depth, abs=1e-8)
+    assert predict(elevation=-0.5).elevation == -0.5
+
+
+def test_wind_blows_on_what_stands_out_and_current_on_what_is_under(predict):
+    anchor = predict().anchor
+    _, depth = submerged()
+    assert float(anchor.wind) == pytest.approx(100 * 1.225 / 2 * 1.2 * (DIAMETER - depth) * 10**2)
+    assert float(anchor.current) == pytest.approx(100 * DENSITY / 2 * 1.2 * depth * CURRENT**2)
+    assert float(anchor.separate) == pytest.approx(
+        float(anchor.wind) + float(anchor.current) + float(anchor.wave)
+    )
+    assert float(anchor.combined) > float(anchor.separate)
+
+
+def test_the_theory_is_that_of_the_depth_unless_another_is_asked_for(predict):
+    found = predict(LEAST_WAVE)
+    assert found.used == found.theory.theory == "airy"
+    found = predict(LEAST_WAVE, wave_theory="stokes")
+    assert (found.used, found.theory.theory) == ("stokes", "airy")
+    assert found.wave.elevation.size == 2
+    assert found.notes[-1] == "computed by stokes, as asked for; by depth airy applies"
+
+
+def test_a_length_that_is_not_that_of_the_period_is_told(predict):
+    assert any("given length" in note for note in predict().notes)
+    assert not any("given length" in note for note in predict(wave_length=None).notes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"wall_density": 2500.0}, "1 of 1 hoses are heavier than water"),
+        ({"wall_thickness": 0.06}, "the wall is thicker than half the hose"),
+        ({"wave_height": 4.0}, "breaks before it is this high; found 4 m over 6 m"),
+        ({"current_velocity": -20.0}, "the opposing current stops 1 of 1 waves"),
+        ({"elevation": -7.0}, "the place is not in the water"),
+        (
+            {"water_depth": 1.0, "wave_height": 0.1, "wave_theory": "auto"},
+            "the theory of this wave is not computed: cnoidal or solitary",
+        ),
+    ],
+)
+def test_what_cannot_be_computed_is_refused(predict, changes, message):
+    with pytest.raises(DataError, match=message):
+        predict(**changes)
