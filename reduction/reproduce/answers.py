@@ -1,0 +1,91 @@
+"""Answers to the cells of a report, and the items that they make: one for every cell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from reduction.errors import DataError
+from reduction.published.cell import Cell, ReportId, number_of, printed_step
+from reduction.published.read import cells_of
+from reduction.reproduce.item import Item, judge, not_testable
+
+__all__ = ["Answer", "Answers", "Key", "items_from"]
+
+_ROUND_OFF = 1e-9
+
+Key = tuple[str, str, str]
+"""Table, row and column of a cell."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a cell ought to be, in the printed unit, and from what.
+
+    Parameters
+    ----------
+    value : float
+        Recomputed.
+    how : str
+        From what.
+    tolerance : float, optional
+        What the rounding of the inputs does, where they are rounded.
+    bound : {"", "below", "above"}
+        The page says that a number is below, or above, the printed one: ``less than 2 %``.
+    """
+
+    value: float
+    how: str
+    tolerance: float | None = None
+    bound: Literal["", "below", "above"] = ""
+
+
+Answers = dict[Key, Answer | str]
+"""By cell; a text says why nothing in the report determines it."""
+
+
+def items_from(report: ReportId, answers: Mapping[Key, Answer | str]) -> list[Item]:
+    """One item for each cell of a report.
+
+    Parameters
+    ----------
+    report : ReportId
+        Which of the five.
+    answers : mapping of Key to Answer or str
+        By cell.
+
+    Returns
+    -------
+    items : list of Item
+        In the order of the cells.
+
+    Raises
+    ------
+    DataError
+        If a cell has no answer, or an answer no cell.
+    """
+    cells = cells_of(report)
+    unknown = answers.keys() - {cell.key for cell in cells}
+    if unknown:
+        raise DataError(f"{report} has no such cell", found=" / ".join(min(unknown)))
+    return [_item(cell, answers) for cell in cells]
+
+
+def _item(cell: Cell, answers: Mapping[Key, Answer | str]) -> Item:
+    if cell.key not in answers:
+        raise DataError(f"nothing is said of a cell of {cell.report}", found=" / ".join(cell.key))
+    answer = answers[cell.key]
+    if isinstance(answer, str):
+        return not_testable(cell, answer)
+    printed = number_of(cell.printed)
+    if answer.bound and printed is not None:
+        slack = answer.value - printed if answer.bound == "below" else printed - answer.value
+        return Item(cell, answer.value, "reproduced" if slack <= 0 else "unexplained", answer.how)
+    tolerance = answer.tolerance
+    if tolerance is None and printed is None and cell.corrected is not None:
+        # words have no digits: those of the corrected number are judged
+        tolerance = 0.5 * printed_step(repr(cell.corrected))
+    elif tolerance is None and printed_step(cell.printed) == 0:
+        tolerance = _ROUND_OFF  # a fraction is exact
+    return judge(cell, answer.value, answer.how, tolerance=tolerance)
