@@ -1,0 +1,222 @@
+"""Pieces on one grid of strain: their weights, their mean, and the nearest curve that rises.
+
+References
+----------
+.. [1] R. E. Barlow, D. J. Bartholomew, J. M. Bremner and H. D. Brunk, "Statistical Inference
+   under Order Restrictions," Wiley, 1972 (isotonic regression, and with bounds).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import isotonic_regression
+
+from reduction.lookup.pieces import CurvePiece
+from reduction.record import Bools, Floats, Integers, freeze_arrays
+
+__all__ = ["Blend", "blend_pieces"]
+
+# share of a range, from its end, after which a kind that goes before is alone
+_HAND_OVER = 0.1
+# weight at the very end of a piece: it decides nothing where another piece is, all where none is
+_LEAST_WEIGHT = 1e-18
+# no tension is known better than this share of it: an uncertainty of zero may not decide alone
+_LEAST_UNCERTAINTY = 1e-3
+# share of the weight below which a piece has no say
+_NO_SAY = 0.01
+# least slope, over the mean one, where pieces themselves fall: the curve has to rise
+_LEAST_SLOPE = 1e-6
+
+
+@dataclass(frozen=True)
+class Blend:
+    """Pieces as one curve on a grid; arrays have shape (n,), of intervals (n - 1,).
+
+    Parameters
+    ----------
+    strain, tension, variance : ndarray
+        Nodes that a piece reaches, the rising curve [N], its variance [N2].
+    change : ndarray
+        Of the rising curve from the weighted mean. [N]
+    piece : ndarray of int
+        With the greatest weight.
+    is_covered, is_join : ndarray of bool
+        Of each interval: a piece reaches over it; more than one has a say.
+    between_pieces : float
+        Relative deviation between pieces of one kind; NaN without an overlap. [1]
+    """
+
+    strain: Floats
+    tension: Floats
+    variance: Floats
+    change: Floats
+    piece: Integers
+    is_covered: Bools
+    is_join: Bools
+    between_pieces: float
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+def blend_pieces(
+    pieces: Sequence[CurvePiece], *, taper: float, least_slope: float, n_points: int
+) -> Blend:
+    """Weighted mean of pieces, and the nearest curve that rises.
+
+    Parameters
+    ----------
+    pieces : sequence of CurvePiece
+        Kind by kind, those that go before first. [SI]
+    taper : float
+        Share of a piece at each end over which its weight falls to zero. [1]
+    least_slope : float
+        Share of the least slope of the pieces there, below which the curve may not fall. [1]
+    n_points : int
+        Of the grid. [1]
+
+    Returns
+    -------
+    blend : Blend
+        On the nodes that a piece reaches. [SI]
+
+    Raises
+    ------
+    DataError
+        Never by itself: pieces are checked when they are made.
+
+    Notes
+    -----
+    Isotonic regression ([1]_) of the mean less the integral of the least slope, with the weight
+    of all pieces there, bounded below by zero tension: the least squares solution.  Where one
+    piece is alone its slope is above a share of itself, and nothing is moved.
+
+    Examples
+    --------
+    >>> at = np.array([0.5, 1.0])
+    >>> one = CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)
+    >>> blend_pieces([one], taper=0.5, least_slope=0.5, n_points=3).tension
+    array([ 50.,  75., 100.])
+    """
+    strain, is_covered = _grid(pieces, n_points)
+    tension, variance, fade = _on_grid(pieces, strain, taper)
+    simple = (fade * tension).sum(axis=0) / fade.sum(axis=0)
+    between = _between(pieces, tension, variance, fade > 0)
+    shared = (0.0 if np.isnan(between) else between) * simple
+    weight = fade / np.maximum(variance + shared**2, (_LEAST_UNCERTAINTY * simple) ** 2)
+    total = weight.sum(axis=0)
+    share = weight / total
+    mean = (share * tension).sum(axis=0)
+    middle = (share[:, 1:] + share[:, :-1]) / 2
+    least = _least_slopes(strain, tension, mean, middle, is_covered, least_slope)
+    rising = _rising(strain, mean, total * _widths(strain, is_covered), least)
+    off = (share * (tension - mean) ** 2).sum(axis=0)
+    own = (share * variance).sum(axis=0)
+    return Blend(
+        strain=strain,
+        tension=rising,
+        variance=own + np.maximum(off, shared**2) + (rising - mean) ** 2,
+        change=rising - mean,
+        piece=share.argmax(axis=0),
+        is_covered=is_covered,
+        is_join=is_covered & ((middle > _NO_SAY).sum(axis=0) > 1),
+        between_pieces=between,
+    )
+
+
+def _grid(pieces: Sequence[CurvePiece], n_points: int) -> tuple[Floats, Bools]:
+    """Strains that a piece reaches, and which of the intervals between them one covers."""
+    ends = np.array([(one.strain[0], one.strain[-1]) for one in pieces])
+    fine = np.linspace(ends.min(), ends.max(), n_points)
+    # a node nearer to an end than this is that end
+    near = 0.05 * (fine[1] - fine[0])
+    edges = np.unique(ends)
+    edges = edges[np.concatenate([[True], np.diff(edges) > near])]
+    fine = fine[np.abs(fine[:, None] - edges).min(axis=1) > near]
+    strain = np.union1d(fine, edges)
+    inside = (strain >= ends[:, :1]) & (strain <= ends[:, 1:])
+    strain = strain[inside.any(axis=0)]
+    middle = (strain[1:] + strain[:-1]) / 2
+    covered: Bools = ((middle > ends[:, :1]) & (middle < ends[:, 1:])).any(axis=0)
+    return strain, covered
+
+
+def _on_grid(
+    pieces: Sequence[CurvePiece], strain: Floats, taper: float
+) -> tuple[Floats, Floats, Floats]:
+    """Tension, variance and fading weight of each piece on the grid; zero outside it."""
+    tension, variance, fade = np.zeros((3, len(pieces), strain.size))
+    over, taken = np.zeros((2, strain.size))
+    kind = pieces[0].kind
+    for row, one in enumerate(pieces):
+        if one.kind != kind:  # what goes before has had its say: the rest is left over
+            over, taken, kind = np.maximum(over, taken), np.zeros(strain.size), one.kind
+        inside = (strain >= one.strain[0]) & (strain <= one.strain[-1])
+        at = strain[inside]
+        depth = np.minimum(at - one.strain[0], one.strain[-1] - at)
+        depth /= one.strain[-1] - one.strain[0]
+        tension[row, inside] = np.interp(at, one.strain, one.tension)
+        variance[row, inside] = np.interp(at, one.strain, one.standard_uncertainty) ** 2
+        full = np.minimum(depth / taper, 1.0)
+        fade[row, inside] = full * (1 - over[inside]) + _LEAST_WEIGHT
+        alone = np.minimum(depth / _HAND_OVER, 1.0)
+        taken[inside] = np.maximum(taken[inside], alone)
+    return tension, variance, fade
+
+
+def _between(
+    pieces: Sequence[CurvePiece], tension: Floats, variance: Floats, known: Bools
+) -> float:
+    """Relative deviation between pieces of one kind, by pairs, less their own variance."""
+    found, count = 0.0, 0
+    for first, one in enumerate(pieces):
+        for second in range(first + 1, len(pieces)):
+            both = known[first] & known[second]
+            if pieces[second].kind != one.kind or np.count_nonzero(both) < 2:
+                continue
+            level = (tension[first, both] + tension[second, both]) / 2
+            apart = (tension[first, both] - tension[second, both]) ** 2
+            own = variance[first, both] + variance[second, both]
+            # two draws of one deviation are apart by twice its variance
+            found += float((((apart - own) / level**2) / 2).sum())
+            count += int(np.count_nonzero(both))
+    return float(np.sqrt(max(found, 0.0) / count)) if count else float("nan")
+
+
+def _widths(strain: Floats, is_covered: Bools) -> Floats:
+    """Width of strain that each node stands for; none of a gap."""
+    steps = np.where(is_covered, np.diff(strain), 0.0)
+    widths = (np.concatenate([[0.0], steps]) + np.concatenate([steps, [0.0]])) / 2
+    return np.asarray(np.maximum(widths, 1e-12 * strain[-1]))
+
+
+def _least_slopes(
+    strain: Floats,
+    tension: Floats,
+    mean: Floats,
+    share: Floats,
+    is_covered: Bools,
+    least_slope: float,
+) -> Floats:
+    """Slope below which the curve may not fall in each interval: of the softest piece there."""
+    slopes = np.diff(tension, axis=1) / np.diff(strain)
+    of_pieces = np.where(share > _NO_SAY, slopes, np.inf).min(axis=0)
+    # what a piece says outside its range is nothing: no piece has a say over a gap
+    least = np.where(is_covered & np.isfinite(of_pieces), least_slope * of_pieces, 0.0)
+    return np.asarray(np.maximum(least, _LEAST_SLOPE * mean.max() / strain[-1]))
+
+
+def _rising(strain: Floats, mean: Floats, weight: Floats, least: Floats) -> Floats:
+    """Nearest curve whose slope is nowhere below the least one, and whose tension is above zero."""
+    given = np.concatenate([[0.0], np.cumsum(least * np.diff(strain))])
+    found = isotonic_regression(mean - given, weights=weight / weight.max())
+    rest = np.asarray(found.x, dtype=np.float64)
+    bound = _LEAST_SLOPE * mean.max() * strain[0] / strain[-1]
+    rising = np.maximum(rest, bound) + given
+    # where nothing had to move, the mean itself, not its copy by way of a difference
+    moved = np.abs(rising - mean) > 1e-12 * mean.max()
+    return np.where(moved, rising, mean)
