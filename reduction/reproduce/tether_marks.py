@@ -9,7 +9,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import pi, sqrt
 
 import numpy as np
@@ -32,7 +32,7 @@ _TIMES = "time of a reading, later than the one before"
 
 
 def items_of_diameters(
-    cells: Sequence[Cell], areas: dict[str, tuple[float, float]]
+    cells: Sequence[Cell], areas: Mapping[str, Sequence[float]]
 ) -> Iterator[Item]:
     """Table 2.
 
@@ -40,7 +40,7 @@ def items_of_diameters(
     ----------
     cells : sequence of Cell
         Of Table 2.
-    areas : dict of str to (float, float)
+    areas : mapping of str to sequence of float
         By tether, what Tables 5 and 6 imply. [in2]
 
     Yields

@@ -7,24 +7,28 @@ from dataclasses import dataclass
 
 from reduction.published.cell import Cell, number_of
 
-__all__ = ["Row", "rows_of"]
+__all__ = ["Row", "number_in_use", "rows_of"]
+
+
+def number_in_use(cell: Cell) -> float:
+    """Number of a cell as corrected, or as printed where it is open; NaN where there is none.
+
+    An open number has no other to be held against than those beside it on the page.
+    """
+    value = number_of(cell.printed) if cell.value is None else cell.value
+    return float("nan") if value is None else value
 
 
 @dataclass(frozen=True)
 class Row:
-    """One row of a table; indexed by column it gives the number as corrected.
-
-    An open number gives what is printed: the row is held against itself.
-    """
+    """One row of a table; indexed by column it gives the number in use."""
 
     name: str
     cells: dict[str, Cell]
 
     def __getitem__(self, column: str) -> float:
-        """Number as corrected; NaN where the text holds none."""
-        cell = self.cells[column]
-        value = number_of(cell.printed) if cell.value is None else cell.value
-        return float("nan") if value is None else value
+        """Number of one column."""
+        return number_in_use(self.cells[column])
 
     @property
     def tether(self) -> str:
