@@ -154,7 +154,8 @@ def predict_large(design: ArmourDesign, strain: Floats) -> ArmourResponse:
     not the printed :math:`2\pi r\tan\alpha`; (26) leaves out the sine of the torsion moment.
     Shear force and bending moment are not printed: they are the statics of a spring whose ends
     are free to turn, and meet (6) without core.  This is another body than a wire on a rigid
-    core, not an approximation of it: its axial force is less than half a percent of that.
+    core, not an approximation of it: its axial force is
+    :math:`(R_2/r)^2 / (4(1+\nu)\sin\alpha)` of that, 1.8 % at 5 deg and 0.16 % at 80 deg.
 
     Examples
     --------
