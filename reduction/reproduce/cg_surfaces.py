@@ -1,0 +1,282 @@
+"""CG-D-39-80, Tables 3-5 and 11-19: response surfaces, their statistics and their ranges.
+
+A coefficient that two tables print is held against the other print; one that only one table
+prints comes from runs that are not printed.  B1 is the mean of the centre runs, so that the
+equations of the line can be put beside it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reduction.line.identify import identify_by_amplitude
+from reduction.line.model import apparent_spring_constant, hysteresis_energy
+from reduction.published.cell import Cell, printed_step
+from reduction.reproduce.cg_cells import Pages, beside, number, rounding
+from reduction.reproduce.item import Item, judge, not_testable
+from reduction.surface.overall import statistics_from_r2
+from reduction.surface.terms import model_matrix, quadratic_exponents
+
+__all__ = ["CENTRE_LINES", "TABLES_OF", "centre_stiffness", "change_of_mean", "item_of_surface"]
+
+K_AP, ENERGY, K_1, TIME = (
+    "apparent_spring_constant", "hysteresis_energy", "dissipation_spring_constant",
+    "relaxation_time",
+)  # fmt: skip
+TABLES_OF = {
+    K_AP: ("3", "4", "5"), ENERGY: ("11", "12", "13"), K_1: ("14", "15", "16"),
+    TIME: ("17", "18", "19"),
+}  # fmt: skip
+NYLON_BRAID = "nylon | double braid | 1/2 in"
+POLYESTER_BRAID = "polyester | double braid | 1/2 in"
+NYLON_PLAITED = "nylon | 8-strand plaited | 1/2 in"
+POLYESTER_PLAITED = "polyester | 8-strand plaited | 1/2 in"
+# line at the centre: table of K_0, mean tension, amplitude [lb]; "slope" where no row of K_0 is
+CENTRE_LINES: dict[str, tuple[str, float, float]] = {
+    f"{POLYESTER_PLAITED} | new": ("slope", 1386, 561),
+    f"{POLYESTER_BRAID} | new": ("6", 1344, 544),
+    f"{NYLON_PLAITED} | new": ("7", 1209.6, 489.6),
+    f"{NYLON_BRAID} | new": ("7", 1344, 544),
+    "nylon | double braid | 3/4 in | new": ("6", 4011, 1623.5),
+    "nylon | double braid | 1 in | new": ("6", 5376, 2520),
+    "nylon | double braid | 1 1/4 in | new": ("6", 5376, 2520),
+}
+RUNS = "a regression over runs that are not printed"
+
+
+def centre_stiffness(pages: Pages, row: str) -> float:
+    """K_0 [lb] of a new line at the centre of its mean loads."""
+    table, tension, _ = CENTRE_LINES[row]
+    if table == "slope":
+        return pages.slope("8", row, tension)
+    return pages.polynomial(table, row, tension)
+
+
+def item_of_surface(cell: Cell, pages: Pages) -> Item:
+    """Verdict on a cell of Tables 3-5 and 11-19."""
+    quantity, _, term = cell.column.partition(" ")
+    if term == "r2":
+        return _share(cell, pages)
+    if term == "F-stat":
+        return _statistic(cell, pages)
+    if term == "F-crit":
+        found = statistics_from_r2(0.9, n_runs=15, n_terms=10)
+        scale = float(found.printed_f / found.f)
+        return judge(
+            cell, float(found.critical) * scale,
+            "F(.05; 9, 5) on the scale of the printed statistic; printed is F(.05; 4, 10)",
+        )  # fmt: skip
+    if term == "number of lines":
+        return _count(cell, pages)
+    if term == "change":
+        return _change(cell, pages)
+    if term.endswith((" low", " high")):
+        return _range(cell, pages)
+    if term.startswith("B") and quantity in TABLES_OF:
+        return _coefficient(cell, pages, quantity, term)
+    return not_testable(cell, "a head of the table")
+
+
+def _twin(cell: Cell, pages: Pages, quantity: str) -> Cell | None:
+    """The same number in another table, unless that print is known to be wrong."""
+    tables = TABLES_OF[quantity]
+    if quantity == K_1 and cell.row == f"{POLYESTER_BRAID} | new":
+        # three prints: Table 11 repeats this column under the head of the energy
+        copied = pages.by_key[("11", cell.row, cell.column.replace(K_1, ENERGY))]
+        own = pages.by_key.get(("14" if cell.table == "16" else "16", cell.row, cell.column))
+        return own if own is not None and number(own) == number(copied) else copied
+    for table in tables:
+        other = pages.by_key.get((table, cell.row, cell.column))
+        if table != cell.table and other is not None and other.confidence in ("", "open"):
+            return other
+    return None
+
+
+def _coefficient(cell: Cell, pages: Pages, quantity: str, term: str) -> Item:
+    twin = _twin(cell, pages, quantity)
+    if twin is not None:
+        return judge(cell, number(twin), f"Table {twin.table}")
+    if cell.erratum == "CG-6":
+        return beside(
+            cell, _energy_by_mean_load(pages, cell.row),
+            f"{RUNS}; half the difference of H at (0, +1, 0) and (0, -1, 0) by the equations",
+        )  # fmt: skip
+    if term != "B1" or cell.row not in CENTRE_LINES:
+        return _exposed_time(cell, pages, quantity, term)
+    recomputed = _centre(pages, cell.row, quantity)
+    return beside(cell, recomputed, f"{RUNS}; the equations at the centre give the number beside")
+
+
+def _centre(pages: Pages, row: str, quantity: str) -> float:
+    """What eqs. 1 and 4 as corrected make of the three other printed means."""
+    _, _, amplitude = CENTRE_LINES[row]
+    rest = centre_stiffness(pages, row)
+    table = {K_AP: "3", ENERGY: "11", K_1: "14", TIME: "17"}
+    mean = {name: pages.value(table[name], row, f"{name} B1") for name in table}
+    if quantity in (K_AP, ENERGY):
+        line = {
+            "quasi_static_spring_constant": rest,
+            "dissipation_spring_constant": 1e4 * mean[K_1],
+            "relaxation_time": mean[TIME],
+            "frequency": 0.3,
+        }
+        if quantity == K_AP:
+            return float(apparent_spring_constant(**line)) / 1e4
+        return float(hysteresis_energy(tension_amplitude=amplitude, **line))
+    return _solved(mean[K_AP], mean[ENERGY], amplitude, rest)[quantity == TIME]
+
+
+def _energy_by_mean_load(pages: Pages, row: str) -> float:
+    """Linear effect of mean load on H by eq. 4, from K_1, tau and the slow pull."""
+    level = "nylon | double braid | 1/2 in, 3/4 in | new"
+    strength = pages.value("1", row, "rated_break_strength") / 100
+    energy = []
+    for end in ("low", "high"):
+        coded = model_matrix([[0.0, 1.0 if end == "high" else -1.0, 0.0]], quadratic_exponents(3))
+        mean = {K_1: pages.surface("14", row, K_1), TIME: pages.surface("17", row, TIME)}
+        found = hysteresis_energy(
+            quasi_static_spring_constant=pages.slope(
+                "8", row, strength * pages.value("1", level, f"mean_tension {end}")
+            ),
+            dissipation_spring_constant=1e4 * (coded @ mean[K_1]),
+            relaxation_time=coded @ mean[TIME],
+            frequency=0.3,
+            tension_amplitude=CENTRE_LINES[row][2],
+        )
+        energy.append(float(found[0]))
+    return (energy[1] - energy[0]) / 2
+
+
+def _solved(stiffness: float, energy: float, amplitude: float, rest: float) -> tuple[float, float]:
+    """K_1 [1e4 lb] and tau [s] from the loop."""
+    line = identify_by_amplitude(
+        apparent_spring_constant=1e4 * stiffness,
+        hysteresis_energy=energy,
+        tension_amplitude=amplitude,
+        frequency=0.3,
+        quasi_static_spring_constant=rest,
+    )
+    return float(line.dissipation_spring_constant) / 1e4, float(line.relaxation_time)
+
+
+def _exposed_time(cell: Cell, pages: Pages, quantity: str, term: str) -> Item:
+    """K_1 and tau of exposed lines beside those solved from their own K_ap and H."""
+    exposed = {
+        f"{NYLON_PLAITED} | 5 years": ("4", "12", 1209.6, 489.6),
+        f"{POLYESTER_BRAID} | 5 years": ("5", "13", 1470.0, 595.0),
+    }
+    if term != "B1" or quantity not in (K_1, TIME) or cell.row not in exposed:
+        return not_testable(cell, RUNS)
+    stiff, lossy, tension, amplitude = exposed[cell.row]
+    rest = pages.polynomial("7", cell.row.replace("5 years", "field exposure"), tension)
+    solved = _solved(
+        pages.value(stiff, cell.row, f"{K_AP} B1"),
+        pages.value(lossy, cell.row, f"{ENERGY} B1"),
+        amplitude,
+        rest,
+    )
+    return beside(
+        cell, solved[quantity == TIME],
+        f"{RUNS}; Tables {stiff}, {lossy} and 7 with the equations give the number beside",
+    )  # fmt: skip
+
+
+def _f_of(r2: float) -> float:
+    return float(statistics_from_r2(r2, n_runs=15, n_terms=10).printed_f)
+
+
+def _share(cell: Cell, pages: Pages) -> Item:
+    f = pages.cell(cell.table, cell.row, cell.column.replace("r2", "F-stat"))
+    if cell.confidence == "certain":
+        return judge(cell, number(_true_column(cell, pages)), "Table 13, new")
+    statistic = number(f)
+    # the statistic is 4/10 of the odds of r2
+    share = float(statistic / (statistic + _f_of(0.5)))
+    return judge(cell, share, "the printed F, of 10 and 4 degrees of freedom")
+
+
+def _true_column(cell: Cell, pages: Pages) -> Cell:
+    return pages.cell("13", cell.row, cell.column)
+
+
+def _statistic(cell: Cell, pages: Pages) -> Item:
+    quantity = cell.column.partition(" ")[0]
+    if cell.erratum == "CG-5":
+        return judge(cell, number(_true_column(cell, pages)), "Table 13, new")
+    r2 = pages.cell(cell.table, cell.row, cell.column.replace("F-stat", "r2"))
+    half = 0.5 * printed_step(r2.printed)
+    allowed = rounding(_f_of, [number(r2)], [half]) + 0.5 * printed_step(cell.printed)
+    by_share = judge(
+        cell, _f_of(number(r2)),
+        "r2 with 10 and 4 degrees of freedom, which counts the mean twice", tolerance=allowed,
+    )  # fmt: skip
+    twin = _twin(cell, pages, quantity)
+    if by_share.verdict != "reproduced" or twin is None:
+        return by_share
+    finer = max(printed_step(cell.printed), printed_step(twin.printed))
+    return judge(cell, number(twin), f"Table {twin.table}, and r2", tolerance=0.5 * finer)
+
+
+def _count(cell: Cell, pages: Pages) -> Item:
+    for table in ("4", "5", "12", "13"):
+        for quantity in (K_AP, ENERGY):
+            other = pages.by_key.get((table, cell.row, f"{quantity} number of lines"))
+            if other is not None and table != cell.table:
+                return judge(cell, number(other), f"Table {table}")
+    strength = pages.by_key.get(("10", cell.row, "tensile_strength number of samples"))
+    if strength is None:
+        return not_testable(cell, "a count that no other table prints")
+    return judge(cell, number(strength), "samples of Table 10")
+
+
+def _change(cell: Cell, pages: Pages) -> Item:
+    quantity = cell.column.partition(" ")[0]
+    change = change_of_mean(pages, cell.table, cell.row, quantity)
+    if change is None:
+        return not_testable(cell, "the column of the exposed line is lost in the text")
+    value, how = change
+    return judge(cell, value, how)
+
+
+def change_of_mean(pages: Pages, table: str, row: str, quantity: str) -> tuple[float, str] | None:
+    """Per cent by which B1 of an exposed line is above that of the new one.
+
+    Four and five years of the polyester braid count together, weighted by their lines.
+    """
+    new = row.rpartition(" | ")[0] + " | new"
+    column, lines = f"{quantity} B1", f"{quantity} number of lines"
+    if (table, row, column) not in pages.by_key:
+        return None
+    exposed = [row]
+    if row.startswith(POLYESTER_BRAID):
+        exposed = [row.replace("5 years", years) for years in ("4 years", "5 years")]
+    means = [pages.value(table, one, column) for one in exposed]
+    counts = [pages.printed(table, one, lines) for one in exposed]
+    together = float(np.average(means, weights=counts))
+    how = "B1 of four and five years, weighted by lines" if len(exposed) == 2 else "B1"
+    return 100 * (together / pages.value(table, new, column) - 1), f"{how} over B1 of the new line"
+
+
+def _range(cell: Cell, pages: Pages) -> Item:
+    _, what, end = cell.column.split(" ")
+    large = "1 in" in cell.row or "1 1/4 in" in cell.row
+    sizes = "1 in, 1 1/4 in" if large else "1/2 in, 3/4 in"
+    level = f"nylon | double braid | {sizes} | new"
+    share = pages.value("1", level, f"{what} {end}")
+    if what == "frequency":
+        return judge(cell, share, "Table 1")
+    strength, source = _strength(cell, pages)
+    return judge(cell, share / 100 * strength, f"{share:g} % of {strength:g} lb, {source}")
+
+
+def _strength(cell: Cell, pages: Pages) -> tuple[float, str]:
+    """Rated break strength that the levels are of; the other one where two are printed."""
+    if cell.row.startswith(POLYESTER_BRAID):
+        if cell.table in ("3", "11"):
+            return pages.printed("2", f"{POLYESTER_BRAID} | all", "rated_break_strength"), "Table 2"
+        return pages.printed("10", f"{POLYESTER_BRAID} | new", "tensile_strength mean"), "Table 10"
+    line = cell.row.rpartition(" | ")[0]
+    if line.startswith("nylon | double braid"):
+        size = "nylon | double braid | 1 in" if "1 1/4" in line else line
+        return pages.printed("1", f"{size} | new", "rated_break_strength"), "Table 1"
+    return pages.printed("2", f"{line} | all", "rated_break_strength"), "Table 2"
