@@ -1,0 +1,261 @@
+"""Zhang (2015) again: what goes into its tables, and what its text says.
+
+Settings follow from the tables that were made with them; Tables 5 to 8 are in
+`reduction.reproduce.wave_tables`, equations in `reduction.reproduce.wave_equations`.
+
+References
+----------
+.. [1] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
+   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
+   Petroleum Eng. J., vol. 8, 2015.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+from scipy.optimize import brentq
+
+from reduction.predict.breaking import breaking_height
+from reduction.predict.dispersion import STANDARD_GRAVITY, wave_period_of
+from reduction.predict.immersion import immerse_hose
+from reduction.predict.zhang2015 import DRAG_COEFFICIENT, INERTIA_COEFFICIENT, WATER_DENSITY
+from reduction.published.cell import Cell
+from reduction.published.read import cells_of, table_of
+from reduction.reproduce.answers import Answer, Answers, items_from
+from reduction.reproduce.item import Item
+from reduction.reproduce.wave_equations import equation_answers
+from reduction.reproduce.wave_tables import table_answers
+
+__all__ = ["items"]
+
+_HOSE = {
+    "outer_diameter": 114.0,
+    "wall_thickness": 6.0,
+    "water_density": 1.025,
+    "wall_density": 1.25,
+    "content_density": 0.83,
+}
+"""Table 3, in millimetres and g/cm3."""
+_SYMBOLS = {
+    "wall_thickness": "d",
+    "water_density": "rho1",
+    "wall_density": "rho2",
+    "content_density": "rho3",
+}
+_IMMERSION = 95.1
+_LENGTH, _PERIOD, _SPEED, _HEIGHT = 20.0, 3.57, 5.6, 1.25
+_NUMBER, _FREQUENCY = 2 * pi / _LENGTH, 2 * pi / _PERIOD
+_GRAVITY = 9.8  # not printed
+_DIAMETER = 0.114
+_AIRY, _STOKES = "Airy wave theory", "Stokes wave theory"
+_EXAMPLES = {"example of the Airy theory": 6.0, "example of the Stokes theory": 3.0}
+_HALF_DIGIT = 0.005  # of the loads of Table 7
+
+
+def items() -> list[Item]:
+    """One item for every printed number of the paper.
+
+    Returns
+    -------
+    items : list of Item
+        In the order of its cells.
+    """
+    answers = _conditions() | _hose() | _waves() | _coefficients() | _depths() | _claims()
+    return items_from("Zhang-2015", answers | table_answers() | equation_answers())
+
+
+def _conditions() -> Answers:
+    """Tables 1 and 2."""
+    quoted = "quoted from another book"
+    conical = "conical and solitary wave theory"
+    neighbour = "the limit of the neighbouring theory"
+    depth, end = "relative depth d/L, from", "relative depth d/L, to"
+    limit = float(breaking_height(_NUMBER, 0.2 * _LENGTH)) / _LENGTH
+    answers: Answers = {
+        ("1", _AIRY, depth): Answer(0.2, neighbour),
+        ("1", _STOKES, end): Answer(0.2, neighbour),
+        ("1", _STOKES, depth): Answer(0.1, neighbour),
+        ("1", conical, end): Answer(0.1, neighbour),
+        ("1", _AIRY, "steepness H/L, to"): quoted,
+        ("1", _STOKES, "steepness H/L, from"): Answer(
+            limit, "the steepest wave there is before it breaks, at d/L = 0.2"
+        ),
+    }
+    for cell in _cells("1"):
+        answers.setdefault(cell.key, quoted)
+    return answers | {cell.key: "measured by others, and quoted" for cell in _cells("2")}
+
+
+def _cells(table: str) -> list[Cell]:
+    return [cell for cell in cells_of("Zhang-2015") if cell.table == table]
+
+
+def _hose() -> Answers:
+    """Table 3 from the immersion of (11), and (11) from Table 3."""
+    hose = "floating pipeline"
+    share = 0.834
+    answers: Answers = {
+        ("3", hose, "outer_diameter D"): Answer(
+            _IMMERSION / share,
+            "h over h/D of (11), which are rounded",
+            tolerance=0.05 / share + _IMMERSION / share**2 * 0.0005,
+        )
+    }
+    for name, symbol in _SYMBOLS.items():
+        value, low, high = (_needed(name, _IMMERSION + half) for half in (0.0, -0.05, 0.05))
+        answers["3", hose, f"{name} {symbol}"] = Answer(
+            value,
+            "what h = 95.1 mm needs with the others; the tolerance is that of h",
+            tolerance=max(abs(high - value), abs(low - value)),
+        )
+    depth, area = _immersed(**_HOSE)
+    how = "floating position of the hose of Table 3"
+    return answers | {
+        ("eq 11", hose, "immersion_depth h"): Answer(depth, how),
+        ("eq 11", hose, "immersion_depth over outer_diameter h/D"): Answer(
+            depth / _HOSE["outer_diameter"], how
+        ),
+        ("eq 11", hose, "submerged_section_area S1"): Answer(area, how),
+        ("sec 5", hose, "immersed share of the diameter"): Answer(
+            100 * depth / _HOSE["outer_diameter"], how
+        ),
+    }
+
+
+def _immersed(
+    *,
+    outer_diameter: float,
+    wall_thickness: float,
+    water_density: float,
+    wall_density: float,
+    content_density: float,
+) -> tuple[float, float]:
+    """Depth [mm] and area under water [m2]."""
+    found = immerse_hose(
+        outer_diameter=outer_diameter / 1000,
+        wall_thickness=wall_thickness / 1000,
+        water_density=1000 * water_density,
+        wall_density=1000 * wall_density,
+        content_density=1000 * content_density,
+    )
+    return 1000 * float(found.immersion_depth), float(found.submerged_section_area)
+
+
+def _needed(name: str, immersion: float) -> float:
+    def miss(value: float) -> float:
+        return _immersed(**(_HOSE | {name: value}))[0] - immersion
+
+    return float(brentq(miss, 0.95 * _HOSE[name], 1.05 * _HOSE[name], xtol=1e-12))
+
+
+def _waves() -> Answers:
+    """Table 4."""
+    waves = "level 4 waves"
+    at_6 = float(wave_period_of(_NUMBER, 6.0))
+    return {
+        ("4", waves, "wave_length L"): Answer(
+            STANDARD_GRAVITY * _PERIOD**2 / (2 * pi), "that of 3.57 s in deep water, g T2 / 2 pi"
+        ),
+        ("4", waves, "wave_period T"): Answer(
+            at_6, "linear dispersion of 20 m at 6 m depth; 4.17 s at 3 m; 20 m / 5.6 m/s is 3.57"
+        ),
+        ("4", waves, "angular_frequency omega"): Answer(_FREQUENCY, "2 pi / 3.57 s"),
+        ("4", waves, "phase speed c"): Answer(_LENGTH / _PERIOD, "20 m / 3.57 s"),
+        ("4", waves, "wave_height H"): Answer(
+            _HEIGHT * _load("Airy theory, t = 0.00 s", "vertical load F0") / -_inertia(),
+            "vertical F0 at t = 0 in Table 7, where there is no drag",
+        ),
+    }
+
+
+def _load(row: str, column: str) -> float:
+    return table_of("Zhang-2015", "7")[row, column].value or float("nan")
+
+
+def _inertia() -> float:
+    """Greatest vertical inertia load of the whole cylinder in an Airy wave. [N/m]."""
+    area = pi * _DIAMETER**2 / 4
+    return INERTIA_COEFFICIENT * WATER_DENSITY * area * _HEIGHT * _FREQUENCY**2 / 2
+
+
+def _drag(velocity: float) -> float:
+    return 0.5 * DRAG_COEFFICIENT * WATER_DENSITY * _DIAMETER * velocity * abs(velocity)
+
+
+def _coefficients() -> Answers:
+    """(12), and the level of the velocities, from Table 7 at t = 0: all drag or all inertia."""
+    crest = _HEIGHT * _GRAVITY * _NUMBER / (2 * _FREQUENCY)
+    along = _load("Airy theory, t = 0.00 s", "horizontal load F0")
+    upwards = _load("Airy theory, t = 0.00 s", "vertical load F0")
+    share = float(np.sqrt(along / _drag(crest)))
+    deep = _NUMBER * 6.0
+    level = (float(np.arccosh(share * np.cosh(deep))) - deep) / _NUMBER
+    # a load goes with the squared velocity
+    slack = _HALF_DIGIT / (2 * along) / (_NUMBER * float(np.tanh(deep)))
+    return {
+        ("eq 12", "all examples", "drag_coefficient C_D"): Answer(
+            DRAG_COEFFICIENT * along / _drag(crest), "horizontal F0 at t = 0 in Table 7"
+        ),
+        ("eq 12", "all examples", "inertia_coefficient C_M"): Answer(
+            INERTIA_COEFFICIENT * upwards / -_inertia(), "vertical F0 at t = 0 in Table 7"
+        ),
+        ("sec 3", "velocity and acceleration of the water", "elevation at which they are taken"):
+            Answer(
+                1000 * level,
+                "horizontal F0 at t = 0 in Table 7, whose rounding is the tolerance; "
+                "the centre of the hose is at -38.1 mm",
+                tolerance=1000 * slack,
+            ),
+    }  # fmt: skip
+
+
+def _depths() -> Answers:
+    """Depths of the examples, from the inertia loads that depend on them."""
+    time, load = 0.9, _load("Airy theory, t = 0.90 s", "horizontal load F0")
+    crest = _HEIGHT * _GRAVITY * _NUMBER / (2 * _FREQUENCY)
+    phase = -_FREQUENCY * time
+    coth = (load - _drag(crest * float(np.cos(phase)))) / (_inertia() * float(np.sin(phase)))
+    second = -_load("Stokes theory, t = 0.00 s", "vertical load F0") / _inertia() - 1
+
+    def miss(depth: float) -> float:
+        deep = _NUMBER * depth
+        return float(1.5 * pi * _HEIGHT / _LENGTH * np.sinh(2 * deep) / np.sinh(deep) ** 4) - second
+
+    airy, stokes = _EXAMPLES
+    answers: Answers = {
+        ("sec 5.1", airy, "water_depth"): Answer(
+            float(np.arctanh(1 / coth)) / _NUMBER,
+            "horizontal F0 at 0.90 s in Table 7, nearly all inertia",
+        ),
+        ("sec 5.2", stokes, "water_depth"): Answer(
+            float(brentq(miss, 1.0, 10.0)),
+            "vertical F0 at t = 0 in Table 7: inertia of both harmonics",
+        ),
+    }
+    for section in ("sec 5.3", "conclusion"):
+        for example, depth in _EXAMPLES.items():
+            answers[section, example, "water_depth"] = Answer(
+                depth, "printed in sec 5.1 and 5.2 too"
+            )
+    return answers
+
+
+def _claims() -> Answers:
+    ratios = [cell.value or 0.0 for cell in _cells("7") if cell.column.endswith("ratio P")]
+    averages = [cell.value or 0.0 for cell in _cells("8") if cell.row == "average"]
+    table_1 = "a limit of d/L in Table 1 times the wave length of Table 4"
+    return {
+        ("sec 2", "Morison's equation", "greatest size of the structure over the wave length"):
+            "a convention of the field; the hose has 0.006",
+        ("sec 5", "Airy theory", "water depth, from"): Answer(0.2 * _LENGTH, table_1),
+        ("sec 5", "Stokes theory", "water depth, from"): Answer(0.1 * _LENGTH, table_1),
+        ("sec 5", "Stokes theory", "water depth, to"): Answer(0.2 * _LENGTH, table_1),
+        ("sec 5.3", "ratio P of all loads", "maximum"): Answer(
+            max(ratios), "the greatest P of Table 7, Stokes theory at 4.00 s"),
+        ("sec 5.3", "ratio P of all loads", "greatest average"): Answer(
+            max(averages), "the greatest average of Table 8, P3, with all its rows"),
+        ("conclusion", "wave loads", "improvement of the accuracy"): Answer(
+            averages[0], "P1 of Table 8, the one average that stands; the others are 10 to 17 %"),
+    }  # fmt: skip
