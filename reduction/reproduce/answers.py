@@ -33,12 +33,15 @@ class Answer:
         What the rounding of the inputs does, where they are rounded.
     bound : {"", "below", "above"}
         The page says that a number is below, or above, the printed one: ``less than 2 %``.
+    meaning : float, optional
+        Of printed words that hold no number: 1 for ``the same``.
     """
 
     value: float
     how: str
     tolerance: float | None = None
     bound: Literal["", "below", "above"] = ""
+    meaning: float | None = None
 
 
 Answers = dict[Key, Answer | str]
@@ -79,6 +82,8 @@ def _item(cell: Cell, answers: Mapping[Key, Answer | str]) -> Item:
     if isinstance(answer, str):
         return not_testable(cell, answer)
     printed = number_of(cell.printed)
+    if answer.meaning is not None and abs(answer.meaning - answer.value) <= _ROUND_OFF:
+        return Item(cell, answer.value, "reproduced", answer.how)
     if answer.bound and printed is not None:
         slack = answer.value - printed if answer.bound == "below" else printed - answer.value
         return Item(cell, answer.value, "reproduced" if slack <= 0 else "unexplained", answer.how)

@@ -1,0 +1,242 @@
+"""Equations of Wang (2022) against the rods and the spring of the package.
+
+The paper does not give the core radius; an answer that hung on it would be none, and all are
+quotients in which it goes out.
+
+References
+----------
+.. [1] H. Wang, Z. Yang, J. Yan, G. Wang, D. Shi, B. Zhou and Y. Li, "Prediction Method and
+   Validation Study of Tensile Performance of Reinforced Armor Layer in Marine Flexible
+   Pipe/Cables," J. Mar. Sci. Eng., vol. 10, 642, 2022.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from reduction.predict.armour import predict_armour
+from reduction.predict.armourdesign import ArmourDesign, ArmourTheory
+from reduction.predict.armouryield import layer_strength
+from reduction.record import Floats
+from reduction.reproduce.answers import Answer, Answers
+
+__all__ = ["ELASTIC_MODULUS", "POISSON_RATIO", "armour", "equation_answers", "response"]
+
+ELASTIC_MODULUS, POISSON_RATIO = 210_000e6, 0.3
+"""Table 1; the modulus in [Pa]."""
+_WIRE, _STRAIN = 2.5e-3, 1e-3  # sections 4.1 and 4.2
+_HELIX = 27.5e-3  # assumed
+_DEGREES = 20.0
+_BENDING, _TORSION = "bending moment G'", "torsion moment H"
+
+
+def armour(degrees: float | Floats, *, wire: float = _WIRE) -> ArmourDesign:
+    """Steel wires of the paper on a core that it does not give.
+
+    Parameters
+    ----------
+    degrees : float or ndarray
+        Winding angle. [deg]
+    wire : float
+        Radius of the wire, at one radius of the helix. [m]
+
+    Returns
+    -------
+    design : ArmourDesign
+        Of the shape of the angles.
+    """
+    return ArmourDesign(
+        np.radians(degrees), wire, _HELIX - wire, ELASTIC_MODULUS, poisson_ratio=POISSON_RATIO
+    )
+
+
+def response(
+    degrees: float | Floats,
+    quantity: str,
+    *,
+    theory: ArmourTheory = "intermediate",
+    wire: float = _WIRE,
+) -> Floats:
+    """One quantity of a wire at the strain of the paper.
+
+    Parameters
+    ----------
+    degrees : float or ndarray
+        Winding angle. [deg]
+    quantity : str
+        Of `reduction.predict.armourdesign.ArmourResponse`.
+    theory : ArmourTheory
+        Which.
+    wire : float
+        Radius of the wire. [m]
+
+    Returns
+    -------
+    values : ndarray
+        Of the shape of the angles.
+    """
+    found = predict_armour(armour(degrees, wire=wire), _STRAIN, theory=theory)
+    return np.asarray(getattr(found, quantity)[..., 0])
+
+
+def equation_answers() -> Answers:
+    """Answers to the factors and the powers of equations (2) to (29), and of section 5.3.
+
+    Returns
+    -------
+    answers : Answers
+        By cell.
+    """
+    return _geometry() | _stiffness() | _intermediate() | _stresses() | _small() | _spring()
+
+
+def _at(quantity: str, theory: ArmourTheory = "intermediate", degrees: float = _DEGREES) -> float:
+    return float(response(degrees, quantity, theory=theory))
+
+
+def _trigonometry(degrees: float = _DEGREES) -> tuple[float, float, float]:
+    angle = np.radians(degrees)
+    return float(np.sin(angle)), float(np.cos(angle)), float(np.tan(angle))
+
+
+def _power(variable: Floats, value: Floats) -> float:
+    return float(np.log(value[1] / value[0]) / np.log(variable[1] / variable[0]))
+
+
+def _geometry() -> Answers:
+    angle = np.radians([30.0, 60.0])
+    pitch, curvature = [], []
+    for one in angle:
+        along = 1 / np.tan(one)
+        pitch.append(2 * pi * along)
+        first, second = np.array([0.0, 1.0, along]), np.array([-1.0, 0.0, 0.0])
+        curvature.append(np.linalg.norm(np.cross(first, second)) / np.linalg.norm(first) ** 3)
+    helix = "a helix whose angle is from the axis, as sections 1 and 3 have it"
+    change = _at("angle_change", "exact")
+    current = _at("current_winding_angle", "exact")
+    wire_strain = _at("wire_strain", "exact")
+    ratio = float(np.cos(current) / np.cos(np.radians(_DEGREES)))
+    second_order = (ratio - (1 + _STRAIN - wire_strain)) / (wire_strain * (wire_strain - _STRAIN))
+    return {
+        ("sec 2", "thread pitch h", "power of tan(alpha)"): Answer(
+            _power(np.tan(angle), np.array(pitch)), helix, tolerance=1e-9),
+        ("eq 2", "curvature", "power of sin(alpha)"): Answer(
+            _power(np.sin(angle), np.array(curvature)), helix),
+        ("eq 9", "change of the winding angle", "sign of its definition, current less rest"):
+            Answer((current - float(np.radians(_DEGREES))) / change, "exact helix", tolerance=1e-9),
+        ("eq 10", "axial and rotation strain", "equations that are linearised, from"): Answer(
+            7.0, "strain and rotation are (7) and (8); (9) is a cosine"),
+        ("eq 21", "current over rest cosine, small angles",
+         "factor of the second order, wire strain x (wire strain - strain)"): Answer(
+            second_order, "exact helix at a strain of 0.001", tolerance=10 * _STRAIN),
+    }  # fmt: skip
+
+
+def _stiffness() -> Answers:
+    whole = pi * _WIRE**4 * ELASTIC_MODULUS
+    design = armour(_DEGREES)
+    round_wire = "stiffness of a round wire"
+    return {
+        ("eq 4", _BENDING, "divisor of pi R2^4 E"): Answer(
+            whole / float(design.bending_stiffness), round_wire + " in bending"),
+        ("eq 4", _TORSION, "divisor of pi R2^4 E"): Answer(
+            whole / float(design.torsion_stiffness), round_wire + " in torsion, E / (2 (1 + nu))"),
+    }  # fmt: skip
+
+
+def _intermediate() -> Answers:
+    how = "theory of intermediate angles of the package"
+    sine, cosine, tangent = _trigonometry()
+    pair = np.array([20.0, 50.0])
+    tangents = np.tan(np.radians(pair))
+    strain = response(pair, "wire_strain") / _STRAIN
+    change = response(pair, "angle_change") / (_STRAIN * tangents)
+    common = _STRAIN * tangent / (1 + tangent**2)
+    curvature, torsion = _at("curvature_change") * _HELIX, _at("torsion_change") * _HELIX
+    moment = ELASTIC_MODULUS * pi * _WIRE**4 * _STRAIN / _HELIX
+    share = moment * cosine**2 * tangent**2 / (1 + tangent**2)
+    answers: Answers = {
+        ("eq 12", "wire strain", "power of tan(alpha)"): Answer(
+            _power(tangents, 1 / strain - 1), how),
+        ("eq 13", "change of the winding angle", "power of tan(alpha) in the divisor"): Answer(
+            _power(tangents, -1 / change - 1), how),
+        ("eq 14", "change of curvature", "factor"): Answer(
+            curvature / (sine * cosine * common), how),
+        ("eq 15", "change of torsion", "factor of the squared cosine"): Answer(
+            (1 - torsion / common) / cosine**2, how),
+        ("eq 16", _BENDING, "divisor"): Answer(-share / _at("bending_moment"), how),
+    }  # fmt: skip
+    for degrees in (20.0, 80.0):
+        at = f"at {degrees:g} deg"
+        answers["eq 16", _TORSION, f"over E pi R2^4 strain / r, {at}"] = Answer(
+            _at("torsion_moment", degrees=degrees) / moment, how
+        )
+        answers["eq 16", "shear force N'", f"over E pi R2^4 strain / (4 r^2), {at}"] = Answer(
+            4 * _HELIX * _at("shear_force", degrees=degrees) / moment, how
+        )
+    return answers
+
+
+def _stresses() -> Answers:
+    how = "theory of intermediate angles of the package"
+    _, cosine, tangent = _trigonometry()
+    section = pi * _WIRE**3
+    size = ELASTIC_MODULUS * _WIRE * _STRAIN / _HELIX
+    bending, torsion = _at("bending_stress"), _at("torsion_stress")
+    share = cosine**2 * tangent**2 / (1 + tangent**2)
+    bent, twisted = "stress of the bending moment", "stress of the torsion moment"
+    return {
+        ("eq 18", bent, "factor of G' / (pi R2^3)"): Answer(
+            bending * section / _at("bending_moment"), how),
+        ("eq 18", bent, "factor of E R2 strain"): Answer(bending / (size * share), how),
+        ("eq 19", twisted, "factor of H / (pi R2^3)"): Answer(
+            torsion * section / _at("torsion_moment"), how),
+        ("eq 19", twisted, "over E R2 strain / r, at 20 deg"): Answer(torsion / size, how),
+    }  # fmt: skip
+
+
+def _small() -> Answers:
+    how = "theory of small angles of the package"
+    sine, cosine, _ = _trigonometry()
+    pair = np.array([10.0, 20.0])
+    change = _at("angle_change", "small")
+    bending = _at("bending_moment", "small") / (pi / 4 * ELASTIC_MODULUS * _WIRE**4)
+    per_change = _at("torsion_change", "small") * _HELIX / change
+    wires = np.array([2e-3, 3e-3])
+    moments = [response(_DEGREES, "torsion_moment", theory="small", wire=one) for one in wires]
+    return {
+        ("eq 20", "wire strain, small angles", "power of cos(alpha)"): Answer(
+            _power(np.cos(np.radians(pair)), response(pair, "wire_strain", theory="small")), how),
+        ("eq 22", _BENDING, "factor"): Answer(bending * _HELIX / (sine * cosine * change), how),
+        ("eq 22", _TORSION, "power of R2"): Answer(_power(wires, np.array(moments)), how),
+        ("eq 22", _TORSION, "factor of the squared cosine, after 1"): Answer(
+            (per_change + 1) / cosine**2, how),
+    }  # fmt: skip
+
+
+def _spring() -> Answers:
+    how = "close-coiled spring of the package"
+    _, cosine, tangent = _trigonometry()
+    force = _at("tension", "large")
+    shear_modulus = ELASTIC_MODULUS / (2 * (1 + POISSON_RATIO))
+    constant = force / (_STRAIN * 2 * pi * _HELIX / tangent)
+    size = _STRAIN * ELASTIC_MODULUS * _WIRE**4 * pi / (_HELIX**2 * (1 + POISSON_RATIO) * tangent)
+    cosines = np.cos(np.radians([20.0, 80.0]))
+    strength = layer_strength(armour(np.array([20.0, 80.0])), 800e6)
+    answers: Answers = {
+        ("eq 24", "spring constant k", "divisor of G R2^4"): Answer(
+            shear_modulus * _WIRE**4 / _HELIX**3 / constant, how),
+        ("eq 25", "force of the spring f", "divisor"): Answer(size / force, how),
+        ("eq 28", "stress of the axial force of the spring", "divisor"): Answer(
+            size * cosine / (pi * _WIRE**2) / _at("axial_stress", "large"), how),
+        ("sec 5.3", "strength of the layer F", "power of cos(alpha)"): Answer(
+            _power(cosines, strength), "part of the axial force along the cable", tolerance=1e-9),
+    }  # fmt: skip
+    for degrees in (20.0, 80.0):
+        moment = _at("torsion_moment", "large", degrees)
+        answers["eq 26", f"{_TORSION} of the spring", f"over f r, at {degrees:g} deg"] = Answer(
+            moment / (_at("tension", "large", degrees) * _HELIX), how
+        )
+    return answers
