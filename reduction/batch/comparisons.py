@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from reduction import __version__
@@ -121,6 +122,7 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
                 needed="the archive of a reduced test with position and tension",
             )
         specimen, index = _specimen(path, archive, plan.specimen)
+        offset, scale = _of_strain(archive, index)
         comparison = compare_record(
             hose,
             archive["strain"].values[index],
@@ -130,7 +132,8 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
             branch=archive["branch"].values if "branch" in archive else None,
             break_in_cycles=_break_in(archive),
             tension_standard_uncertainty=_declared(archive, "tension", index),
-            strain_standard_uncertainty=_declared(archive, "strain", index),
+            strain_standard_uncertainty=offset,
+            strain_scale_standard_uncertainty=scale,
             calibrate=plan.calibrate,
         )
         return NamedComparison(plan.name, archive.attrs["test"], specimen, hose.name, comparison)
@@ -151,6 +154,23 @@ def _specimen(path: Path, archive: xr.Dataset, wanted: str) -> tuple[str, int]:
 def _declared(archive: xr.Dataset, name: str, index: int) -> float:
     spread = f"{name}_standard_uncertainty"
     return float(archive[spread].values[index]) if spread in archive else float("nan")
+
+
+def _of_strain(archive: xr.Dataset, index: int) -> tuple[float, float]:
+    """Standard uncertainty of strain that all samples share: as an offset, and as a share.
+
+    A gauge length scales every strain; what is left is the reading of position over it.
+    """
+    length = archive.get("strain_gauge_length")
+    if length is None or not np.isfinite(length.values[index]):
+        return _declared(archive, "strain", index), float("nan")
+    gauge = float(length.values[index])
+    position = "crosshead_position"
+    if "crosshead_displacement" in archive:
+        position = "crosshead_displacement"
+    spread = archive.get(f"{position}_standard_uncertainty")
+    offset = float("nan") if spread is None else float(spread) / gauge
+    return offset, _declared(archive, "strain_gauge_length", index) / gauge
 
 
 def _break_in(archive: xr.Dataset) -> int:

@@ -40,7 +40,8 @@ def _set_after_rest(
         return float("nan"), float("nan")
     first = earlier[0]
     pair = (first, survey)
-    if any(name not in entry.first_rise for entry in pair):
+    # a displacement from slack begins at zero again in every test
+    if any(name not in entry.first_rise or not entry.position_is_length for entry in pair):
         return float("nan"), float("nan")
     # one tension for both, so that the slope of the first rise does not enter
     slack = max(entry.slack_tension for entry in pair)
@@ -155,8 +156,8 @@ def history_of(
         of_name = [entry for entry in surveys if name in entry.plan.specimens]
         flex.append(_earlier_flex_cycles(earlier, survey, specimen.earlier_flex_cycles, of_name))
         model = models.get((survey.plan.id, name))
-        free = None if model is None else model.coefficients.get("relaxed_free_length")
-        left.append(_set_after_rest(survey, earlier, name, nothing if free is None else free))
+        free = nothing if model is None else model.relaxed_length
+        left.append(_set_after_rest(survey, earlier, name, free))
     return History(
         earlier_tests=tuple(tests),
         earlier_maximum_strain=np.array(strain),

@@ -82,7 +82,11 @@ def fit_pulls(
             located = located_again(campaign, survey)
             position, tension = located.position, located.tension
             strain = strain_of_record(located.record, position, tension, known)
-            found, _ = pull_specimens(located, strain, tension, pull_conditions(campaign, survey))
+            found, _ = pull_specimens(
+                located, strain, tension, pull_conditions(campaign, survey),
+                specimens=[campaign.specimens[name] for name in survey.plan.specimens],
+                models=known,
+            )  # fmt: skip
         except Exception as error:
             # one test's failure, even where it is a defect here
             errors[test] = as_reduction_error(error)

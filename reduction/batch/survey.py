@@ -56,6 +56,7 @@ class Survey:
     mark_tension_at_start: dict[str, Floats] = field(default_factory=dict)
     zero_strain_position: float | None = None
     has_extensometer: bool = False
+    position_is_length: bool = True
     greatest: dict[str, tuple[Floats, Floats]] = field(default_factory=dict)
     greatest_tension: dict[str, float] = field(default_factory=dict)
     greatest_measured_strain: dict[str, float] = field(default_factory=dict)
@@ -200,6 +201,7 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
     located = locate(record, kind=plan.kind, settings=plan.settings)
     survey = Survey(plan, sources, located, n_rows=record.n_samples)
     survey.has_extensometer = record.measured_strain is not None
+    survey.position_is_length = record.position_is_length
     survey.found = found_in(located)
     survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
     survey.greatest = _greatest(located)

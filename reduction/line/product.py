@@ -181,6 +181,11 @@ class SlowPull:
         printed: Floats = turn @ self.covariance @ turn.T
         return printed
 
+    @property
+    def misfit_share(self) -> float:
+        """``strain_misfit`` over the strain that the cubic gains along the pull. [1]."""
+        return self.strain_misfit / (2 * float(self.coefficient[1] + self.coefficient[3]))
+
     def _to_printed(self) -> Floats:
         """Matrix from coefficients of u to those of T."""
         turn = np.zeros((4, 4))

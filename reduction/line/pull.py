@@ -19,7 +19,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,7 +33,10 @@ from reduction.line.product import SlowPull
 from reduction.moduli.separable import lag_one_inflation
 from reduction.record import Floats, Integers
 
-__all__ = ["fit_pull"]
+__all__ = ["MISFIT_NOTED", "fit_pull"]
+
+# rms of what a cubic misses, over the strain of the pull: above it the curve is none
+MISFIT_NOTED = 0.01
 
 _BLOCKS = 100
 # degree that a load-strain curve may ask for beyond the cubic, and blocks that it needs
@@ -151,8 +154,14 @@ def _remarks(
     reference_strain: float,
     waiting: bool,
     cut: bool,
+    misfit: float,
 ) -> tuple[str, ...]:
     remarks = []
+    if misfit > MISFIT_NOTED:
+        remarks.append(
+            f"a cubic misses the load-strain curve by {misfit:.1%} of its strain (rms): strain "
+            "and K_0 by it are no values to design by"
+        )
     if fall > _FALL_NOTED:
         remarks.append(f"tension falls by {fall:.1%} of the rise on the way to the peak")
     if rates[2] > _UNEVEN_RATE * rates[1]:
@@ -293,7 +302,7 @@ def fit_pull(
         strain_there = float(at ** np.arange(4) @ coefficient)
         if abs(strain_there) > _OFF_ZERO * float(blocks.strain[-1] - blocks.strain[0]):
             begins = strain_there
-    return SlowPull(
+    pull = SlowPull(
         specimen=specimen,
         tension_centre=centre,
         tension_half_range=half,
@@ -319,7 +328,11 @@ def fit_pull(
         reference_tension=np.nan if reference_tension is None else reference_tension,
         polynomial_coefficient=polynomial,
         polynomial_deviation=deviation,
+    )
+    return replace(
+        pull,
         notes=_remarks(
+            misfit=pull.misfit_share,
             fall=fall,
             rates=rates,
             reference_length=length,

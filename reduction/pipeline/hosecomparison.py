@@ -40,6 +40,7 @@ def compare_record(
     break_in_cycles: int = 0,
     tension_standard_uncertainty: float = float("nan"),
     strain_standard_uncertainty: float = float("nan"),
+    strain_scale_standard_uncertainty: float = float("nan"),
     calibrate: Sequence[str] = (),
 ) -> Comparison:
     """Hold the prediction of a hose against one test.
@@ -58,6 +59,8 @@ def compare_record(
         First cycles that enter no mean.
     tension_standard_uncertainty, strain_standard_uncertainty : float
         As declared for the channels [N], [1]: taken as what all samples share.
+    strain_scale_standard_uncertainty : float
+        Of the relaxed length, as a share of it; NaN where not stated. [1]
     calibrate : sequence of str
         Numbers of the hose to be fitted.
 
@@ -91,6 +94,7 @@ def compare_record(
         shared=SharedUncertainty(
             tension_offset=_known(tension_standard_uncertainty),
             strain_offset=_known(strain_standard_uncertainty),
+            strain_scale=_known(strain_scale_standard_uncertainty),
         ),
     )
     return compare_hose(

@@ -31,6 +31,7 @@ def plausibility_notes(
     cycles: Cycles | None,
     loops: Loops | None,
     curves: ModulusCurves | None,
+    control: Literal["position", "load"] = "position",
     is_snap: bool = False,
 ) -> tuple[str, ...]:
     """Name what is hardly so: sign, unit of position, slack in cycles, waveform.
@@ -51,6 +52,8 @@ def plausibility_notes(
         Likewise.
     curves : ModulusCurves or None
         Likewise.
+    control : {"position", "load"}, optional
+        Channel that the machine moved, and whose wave was declared. [-]
     is_snap : bool, optional
         Whether each cycle is to go slack, so that one that does is no fault.
 
@@ -72,24 +75,43 @@ def plausibility_notes(
         slopes = None if curves is None else curves.tangent_modulus[index]
         slack = _taut if is_snap else _slack
         # of a channel of the wrong sign a valley says nothing about slack
-        notes += _shape(name, loops, index, waveform)
+        if waveform == "sinusoidal":
+            notes += _shape(name, loops, index, _half_range(strain[index], cycles), control)
         notes += _sign(name, loops.mean_tension[index], slopes) or slack(
             name, loops.valley_tension[index], slack_tension
         )
     return (*notes, *_waveform(cycles, waveform))
 
 
-def _shape(name: str, loops: Loops, index: int, waveform: str) -> list[str]:
-    """A sinusoidal test whose range is not that of its fundamental, from which numbers come."""
-    if waveform != "sinusoidal":
-        return []
-    half_range = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
-    excess = _median(half_range / loops.tension_amplitude[index]) - 1
+def _half_range(strain: Floats, cycles: Cycles) -> Floats:
+    """Half the range of strain within each cycle."""
+    ends = np.column_stack([cycles.first, cycles.last]).ravel()
+    stop = int(ends[-1]) + 1
+    high, low = (reduce.reduceat(strain[:stop], ends)[::2] for reduce in (np.fmax, np.fmin))
+    return np.asarray((high - low) / 2, dtype=np.float64)
+
+
+def _shape(name: str, loops: Loops, index: int, half_strain: Floats, control: str) -> list[str]:
+    """A sinusoidal test whose range is not that of its fundamental, from which numbers come.
+
+    The channel that the machine moved tells whether it moved in sines; the other one is no
+    sine where the curve of tension against strain bends or has a kink.
+    """
+    half_tension = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
+    of_strain = _median(half_strain / loops.strain_amplitude[index]) - 1
+    of_tension = _median(half_tension / loops.tension_amplitude[index]) - 1
+    moved, excess = ("tension", of_tension) if control == "load" else ("strain", of_strain)
+    if abs(excess) > _OFF_THE_SINE:
+        return [
+            f"{name}: declared sinusoidal, but half the range of {moved} is {excess:+.0%} off the "
+            "amplitude of its fundamental, which stands for it; is waveform right?"
+        ]
+    other, excess = ("strain", of_strain) if control == "load" else ("tension", of_tension)
     if not abs(excess) > _OFF_THE_SINE:
         return []
     return [
-        f"{name}: declared sinusoidal, but half the range of tension is {excess:+.0%} off the "
-        "amplitude of its fundamental, which stands for it; is waveform right?"
+        f"{name}: {moved} is a sine and {other} is none: half its range is {excess:+.0%} off the "
+        "amplitude of its fundamental, which stands for it"
     ]
 
 

@@ -105,8 +105,9 @@ def reduce_test(
         parts |= parts_of_line(parts["loops"], pulls, settings.cycles)
     if description.kind in PULLED:
         parts["pulls"], refused = pull_specimens(
-            located, strain, tension, pull_conditions or PullConditions()
-        )
+            located, strain, tension, pull_conditions or PullConditions(),
+            specimens=specimens, models=models,
+        )  # fmt: skip
         parts["notes"] = [*parts.get("notes", []), *refused]
     holds = reduce_holds(
         record.time, position, tension, strain, standstills,
@@ -117,9 +118,7 @@ def reduce_test(
         position,
         tension,
         slack_tension=standstills.slack_tension,
-        relaxed_free_length=np.array(
-            [model.coefficients.get("relaxed_free_length", np.nan) for model in models]
-        ),
+        relaxed_free_length=np.array([model.relaxed_length for model in models]),
     )
     notes = [note for specimen in specimens for note in check_constant_volume(specimen)]
     notes += parts.pop("notes", [])
@@ -132,8 +131,9 @@ def reduce_test(
         notes.append(_no_hold(standstills, settings))
     notes += plausibility_notes(
         strain, specimens=record.specimens, slack_tension=standstills.slack_tension,
-        waveform=settings.cycles.waveform, cycles=cycles, loops=parts.get("loops"),
-        curves=parts.get("curves"), is_snap=description.kind == "snap",
+        waveform=settings.cycles.waveform, control=settings.cycles.control, cycles=cycles,
+        loops=parts.get("loops"), curves=parts.get("curves"),
+        is_snap=description.kind == "snap",
     )  # fmt: skip
     notes += [
         f"{name}: {text}" for name, text in zip(record.specimens, remarks, strict=True) if text

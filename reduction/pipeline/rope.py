@@ -6,16 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from reduction.cycles.product import Loops
 from reduction.errors import DataError, FitError
 from reduction.line.identify import reasons_in_words
 from reduction.line.loops import identify_cycles, identify_run
 from reduction.line.product import SlowPull
-from reduction.line.pull import fit_pull
+from reduction.line.pull import MISFIT_NOTED, fit_pull
 from reduction.line.quasistatic import quasi_static_of_run
 from reduction.pipeline.locate import Located
-from reduction.record import Floats
+from reduction.record import Floats, Specimen
 from reduction.settings import CycleSettings
+from reduction.strain.model import StrainModel
 
 __all__ = ["PullConditions", "parts_of_line", "pull_specimens"]
 
@@ -36,25 +39,47 @@ class PullConditions:
 
 
 def pull_specimens(
-    located: Located, strain: Floats, tension: Floats, conditions: PullConditions
+    located: Located,
+    strain: Floats,
+    tension: Floats,
+    conditions: PullConditions,
+    *,
+    specimens: Sequence[Specimen],
+    models: Sequence[StrainModel],
 ) -> tuple[tuple[SlowPull | None, ...], list[str]]:
-    """Load-strain cubic of each specimen of a slow pull; None and a note where it has none."""
+    """Load-strain cubic of each specimen of a slow pull; None and a note where it has none.
+
+    A stretch hose has one only where it fits: one that softens, and stiffens again where its
+    cords pick up, would be designed by a slope that it has nowhere.
+    """
     pulls: list[SlowPull | None] = []
     notes: list[str] = []
     for index, name in enumerate(located.record.specimens):
+        length = conditions.reference_length
+        if length is None and np.isfinite(models[index].relaxed_length):
+            length = models[index].relaxed_length
         try:
             pull = fit_pull(
                 located.record.time, strain[index], tension[index], specimen=name,
                 reference_tension=conditions.reference_tension,
-                reference_length=conditions.reference_length,
+                reference_length=length,
                 waiting_time=conditions.waiting_time, waiting=conditions.waiting,
             )  # fmt: skip
         except (DataError, FitError) as error:
             notes.append(f"{name}: refused: quasi-static spring constant: {error}")
             pulls.append(None)
-        else:
-            notes += [f"{name}: {note}" for note in pull.notes]
-            pulls.append(pull)
+            continue
+        if specimens[index].kind == "stretch hose" and pull.misfit_share > MISFIT_NOTED:
+            notes.append(
+                f"{name}: refused: quasi-static spring constant: a cubic of strain misses the "
+                f"curve of this hose by {pull.misfit_share:.1%} of its strain (rms), more than "
+                f"{MISFIT_NOTED:.0%}; the curve stands in the samples, and a comparison with a "
+                "predicted hose has its slope"
+            )
+            pulls.append(None)
+            continue
+        notes += [f"{name}: {note}" for note in pull.notes]
+        pulls.append(pull)
     return tuple(pulls), notes
 
 

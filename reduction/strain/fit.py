@@ -26,6 +26,11 @@ from reduction.strain.remarks import remarks_on
 
 __all__ = ["fit_strain_model", "zero_strain_position"]
 
+_EXACT_LENGTH = (
+    "the gauge length counts as exact: its standard uncertainty is not stated, and that of strain "
+    "leaves it out"
+)
+
 
 def zero_strain_position(
     standstills: Standstills, *, position_is_length: bool, length_at_slack: float | None = None
@@ -81,7 +86,14 @@ def _without_marks(
         "reference_position": reference_position,
         "gauge_length": specimen.gauge_length,
     }
-    return StrainModel(specimen.name, "gauge-length", coefficients, np.zeros((2, 2)))
+    spread = specimen.gauge_length_standard_uncertainty
+    return StrainModel(
+        specimen.name,
+        "gauge-length",
+        coefficients,
+        np.diag([0.0, 0.0 if spread is None else spread**2]),
+        notes=(_EXACT_LENGTH,) if spread is None else (),
+    )
 
 
 def _default_method(
@@ -117,7 +129,7 @@ def fit_strain_model(
     Parameters
     ----------
     specimen : Specimen
-        Its ``gauge_length`` is used by that method.
+        Its ``gauge_length`` and that one's standard uncertainty are used by that method.
     test_id : str
         Test to which the model will be applied.
     marks : SpliceMarks, optional
@@ -160,7 +172,8 @@ def fit_strain_model(
     has none.  The relaxed lengths are means over all slack rows; only
     ``constant-fraction`` takes the test's own row, as the report does.
 
-    The covariance holds reading errors of the tape, which all samples share; not
+    The covariance holds reading errors of the tape, or the stated standard uncertainty of the
+    gauge length, which all samples share; not
     the choice of the method, which `strain_slope_ratio` and the residuals show.
 
     Examples

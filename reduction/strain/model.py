@@ -69,6 +69,12 @@ class StrainModel:
     strain_slope_ratio: float = float("nan")
     notes: tuple[str, ...] = ()
 
+    @property
+    def relaxed_length(self) -> float:
+        """Length that stretches, at zero strain; NaN where the method knows none. [m]."""
+        known = self.coefficients
+        return known.get("relaxed_free_length", known.get("gauge_length", float("nan")))
+
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze_arrays(self)

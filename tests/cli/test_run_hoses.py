@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 
 from reduction.archive.open import open_archive
+from reduction.batch.comparisons import compare_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
@@ -187,3 +188,51 @@ def test_a_comparison_of_a_test_that_failed_is_a_failure_of_its_own(tmp_path):
     assert by_name["H64-static"].status == "failed"
     assert "test 'L-64' failed" in by_name["H64-static"].message
     assert done.exit_status == 4
+
+
+def test_the_history_of_a_hose_holds_the_cycles_that_no_log_has(run):
+    table = pd.read_csv(run.processed / "tables" / "history.csv").set_index("test")
+    # WHOI-2004-06, sec. 3.0: 115,000 and 127,000
+    expected = {"S-64": 0, "L-64": 0, "D-64": 115_000, "B-64": 115_012, "S-68": 0, "D-68": 127_000}
+    assert {name: table.loc[name, "earlier_cycles [1]"] for name in expected} == expected
+    assert (table["earlier_flex_cycles [1]"] == 0).all()
+    # the generated hoses do not creep: what there is comes from the wider loop of the fast tests
+    left = table.loc[["L-64", "D-64", "B-64", "L-68", "D-68"], "permanent_set [1]"]
+    assert (left.abs() < 5e-3).all()
+    page = (run.reports / "index.html").read_text(encoding="utf-8")
+    assert "earlier flex cycles" in page
+
+
+@pytest.mark.parametrize("test", ["S-64", "L-64", "D-64", "B-64", "S-68", "L-68", "D-68"])
+def test_nothing_is_said_of_a_hose_as_if_it_were_rubber_or_marked(run, test):
+    with open_archive(run.processed / f"{test}.nc") as archive:
+        notes = " ".join(archive["note"].to_numpy().tolist())
+        assert "elastomer_law" not in archive and "stress_at_strain" not in archive
+        assert "tangent_modulus_first_loading" in archive
+        assert "softened" not in notes and "waveform right" not in notes
+        assert "relaxed free length is not known" not in notes
+        assert "length at which strain is zero" not in notes
+        if test != "B-64":
+            assert abs(archive["slack_strain_at_unloading"].to_numpy()[0]) < 0.02
+
+
+@pytest.mark.parametrize("test", ["S-64", "S-68", "B-64"])
+def test_no_cubic_is_given_of_a_curve_with_a_kink(run, test):
+    with open_archive(run.processed / f"{test}.nc") as archive:
+        assert "pull_strain_coefficient" not in archive
+        (note,) = [one for one in archive["note"].to_numpy() if "a cubic of strain misses" in str(one)]
+    assert str(note).startswith(f"hose-{test[2:]}: refused: quasi-static spring constant")
+
+
+def test_the_uncertainty_of_the_length_scales_every_strain_of_a_comparison(run):
+    plan = load_campaign(RAW / "campaign.toml")
+    of_test = compare_archive(
+        run.processed / "S-64.nc", plan.hoses["H64"], plan.comparisons["H64-pull"]
+    )
+    measured = of_test.comparison.measured
+    assert measured.source == ("tension_offset", "strain_offset", "strain_scale")
+    _, offset, scale = measured.contribution
+    # 0.05 in of 96 in, and a reading of 0.02 in over them, with one slope at each strain
+    steep = np.abs(offset) > 1e-6
+    expected = 0.05 / 96 * measured.strain[steep] / (0.02 / 96)
+    assert scale[steep] / offset[steep] == pytest.approx(expected, rel=1e-6)

@@ -347,3 +347,16 @@ class TestRun:
     def test_what_does_not_fit_is_refused(self, pulls, break_in):
         with pytest.raises(DataError, match="slow pulls do not fit the run"):
             quasi_static_of_run(loops_at([[1.0, 1.0]]), pulls, break_in_cycles=break_in)
+
+
+def test_a_curve_that_is_no_cubic_is_named_as_none_to_design_by():
+    # eight times as stiff from half of the strain on, as where the cords of a hose pick up
+    strain = np.linspace(0, 1, 2000)
+    kinked = 1000 * strain + 7000 * np.maximum(strain - 0.5, 0)
+    pull = fit_pull(np.arange(2000.0), strain, kinked, waiting="a day", reference_length=1.0)
+    (note,) = (one for one in pull.notes if "cubic misses" in one)
+    assert pull.misfit_share > 0.01
+    assert note.startswith(f"a cubic misses the load-strain curve by {pull.misfit_share:.1%}")
+    time, strain, load = rising(seed=3, noise=5.0)
+    smooth = fit_pull(time, strain, load, waiting="a day", reference_length=1.0)
+    assert smooth.misfit_share < 0.001 and smooth.notes == ()

@@ -9,7 +9,9 @@ from reduction.record import Specimen, SpliceMarks
 from reduction.settings import StrainSettings
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.fit import fit_strain_model, zero_strain_position
+from reduction.strain.model import StrainModel
 from reduction.strain.pool import PooledMarks, fit_to_marks
+from reduction.strain.uncertainty import strain_uncertainty_of
 
 L0, LS = 2.55, 1.18
 COMPLIANCE, EXPONENT = 0.0012, 0.85
@@ -227,6 +229,31 @@ def test_without_marks_the_extensometer_comes_before_the_gauge_length():
     alone = fit_strain_model(rope, test_id="a", reference_position=0.25)
     assert alone.method == "gauge-length"
     assert alone.coefficients == {"reference_position": 0.25, "gauge_length": 1.0}
+
+
+def test_the_uncertainty_of_a_stated_gauge_length_is_shared_by_all_strains():
+    stated = Specimen("hose", gauge_length=2.0, gauge_length_standard_uncertainty=0.01)
+    model = fit_strain_model(stated, test_id="a", reference_position=2.0)
+    assert model.notes == () and model.relaxed_length == 2.0
+    # at 100 and at 50 %, 0.5 % of the strain
+    spread = strain_uncertainty_of(
+        model, position=[4.0, 3.0], tension=[1.0, 1.0], position_uncertainty=np.nan,
+        tension_uncertainty=np.nan,
+    )  # fmt: skip
+    assert spread == pytest.approx([0.005, 0.0025], rel=1e-6)
+
+
+def test_a_gauge_length_without_one_counts_as_exact_and_says_so():
+    model = fit_strain_model(Specimen("a", gauge_length=2.0), test_id="a", reference_position=0.0)
+    assert not model.covariance.any()
+    (note,) = model.notes
+    assert note.startswith("the gauge length counts as exact")
+
+
+def test_the_relaxed_length_is_that_which_stretches():
+    marked = fit({"T-1": [(1.0, 480.0)]}, method="strain-ratio")
+    assert marked.relaxed_length == marked.coefficients["relaxed_free_length"]
+    assert np.isnan(StrainModel("a", "extensometer").relaxed_length)
 
 
 def test_nothing_to_go_by_is_refused():
