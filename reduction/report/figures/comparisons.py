@@ -21,6 +21,7 @@ _BAND = 2.0
 _EVENT_SYMBOLS = {"pick_up": SYMBOLS[2], "working": SYMBOLS[0], "break": SYMBOLS[5]}
 _LEAST_TENSION = 0.05
 """Share of the greatest measured tension below which no difference is given relative to it."""
+_NEAR_THE_END = 0.8
 _PULLED = {"static": "solid", "dynamic": "dash"}
 
 
@@ -47,6 +48,7 @@ def draw_comparison(view: ComparisonView) -> list[Figure]:
         )  # fmt: skip
     data += [_measured(view, curve, force) for curve in view.curves]
     data += _events(view, force)
+    judged = view.judged if view.judged == "midline" else f"{view.judged} branch"
     about = "Shaded: 95 % band, two standard uncertainties of the prediction. " if has_band else ""
     fitted = (
         " Calibrated: with the numbers of the hose that were fitted to this very test."
@@ -56,7 +58,7 @@ def draw_comparison(view: ComparisonView) -> list[Figure]:
     return _kept(
         make_figure(
             f"{view.key}-tension", f"Measured and predicted tension, {view.name}",
-            f"{about}Heavy: the {view.judged} of the test, by which the prediction is judged."
+            f"{about}Heavy: the {judged} of the test, by which the prediction is judged."
             f"{fitted}"
             " Filled marks: what is predicted to happen to the cords; open: where the test reached"
             " that tension.",
@@ -214,7 +216,10 @@ def _events(view: ComparisonView, force: Shown) -> list[Trace]:
             (event.measured_strain, "-open", _MEASURED, ""),
         ):
             if 0 < strain <= last:
-                marks.append(_mark(100 * strain, tension, event.words, words, sign + filling, tint))
+                mark = _mark(100 * strain, tension, event.words, words, sign + filling, tint)
+                # beside a rising curve there is room on the right, but at the edge of the figure
+                is_last = strain > _NEAR_THE_END * last
+                marks.append(mark | {"textposition": "top left" if is_last else "bottom right"})
     return marks
 
 
@@ -240,7 +245,7 @@ def _mark(x: float, y: float, name: str, words: str, sign: str, tint: str) -> Tr
     return {
         "type": "scatter", "mode": "markers+text" if words else "markers", "name": name,
         "x": plain_numbers(np.array([x])), "y": plain_numbers(np.array([y])), "text": [words],
-        "textposition": "bottom right", "showlegend": False, "cliponaxis": False,
+        "showlegend": False, "cliponaxis": False,
         "marker": {"symbol": sign, "size": 11, "color": tint, "line": {"width": 2}},
     }  # fmt: skip
 
