@@ -1,0 +1,167 @@
+import numpy as np
+import pytest
+
+from reduction.errors import DataError, SettingsError
+from reduction.lookup.composite import (
+    CompositeRule,
+    composite_curve,
+    composite_line_curve,
+)
+from reduction.lookup.line import look_up
+from reduction.lookup.pieces import CurvePiece
+from reduction.lookup.product import LineSource
+
+
+def law(strain):
+    """Tension of a rubber that softens and stiffens [N]: made up, monotone, zero at zero."""
+    return 600 * strain - 150 * strain**2 + 45 * strain**3
+
+
+def piece(low, high, name="T", kind="cyclic", factor=1.0, spread=0.5, n=41, of=law):
+    at = np.linspace(low, high, n)
+    return CurvePiece(name, kind, "mean", at, factor * of(at), np.full(n, spread))
+
+
+def test_one_piece_is_returned_as_it_is():
+    curve = composite_curve([piece(0.4, 2.0)])
+    at = np.linspace(0.4, 2.0, 41)
+    assert curve.tension_at(at) == pytest.approx(law(at), rel=1e-12)
+    assert not curve.is_moved.any()
+    assert not curve.is_join.any()
+    assert np.nanmax(np.abs(curve.monotone_change)) == 0
+    assert np.isnan(curve.between_pieces)
+    assert "no two pieces of one kind overlap" in curve.notes[-1]
+
+
+def test_windows_of_one_law_give_the_law_over_the_whole_range():
+    curve = composite_curve([piece(0.3, 1.2), piece(0.8, 2.0), piece(1.9, 3.0)])
+    at = np.linspace(0.3, 3.0, 200)
+    assert curve.tension_at(at) == pytest.approx(law(at), rel=2e-3)
+    assert not curve.is_gap[2:].any()
+
+
+def test_noise_of_the_pieces_is_covered_by_the_uncertainty():
+    rng = np.random.default_rng(7)
+    pieces = []
+    for low, high in ((0.3, 1.2), (0.8, 2.0), (1.7, 3.0)):
+        at = np.linspace(low, high, 60)
+        noisy = law(at) * (1 + 0.03 * rng.normal()) + rng.normal(0, 1.0, at.size)
+        pieces.append(CurvePiece("T", "cyclic", "mean", at, noisy, np.ones(at.size)))
+    curve = composite_curve(pieces)
+    inner = curve.piece >= 0
+    z = (curve.tension - law(curve.strain))[inner] / curve.standard_uncertainty[inner]
+    assert np.sqrt(np.mean(z**2)) < 1.5
+    assert np.abs(curve.tension[inner] / law(curve.strain[inner]) - 1).max() < 0.08
+
+
+def test_it_begins_at_zero_and_the_extension_is_a_gap_on_a_straight_line():
+    curve = composite_curve([piece(0.5, 1.0)])
+    assert (curve.strain[0], curve.tension[0], curve.standard_uncertainty[0]) == (0, 0, 0)
+    assert curve.is_gap.tolist()[:2] == [True, True]
+    assert not curve.is_gap[2:].any()
+    assert curve.tension_at(0.25) == pytest.approx(law(0.5) / 2)
+    assert curve.tension_at([-0.1, 1.5]).tolist()[0] == 0
+    assert np.isnan(curve.tension_at(1.5))
+    assert np.isnan(curve.strain_at(-1.0))
+
+
+def test_doubt_of_the_extension_is_a_third_of_the_triangle_of_chord_and_tangent():
+    # a parabola from zero: the tangent at its first node is twice the chord, and so is cut at zero
+    curve = composite_curve([piece(1.0, 2.0, of=lambda at: 100 * at**2, spread=0.0, n=4001)])
+    # chord 100 N per strain, tangent 200: at half the way the tangent line is at 0, 50 N below
+    assert curve.standard_uncertainty[1] == pytest.approx(50 / np.sqrt(3), rel=0.02)
+    # the parabola itself is 25 N below the chord there
+    assert abs(curve.tension[1] - 25) < 1.0 * curve.standard_uncertainty[1]
+
+
+def test_gaps_are_flagged_interval_by_interval():
+    curve = composite_curve([piece(0.3, 1.0), piece(1.5, 2.0)])
+    inside = (curve.strain[:-1] >= 1.0 - 1e-12) & (curve.strain[1:] <= 1.5 + 1e-12)
+    assert inside.sum() == 2
+    assert curve.is_gap[inside].all()
+    assert curve.piece[curve.strain == 1.25].tolist() == [-1]
+    assert any("no piece between strain 1 and 1.5" in note for note in curve.notes)
+
+
+def test_joins_are_where_two_pieces_have_a_say():
+    curve = composite_curve([piece(0.3, 1.2), piece(0.8, 2.0)])
+    middle = (curve.strain[1:] + curve.strain[:-1]) / 2
+    joined = middle[curve.is_join]
+    assert joined.min() == pytest.approx(0.8, abs=0.02)
+    assert joined.max() == pytest.approx(1.2, abs=0.02)
+
+
+def test_the_mean_has_no_jump_where_a_piece_that_differs_begins_or_ends():
+    curve = composite_curve([piece(0.3, 3.0), piece(1.0, 2.0, factor=1.15)])
+    steps = np.diff(curve.tension) / np.diff(curve.strain)
+    assert np.abs(np.diff(steps)).max() < 600  # a jump of 15 % of 500 N over a node is 11,000
+
+
+def test_pieces_that_differ_count_alike_however_small_their_own_uncertainty():
+    one, other = piece(0.5, 1.5, spread=0.01), piece(0.5, 1.5, factor=1.2, spread=1.0)
+    curve = composite_curve([one, other])
+    assert curve.tension_at(1.0) == pytest.approx(1.1 * law(1.0), rel=1e-3)
+    # half of 20 % of the mean, times the root of 2 of one deviation: 12.86 %
+    assert curve.between_pieces == pytest.approx(0.2 / 1.1 / np.sqrt(2), rel=1e-3)
+    spread = np.interp(1.0, curve.strain, curve.standard_uncertainty)
+    assert spread == pytest.approx(0.2 / np.sqrt(2) * law(1.0), rel=0.01)
+
+
+def test_a_kind_that_goes_before_is_alone_inside_its_range():
+    static = piece(0.1, 2.5, kind="static", factor=0.8)
+    first = piece(0.05, 3.0, kind="first-loading", factor=1.3)
+    cyclic = piece(1.0, 2.0)
+    curve = composite_curve([first, static, cyclic])
+    assert curve.tension_at(1.5) == pytest.approx(law(1.5), rel=1e-4)
+    assert curve.tension_at(0.6) == pytest.approx(0.8 * law(0.6), rel=1e-3)
+    assert curve.tension_at(2.9) == pytest.approx(1.3 * law(2.9), rel=1e-3)
+    other = composite_curve([first, static, cyclic], rule=CompositeRule(precedence=("static",)))
+    assert other.tension_at(1.5) == pytest.approx(0.8 * law(1.5), rel=1e-3)
+    assert other.piece_names == ("T",)
+
+
+def test_windows_that_fall_at_their_join_are_made_to_rise_and_it_is_said():
+    curve = composite_curve([piece(0.5, 1.5), piece(1.45, 2.5, factor=0.7)])
+    assert (np.diff(curve.tension) > 0).all()
+    assert curve.is_moved.any()
+    assert "pieces fall where they hand over" in curve.notes[-1]
+    # the change is in the uncertainty
+    moved = np.abs(np.nan_to_num(curve.monotone_change))
+    assert (curve.standard_uncertainty >= moved - 1e-9).all()
+
+
+def test_the_curve_is_nowhere_softer_than_the_share_of_the_softest_piece():
+    pieces = [piece(0.5, 1.5), piece(1.0, 2.5, factor=0.7)]
+    for share in (0.0, 0.5, 1.0):
+        curve = composite_curve(pieces, rule=CompositeRule(least_slope=share))
+        slope = np.diff(curve.tension) / np.diff(curve.strain)
+        at = (curve.strain[1:] + curve.strain[:-1]) / 2
+        softest = 0.7 * (600 - 300 * at + 135 * at**2)
+        assert (slope[~curve.is_gap] >= 0.99 * share * softest[~curve.is_gap]).all()
+
+
+def test_it_is_looked_up_like_any_curve():
+    curve = composite_curve([piece(0.4, 2.0)])
+    line = LineSource("T", "t", "rubber", "", "", 0.025, 3560.0,
+                      curves=(composite_line_curve(curve),))  # fmt: skip
+    found = look_up(line, "tension", strain=[0.4, 1.0])
+    assert found.value == pytest.approx(law(np.array([0.4, 1.0])), rel=1e-6)
+    with pytest.raises(DataError, match="outside what was tested"):
+        look_up(line, "tension", strain=0.3)
+    below = look_up(line, "tension", strain=0.2, extrapolate="flag")
+    assert below.value == pytest.approx(law(0.4) / 2)
+
+
+def test_rules_and_pieces_that_make_no_sense_are_refused():
+    with pytest.raises(SettingsError, match="names no kind of piece"):
+        CompositeRule(precedence=())
+    with pytest.raises(SettingsError, match="taper is a share"):
+        CompositeRule(taper=0.6)
+    with pytest.raises(SettingsError, match="least slope is a share"):
+        CompositeRule(least_slope=1.1)
+    with pytest.raises(SettingsError, match="a grid has two points"):
+        CompositeRule(n_points=1)
+    with pytest.raises(DataError, match="no piece is of a kind"):
+        composite_curve([piece(0.5, 1.0)], rule=CompositeRule(precedence=("static",)))
+    with pytest.raises(DataError, match="no piece is of a kind.*found no pieces"):
+        composite_curve([])
