@@ -91,12 +91,14 @@ def items_of(cells: Sequence[Cell]) -> list[Item]:
         *items_of_segments(table["6"]),
         *items_of_claims(book),
     ]
-    by_key = {item.cell.key: _as_printed(item) for item in found}
+    by_key = {item.cell.key: item for item in found}
     return [
-        by_key.get(cell.key)
-        or item_of_programme(cell, table["1"])
-        or item_printed_twice(cell, book)
-        or not_testable(cell, _why_not(cell))
+        _as_printed(
+            by_key.get(cell.key)
+            or item_of_programme(cell, table["1"])
+            or item_printed_twice(cell, book)
+            or not_testable(cell, _why_not(cell))
+        )
         for cell in cells
     ]
 

@@ -1,0 +1,53 @@
+"""About, below and over: how near a round number or a limit is meant to be."""
+
+import pytest
+
+from reduction.published.cell import Cell
+from reduction.reproduce.wording import judge_limit, judge_round, last_counted_place
+
+
+def cell(printed, **known):
+    plain = {
+        "report": "WHOI-2005-10", "table": "sec 6.0", "row": "a", "column": "b", "unit": "psi",
+        "corrected": None, "erratum": "", "confidence": "", "page": "", "note": "",
+    }  # fmt: skip
+    return Cell(printed=printed, **(plain | known))
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("350", 10),
+        ("500", 100),
+        ("123", 1),
+        ("10,000", 10_000),
+        ("1.50", 0.1),
+        ("0", 0),
+        ("n/a", 0),
+    ],
+)
+def test_last_digit_that_is_not_zero(text, place):
+    assert last_counted_place(text) == pytest.approx(place)
+
+
+@pytest.mark.parametrize(("value", "verdict"), [(115, "reproduced"), (116, "unexplained")])
+def test_a_round_number_covers_half_its_last_counted_digit(value, verdict):
+    item = judge_round(cell("110"), value, "from a table")
+    assert item.verdict == verdict and item.how == "from a table; round to 10"
+
+
+def test_a_limit_holds_on_its_own_side_only():
+    assert judge_limit(cell("below 100"), 48.0, "x", is_upper=True).verdict == "reproduced"
+    assert judge_limit(cell("below 100"), 120.0, "x", is_upper=True).verdict == "unexplained"
+    assert judge_limit(cell("over 200"), 212.0, "x", is_upper=False).verdict == "reproduced"
+    assert judge_limit(cell("over 200"), 180.0, "x", is_upper=False).verdict == "unexplained"
+
+
+def test_a_limit_that_is_known_to_be_wrong_is_an_erratum():
+    wrong = cell("less than 200", corrected=212.0, erratum="WH5-18", confidence="certain")
+    assert judge_limit(wrong, 212.0, "x", is_upper=True).verdict == "erratum"
+    assert judge_limit(wrong, 230.0, "x", is_upper=True).verdict == "unexplained"
+
+
+def test_a_text_without_a_number_is_no_limit():
+    assert judge_limit(cell("near zero"), 52.0, "x", is_upper=True).verdict == "unexplained"
