@@ -123,7 +123,12 @@ def _of_tension(book: Mapping[Key, Cell], rows: Sequence[Row]) -> Iterator[Item]
         for _, row in first.values()
     ]
     middle, half = (max(tension) + min(tension)) / 2, (max(tension) - min(tension)) / 2
-    how = f"{{}} at 100 % by {len(tension)} lines of Tables 5 and 6; the tolerance is their range"
+    through = [one for one, (away, _) in zip(tension, first.values(), strict=True) if away == 0]
+    how = (
+        f"{{}} at 100 % by {len(tension)} lines of Tables 5 and 6 within {_NEAR:g} of it, the "
+        f"tolerance is half their range; the {len(through)} that go through it give "
+        f"{min(through):.0f} to {max(through):.0f} lb a tether"
+    )
     for key, n_tethers in (
         (("sec 2.3.3", "single tether at 100 % stretch", "tension"), 1),
         (("sec 2.3.2", "assembly of four tethers, no waves or currents", "mean_tension"), 4),

@@ -1,6 +1,7 @@
 """Every cell of WHOI-2005-10 has a verdict, and a wrong digit is found.
 
-The counts are worked out by hand: Table 3 follows from its marks throughout (98 numbers); of Table
+The counts of the tables can be worked out by hand (those of the whole report cannot, and are held
+as they were found, so that a change shows): Table 3 follows from its marks throughout (98 numbers); of Table
 4 the 15 times, the 15 lengths eye to eye and the one weight that is not hung twice follow from
 nothing; in Tables 5 and 6 every number follows from the other four of its row, except in the rows
 that are open.
