@@ -21,7 +21,7 @@ from reduction.reproduce.cg_surfaces import TABLES_OF, item_of_surface
 from reduction.reproduce.cg_tests import item_of_test
 from reduction.reproduce.item import Item, not_testable
 
-__all__ = ["items", "items_of"]
+__all__ = ["item_of", "items", "items_of"]
 
 SURFACES = {table for tables in TABLES_OF.values() for table in tables}
 OF_TABLE = {
@@ -58,10 +58,23 @@ def items_of(cells: Sequence[Cell]) -> list[Item]:
         One a cell.
     """
     pages = Pages(cells)
-    return [_item(cell, pages) for cell in cells]
+    return [item_of(cell, pages) for cell in cells]
 
 
-def _item(cell: Cell, pages: Pages) -> Item:
+def item_of(cell: Cell, pages: Pages) -> Item:
+    """Verdict on one cell among the others of the report.
+
+    Parameters
+    ----------
+    cell : Cell
+        Which one.
+    pages : Pages
+        All of them.
+
+    Returns
+    -------
+    item : Item
+    """
     of_table = OF_TABLE.get(cell.table)
     if of_table is not None:
         return of_table(cell, pages)

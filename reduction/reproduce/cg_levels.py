@@ -13,9 +13,10 @@ __all__ = ["item_of_level"]
 
 STIFFNESS = "apparent_spring_constant"
 SETTING = "a setting that is printed once"
+BRAID = "nylon | double braid"
 # a line with these levels, the table of its range, the row of its strength
 OF_LEVELS = {
-    f"nylon | double braid | {sizes} in | new": ("3", f"nylon | double braid | {size} in | new", "1")
+    f"{BRAID} | {sizes} in | new": ("3", f"{BRAID} | {size} in | new", "1")
     for sizes, size in (("1/2 in, 3/4", "3/4"), ("1 in, 1 1/4", "1"))
 } | {
     "nylon, polyester | 8-strand plaited, double braid | 1/2 in | 4 years, 5 years": (

@@ -210,11 +210,27 @@ def _statistic(cell: Cell, pages: Pages) -> Item:
         cell, _f_of(number(r2)),
         "r2 with 10 and 4 degrees of freedom, which counts the mean twice", tolerance=allowed,
     )  # fmt: skip
-    twin = _twin(cell, pages, quantity)
-    if by_share.verdict != "reproduced" or twin is None:
+    if by_share.verdict != "reproduced":
         return by_share
-    finer = max(printed_step(cell.printed), printed_step(twin.printed))
-    return judge(cell, number(twin), f"Table {twin.table}, and r2", tolerance=0.5 * finer)
+    cut = _cut_off(cell, pages, quantity)
+    if cut is not None:
+        half = 0.5 * printed_step(cut.printed)
+        how = f"Table {cut.table}, which cuts digits off, and r2"
+        return judge(cell, number(cut) + half, how, tolerance=half)
+    twin = _twin(cell, pages, quantity)
+    if twin is None:
+        return by_share
+    coarser = max(printed_step(cell.printed), printed_step(twin.printed))
+    return judge(cell, number(twin), f"Table {twin.table}, and r2", tolerance=0.5 * coarser)
+
+
+def _cut_off(cell: Cell, pages: Pages, quantity: str) -> Cell | None:
+    """The same statistic in another table, printed with digits cut off."""
+    for table in TABLES_OF[quantity]:
+        other = pages.by_key.get((table, cell.row, cell.column))
+        if table != cell.table and other is not None and other.erratum == "CG-44":
+            return other
+    return None
 
 
 def _count(cell: Cell, pages: Pages) -> Item:
