@@ -237,6 +237,22 @@ def report(
 
 
 @app.command()
+def reproduce(
+    report: Annotated[
+        str | None, typer.Argument(metavar="[REPORT]", help="All unless said.", show_default=False)
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Write page and table to this folder.")] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Recompute every printed number of the published reports: counts, errata, open cells."""
+    with guarded(Outcome(json=json, quiet=quiet)) as outcome:
+        from reduction.cli.reproduce import reproduce_reports
+
+        reproduce_reports(report, out=out, outcome=outcome)
+
+
+@app.command()
 def schema(
     json: Annotated[bool, typer.Option("--json", help="As it is in any case.")] = False,
     quiet: Quiet = False,

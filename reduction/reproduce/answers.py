@@ -10,6 +10,7 @@ from reduction.errors import DataError
 from reduction.published.cell import Cell, ReportId, number_of, printed_step
 from reduction.published.read import cells_of
 from reduction.reproduce.item import Item, judge, not_testable
+from reduction.reproduce.wording import judge_limit
 
 __all__ = ["Answer", "Answers", "Key", "items_from"]
 
@@ -84,9 +85,9 @@ def _item(cell: Cell, answers: Mapping[Key, Answer | str]) -> Item:
     printed = number_of(cell.printed)
     if answer.meaning is not None and abs(answer.meaning - answer.value) <= _ROUND_OFF:
         return Item(cell, answer.value, "reproduced", answer.how)
-    if answer.bound and printed is not None:
-        slack = answer.value - printed if answer.bound == "below" else printed - answer.value
-        return Item(cell, answer.value, "reproduced" if slack <= 0 else "unexplained", answer.how)
+    if answer.bound:
+        is_upper = answer.bound == "below"
+        return judge_limit(cell, answer.value, answer.how, is_upper=is_upper)
     tolerance = answer.tolerance
     if tolerance is None and printed is None and cell.corrected is not None:
         # words have no digits: those of the corrected number are judged

@@ -1,0 +1,150 @@
+"""The command reproduce: every printed number of the reports again, with a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.markup import escape
+
+from reduction.archive.write import write_whole
+from reduction.cli.numbers import plain, table_of
+from reduction.cli.outcome import Outcome
+from reduction.errors import DataError, SettingsError
+from reduction.published.cell import ReportId
+from reduction.published.read import REPORTS
+from reduction.reproduce.item import Item
+from reduction.reproduce.page import number_beside, render_reproduction
+from reduction.reproduce.reports import (
+    VERDICTS,
+    Counts,
+    counts_by_table,
+    counts_of,
+    csv_of,
+    reproduce,
+    touched_errata,
+)
+
+__all__ = ["document", "reproduce_reports"]
+
+UNEXPLAINED = DataError.exit_status
+
+
+def reproduce_reports(report: str | None, *, out: Path | None, outcome: Outcome) -> None:
+    """Recompute and print counts, errata and open cells; with ``out``, write page and table."""
+    reports = reproduce(None if report is None else _known(report))
+    for one, items in reports.items():
+        _show(one, items, outcome)
+    if len(reports) > 1:
+        _show_total(reports, outcome)
+    if out is not None:
+        page, table = out / "reproduce.html", out / "reproduce.csv"
+        write_whole(page, render_reproduction(reports))
+        write_whole(table, csv_of(item for items in reports.values() for item in items))
+        outcome.say(f"page: {page}")
+        outcome.say(f"table: {table}")
+    outcome.answer(document(reports) | {"out": None if out is None else str(out)})
+    for items in reports.values():
+        for item in items:
+            if item.verdict == "unexplained":
+                outcome.error(_unexplained(item))
+                outcome.raise_status(UNEXPLAINED)
+
+
+def _known(report: str) -> ReportId:
+    for one in REPORTS:
+        if one == report:
+            return one
+    raise SettingsError(
+        "there is no such report", found=repr(report), needed="one of " + ", ".join(REPORTS)
+    )
+
+
+def _show(report: ReportId, items: Sequence[Item], outcome: Outcome) -> None:
+    table = _table(report)
+    for name, counts in counts_by_table(items).items():
+        table.add_row(escape(name), *_numbers(counts))
+    table.add_row("all", *_numbers(counts_of(items)), style="bold")
+    outcome.show(table)
+    errata = table_of("erratum", "place", "printed", "right", "sure", "cells", texts=5)
+    for one in touched_errata(report, items):
+        known = one.erratum
+        texts = (known.id, known.place, known.printed, known.corrected, known.confidence)
+        errata.add_row(*map(escape, texts), f"{len(one.items)}")
+    outcome.show(errata)
+    open_cells = [item for item in items if item.verdict == "open"]
+    if open_cells:
+        cells = table_of("open cell", "quantity", "printed", "erratum", "what it may be", texts=5)
+        for item in open_cells:
+            cell = item.cell
+            place, printed = f"{cell.table}: {cell.row}", f"{cell.printed} {cell.unit}"
+            cells.add_row(*map(escape, (place, cell.column, printed, cell.erratum, cell.note)))
+        outcome.show(cells)
+    outcome.say("")
+
+
+def _show_total(reports: Mapping[ReportId, Sequence[Item]], outcome: Outcome) -> None:
+    table = _table("report")
+    for report, items in reports.items():
+        table.add_row(report, *_numbers(counts_of(items)))
+    whole = [item for items in reports.values() for item in items]
+    table.add_row("all", *_numbers(counts_of(whole)), style="bold")
+    outcome.show(table)
+
+
+def _table(heading: str) -> Any:
+    verdicts = (verdict.replace("_", " ") for verdict in VERDICTS)
+    return table_of(heading, "cells", *verdicts)
+
+
+def _numbers(counts: Counts) -> list[str]:
+    return [f"{number:,}" for number in counts.values()]
+
+
+def _unexplained(item: Item) -> str:
+    cell = item.cell
+    return (
+        f"{cell.report}, table {cell.table}, {cell.row}, {cell.column}: printed number does not "
+        f"come back; found {cell.printed} {cell.unit}; "
+        f"needed {number_beside(item.recomputed, cell.printed) or 'a number'} ({item.how})."
+    )
+
+
+def document(reports: Mapping[ReportId, Sequence[Item]]) -> dict[str, Any]:
+    """What ``--json`` says; numbers are in the unit of the page, which is beside them."""
+    return {
+        "reports": {report: counts_of(items) for report, items in reports.items()},
+        "items": [_described(item) for items in reports.values() for item in items],
+        "errata": [
+            {
+                **vars(one.erratum),
+                "cells": [_name(item) for item in one.items],
+            }
+            for report, items in reports.items()
+            for one in touched_errata(report, items)
+        ],
+    }
+
+
+def _name(item: Item) -> str:
+    return f"{item.cell.row} / {item.cell.column}"
+
+
+def _described(item: Item) -> dict[str, Any]:
+    cell = item.cell
+    return {
+        "report": cell.report,
+        "table": cell.table,
+        "cell": _name(item),
+        "printed": cell.printed,
+        "unit": cell.unit,
+        "corrected": cell.corrected,
+        "recomputed": plain(item.recomputed),
+        "verdict": item.verdict,
+        "erratum": cell.erratum or None,
+        "confidence": cell.confidence or None,
+        "how": item.how,
+        "note": cell.note or None,
+        "page": cell.page,
+    }
