@@ -31,6 +31,7 @@ __all__ = [
 Dimension = Literal[
     "time", "length", "force", "strain", "stress", "area", "frequency", "temperature", "angle",
     "mass", "velocity", "number", "force_rate", "density", "per_length",
+    "linear_density",
 ]  # fmt: skip
 UnitSystem = Literal["si", "us"]
 
@@ -50,6 +51,7 @@ DIMENSIONS: dict[Dimension, str] = {
     "force_rate": "N s-1",
     "density": "kg m-3",
     "per_length": "m-1",
+    "linear_density": "kg m-1",
 }
 _PINT_SI = {
     "m2": "m**2",
@@ -58,6 +60,7 @@ _PINT_SI = {
     "1": "dimensionless",
     "kg m-3": "kg/m**3",
     "m-1": "1/m",
+    "kg m-1": "kg/m",
 }
 _US = {"m": "ft", "N": "lbf", "Pa": "psi", "m2": "in2", "J m-1": "ft lbf / ft", "m s-1": "ft s-1"}
 _US_PINT = {"in2": "in**2", "ft s-1": "ft/s", "ft lbf / ft": "lbf"}

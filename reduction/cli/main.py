@@ -217,6 +217,59 @@ def compare(
 
 
 @app.command()
+def export(
+    source: Annotated[
+        str, typer.Argument(help="An archive of a test or of hoses.", show_default=False)
+    ],
+    to: Annotated[
+        str,
+        typer.Option(
+            "--to",
+            help="csv, json, latex, markdown, netcdf, moordyn, moorpy, openfast, orcaflex, "
+            "whoi-cable or abaqus.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[Path, typer.Option("--out", help="The file.", show_default=False)],
+    form: Annotated[
+        str | None, typer.Option(help="Where a format has several, such as table.")
+    ] = None,
+    curve: Annotated[
+        str | None, typer.Option(help="mean (unless said), ascending or descending.")
+    ] = None,
+    specimen: Annotated[str | None, typer.Option(help="Which one, or which hose.")] = None,
+    diameter: Annotated[str | None, typer.Option(help='With a unit, "26 mm".')] = None,
+    linear_density: Annotated[str | None, typer.Option(help='In air, "0.6 kg/m".')] = None,
+    wet_linear_density: Annotated[
+        str | None, typer.Option(help="Less the water it displaces.")
+    ] = None,
+    rated_break_strength: Annotated[str | None, typer.Option(help='"28 kN".')] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Write a curve for a mooring code, or as a table."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.export import export_source
+
+        export_source(
+            source,
+            to=to,
+            out=out,
+            form=form,
+            curve=curve,
+            specimen=specimen,
+            stated={
+                "diameter": diameter,
+                "linear_density": linear_density,
+                "wet_linear_density": wet_linear_density,
+                "rated_break_strength": rated_break_strength,
+            },
+            outcome=outcome,
+        )
+
+
+@app.command()
 def report(
     processed_dir: Annotated[
         Path,

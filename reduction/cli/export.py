@@ -1,0 +1,89 @@
+"""The command export: a curve in the words of another program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, cast
+
+from reduction.cli.numbers import plain
+from reduction.cli.outcome import Outcome
+from reduction.errors import SettingsError
+from reduction.export.fromarchive import CurveName, line_from_archive
+from reduction.export.product import ExportLine
+from reduction.export.write import export_line
+from reduction.units import Dimension, UnitSystem, parse_quantity
+
+__all__ = ["export_source"]
+
+_DIMENSIONS: dict[str, Dimension] = {
+    "diameter": "length",
+    "linear_density": "linear_density",
+    "wet_linear_density": "linear_density",
+    "rated_break_strength": "force",
+}
+
+
+def export_source(
+    source: str,
+    *,
+    to: str,
+    out: Path,
+    form: str | None,
+    curve: str | None,
+    specimen: str | None,
+    stated: dict[str, str | None],
+    outcome: Outcome,
+) -> None:
+    """Write the curve of a source in a format, and say what was written."""
+    if curve not in (None, "mean", "ascending", "descending"):
+        raise SettingsError(
+            "--curve is not known", found=repr(curve), needed="mean, ascending or descending"
+        )
+    values = {
+        name: parse_quantity(text, _DIMENSIONS[name])
+        for name, text in stated.items()
+        if text is not None
+    }
+    line = line_of(source, cast("CurveName | None", curve), specimen, values)
+    units = cast("UnitSystem", outcome.units)
+    paths = export_line(line, to, out, form=form, units=units)
+    outcome.say(f"{line.name}: {line.curve}")
+    for text in (*line.sources, *(f"note: {note}" for note in line.notes)):
+        outcome.say(f"  {text}")
+    for path in paths:
+        outcome.say(f"written: {path}")
+    outcome.answer(
+        {
+            "line": line.name,
+            "format": to,
+            "form": form,
+            "curve": line.curve,
+            "tested": {"strain": plain(line.tested), "unit": "1"},
+            "files": [str(path) for path in paths],
+            "sources": list(line.sources),
+            "notes": list(line.notes),
+            "synthetic": line.is_synthetic,
+            **{
+                name: {"value": plain(getattr(line, name)), "unit": unit}
+                for name, unit in (
+                    ("diameter", "m"),
+                    ("linear_density", "kg m-1"),
+                    ("rated_break_strength", "N"),
+                )
+            },
+        }
+    )
+
+
+def line_of(
+    source: str, curve: CurveName | None, specimen: str | None, stated: dict[str, Any]
+) -> ExportLine:
+    """The line that a word on the command line means; another kind of source is added here."""
+    path = Path(source)
+    if not path.is_file():
+        raise SettingsError(
+            "there is nothing of that name to export",
+            found=source,
+            needed="an archive (.nc) of a reduced test or of predicted hoses",
+        )
+    return line_from_archive(path, curve=curve, specimen=specimen, **stated)

@@ -1,0 +1,78 @@
+"""The lines that say where the numbers of an export are from, and over which range they hold."""
+
+from __future__ import annotations
+
+import math
+import re
+import textwrap
+
+from reduction import __version__
+from reduction.export.product import ExportLine
+from reduction.export.thin import ThinnedCurve
+
+__all__ = ["header_lines", "number", "one_line", "real_number"]
+
+_WIDTH = 100
+
+
+def number(value: float) -> str:
+    """Ten digits, and never less than gives the number back where it has more."""
+    short = f"{value:.10g}"
+    return short if math.isclose(float(short), value, rel_tol=5e-10) else repr(value)
+
+
+def real_number(value: float) -> str:
+    """The same with a point, where a number without one is no real."""
+    head, sign, power = number(value).partition("e")
+    return (head if "." in head else f"{head}.0") + sign + power
+
+
+def one_line(text: str) -> str:
+    """Text that every grammar takes as a remark: one line, ASCII, no comment or rule signs."""
+    plain = " ".join(text.split()).encode("ascii", "replace").decode()
+    return re.sub("-{2,}", "-", re.sub(r"[#!%*\\\"|{}&]", " ", plain.replace("%", " percent")))
+
+
+def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) -> list[str]:
+    """Header of a file, without the signs that make it a remark there.
+
+    Parameters
+    ----------
+    line : ExportLine
+        What is exported.
+    curve : ThinnedCurve, optional
+        As it stands in the file; None where no curve does.
+    *remarks : str
+        Of the format.
+
+    Returns
+    -------
+    lines : list of str
+        One sentence each, broken at 100 characters.
+    """
+    told = [f"{line.name}, by reduction {__version__}"]
+    if line.is_synthetic:
+        told.append("SYNTHETIC: made from a formula, nothing was tested")
+    if curve is not None:
+        low, high = line.tested
+        where = (
+            f"tested from strain {low:.6g} to {high:.6g}" if low == low else "nothing was tested"
+        )
+        told += [
+            f"Curve: {line.curve}",
+            f"Holds from strain 0 to {curve.strain[-1]:.6g} and tension 0 to "
+            f"{curve.tension[-1]:.6g} N; {where}. Beyond the last point nothing is known; some "
+            "codes keep the last tension there",
+            f"{curve.strain.size} points of {line.strain.size}; greatest error "
+            f"{curve.error:.3g} N, {curve.share:.2e} of the greatest tension",
+        ]
+        if curve.words:
+            told.append(f"At the start: {curve.words}")
+    told += [f"Source: {text}" for text in line.sources]
+    told += [f"Note: {text}" for text in line.notes]
+    told += [f"Remark: {text}" for text in remarks if text]
+    return [
+        part
+        for text in told
+        for part in textwrap.wrap(one_line(text), _WIDTH, subsequent_indent="  ")
+    ]

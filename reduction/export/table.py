@@ -1,0 +1,246 @@
+"""Curves and look-up tables as CSV, JSON, LaTeX, Markdown and netCDF."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from reduction import __version__
+from reduction.archive.whole import whole_file
+from reduction.errors import ArchiveError, SettingsError
+from reduction.export.header import number
+from reduction.export.product import ExportLine
+from reduction.export.thin import curve_from_zero
+from reduction.record import Bools, Floats
+from reduction.units import UnitSystem, display_unit
+
+__all__ = ["TableColumn", "ValueTable", "curve_table", "table_text_of", "write_netcdf"]
+
+
+@dataclass(frozen=True)
+class TableColumn:
+    """A column: name, SI unit (empty where it has none), meaning, and values (n_rows,)."""
+
+    name: str
+    unit: str
+    meaning: str
+    values: Floats | Bools
+
+
+@dataclass(frozen=True)
+class ValueTable:
+    """A table, with a sentence on what it is and where its numbers are from."""
+
+    title: str
+    columns: tuple[TableColumn, ...]
+    sources: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+    is_synthetic: bool = False
+
+    def __post_init__(self) -> None:
+        """Check that the columns are of one length."""
+        sizes = {column.values.shape for column in self.columns}
+        if len(sizes) != 1 or len(next(iter(sizes))) != 1:
+            raise SettingsError("the columns of a table differ in length", found=str(sorted(sizes)))
+
+
+def curve_table(line: ExportLine) -> ValueTable:
+    """The curve of a line from zero, every point of it, and which points were tested."""
+    at, load, words = curve_from_zero(line.strain, line.tension)
+    low, high = line.tested
+    tested = (at >= low * (1 - 1e-9)) & (at <= high * (1 + 1e-9)) & (at > 0)
+    return ValueTable(
+        title=f"{line.name}: {line.curve}",
+        columns=(
+            TableColumn("strain", "1", "nominal strain", at),
+            TableColumn("tension", "N", "tension", load),
+            TableColumn("is_tested", "", "inside the strains that were tested", tested),
+        ),
+        sources=line.sources,
+        notes=(*line.notes, *((f"at the start: {words}",) if words else ())),
+        is_synthetic=line.is_synthetic,
+    )
+
+
+def _shown(table: ValueTable, units: UnitSystem) -> tuple[list[str], list[list[str]]]:
+    """Headers with units, and rows as text."""
+    heads, columns = [], []
+    for column in table.columns:
+        unit, factor = display_unit(column.unit, units) if column.unit else ("", 1.0)
+        heads.append(f"{column.name} [{unit}]" if unit else column.name)
+        columns.append(
+            [("yes" if value else "no") for value in column.values]
+            if column.values.dtype == np.bool_
+            else [number(factor * value) if math.isfinite(value) else "" for value in column.values]
+        )
+    return heads, [list(row) for row in zip(*columns, strict=True)]
+
+
+def _said(table: ValueTable) -> list[str]:
+    made = ["Synthetic: nothing was tested"] if table.is_synthetic else []
+    return [
+        *made,
+        *(f"Source: {text}" for text in table.sources),
+        *(f"Note: {text}" for text in table.notes),
+        f"Made by reduction {__version__}",
+    ]
+
+
+def table_text_of(table: ValueTable, form: str, *, units: UnitSystem = "si") -> str:
+    """A table as text.
+
+    Parameters
+    ----------
+    table : ValueTable
+        What is written.
+    form : {"csv", "json", "latex", "markdown"}
+        CSV has the sources in a column, since it has no place for a remark.
+    units : {"si", "us"}
+        What is shown.
+
+    Returns
+    -------
+    text : str
+        All of it.
+
+    Raises
+    ------
+    SettingsError
+        If the form is not known.
+    """
+    writers = {"csv": _csv, "json": _json, "latex": _latex, "markdown": _markdown}
+    if form not in writers:
+        raise SettingsError(
+            "the form of a table is not known", found=repr(form), needed=", ".join(writers)
+        )
+    return writers[form](table, units)
+
+
+def _csv(table: ValueTable, units: UnitSystem) -> str:
+    heads, rows = _shown(table, units)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\r\n")
+    writer.writerow([*heads, "what", "source"])
+    said = [table.title, "; ".join(_said(table))]
+    writer.writerows([*row, *said] for row in rows)
+    return text.getvalue()
+
+
+def _json(table: ValueTable, units: UnitSystem) -> str:
+    document = {"title": table.title, "synthetic": table.is_synthetic} | {
+        "sources": list(table.sources),
+        "notes": list(table.notes),
+        "software": f"reduction {__version__}",
+        "units": {},
+        "meaning": {column.name: column.meaning for column in table.columns},
+        "values": {},
+    }
+    shown: dict[str, str] = {}
+    values: dict[str, list[float | bool | None]] = {}
+    for column in table.columns:
+        unit, factor = display_unit(column.unit, units) if column.unit else ("", 1.0)
+        shown[column.name] = unit
+        values[column.name] = [
+            bool(value) if column.values.dtype == np.bool_
+            else float(factor * value) if math.isfinite(value) else None
+            for value in column.values
+        ]  # fmt: skip
+    return json.dumps(document | {"units": shown, "values": values}, indent=1) + "\n"
+
+
+def _latex(table: ValueTable, units: UnitSystem) -> str:
+    heads, rows = _shown(table, units)
+    body = [" & ".join(_escaped(cell) for cell in row) + r" \\" for row in rows]
+    return "\n".join(
+        [
+            *(f"% {' '.join(text.split())}" for text in _said(table)),
+            rf"\begin{{longtable}}{{{'r' * len(heads)}}}",
+            rf"\caption{{{_escaped(table.title)}. {_escaped('; '.join(_said(table)))}}} \\",
+            r"\hline",
+            " & ".join(_escaped(head) for head in heads) + r" \\",
+            r"\hline",
+            r"\endhead",
+            *body,
+            r"\hline",
+            r"\end{longtable}",
+            "",
+        ]
+    )
+
+
+def _escaped(text: str) -> str:
+    named = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
+    return re.sub(r"[\\~^&%$#_{}]", lambda sign: named.get(sign[0], "\\" + sign[0]), text)
+
+
+def _markdown(table: ValueTable, units: UnitSystem) -> str:
+    heads, rows = _shown(table, units)
+    cells = [heads, ["---:"] * len(heads), *rows]
+    return "\n".join(
+        [
+            f"**{table.title}**",
+            "",
+            *(f"- {' '.join(text.split())}" for text in _said(table)),
+            "",
+            *("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in cells),
+            "",
+        ]
+    )
+
+
+def write_netcdf(table: ValueTable, path: Path) -> None:
+    """Write a table as a netCDF file, SI, with its sources as attributes.
+
+    Parameters
+    ----------
+    table : ValueTable
+        What is written.
+    path : pathlib.Path
+        The file; it appears whole or not at all.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    variables = {}
+    for column in table.columns:
+        is_flag = column.values.dtype == np.bool_
+        values = column.values.astype(np.int8) if is_flag else column.values
+        about: dict[str, object] = {"long_name": column.meaning}
+        if is_flag:
+            about |= {"flag_values": np.array([0, 1], np.int8), "flag_meanings": "no yes"}
+        else:
+            about["units"] = column.unit
+        variables[column.name] = (("point",), values, about)
+    dataset = xr.Dataset(
+        variables,
+        attrs={
+            "Conventions": "CF-1.11 ACDD-1.3",
+            "title": table.title,
+            "source": "; ".join(table.sources),
+            "comment": "; ".join(table.notes) or "none",
+            "synthetic": "yes" if table.is_synthetic else "no",
+            "history": f"reduction {__version__} export",
+            "software_version": __version__,
+        },
+    )
+    encoding = {
+        name: {"_FillValue": None if array.dtype == np.int8 else np.nan}
+        for name, array in dataset.variables.items()
+    }
+    try:
+        with whole_file(path) as part:
+            dataset.to_netcdf(part, format="NETCDF4", engine="netcdf4", encoding=encoding)
+    except (OSError, RuntimeError) as error:
+        raise ArchiveError(
+            f"{path} cannot be written", found=getattr(error, "strerror", None) or str(error)
+        ) from error

@@ -1,0 +1,171 @@
+"""MoorDyn itself (the wheel of PyPI, in a process of its own) reads what is exported for it."""
+
+import importlib.util
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from export_lines import constant, growing, line, syrope
+from export_readers import moordyn_sections, moordyn_table
+
+from reduction.export.moordyn import moordyn_files
+from reduction.export.write import export_line
+
+pytestmark = pytest.mark.skipif(
+    importlib.util.find_spec("moordyn") is None, reason="moordyn is not installed"
+)
+DRIVER = """
+import json, math, sys
+import moordyn
+job = json.load(open(sys.argv[1]))
+system = moordyn.Create(job["deck"])
+if system is None:
+    raise SystemExit(3)
+length, out = job["length"], []
+place = lambda strain: [0.0, 0.0, -100.0 + length * (1 + strain)]
+start = job["strains"][0] if "strains" in job else job["mean"]
+if moordyn.Init(system, place(start), [0.0, 0.0, 0.0]):
+    raise SystemExit(4)
+line, time = moordyn.GetLine(system, 1), 0.0
+if "strains" in job:
+    here = start
+    for strain in job["strains"]:
+        speed = (strain - here) * length / (10 * job["step"])
+        for count in range(10):
+            moordyn.Step(system, place(here + (strain - here) * count / 10), [0.0, 0.0, speed], time, job["step"])
+            time += job["step"]
+        for count in range(job["rest"]):
+            moordyn.Step(system, place(strain), [0.0, 0.0, 0.0], time, job["step"])
+            time += job["step"]
+        here = strain
+        out.append(moordyn.GetLineFairTen(line))
+else:
+    omega, step = 2 * math.pi * job["frequency"], 1 / job["frequency"] / 200
+    for count in range(200 * job["cycles"]):
+        phase = omega * time
+        moordyn.Step(system, place(job["mean"] + job["amplitude"] * math.sin(phase)),
+                     [0.0, 0.0, job["amplitude"] * omega * length * math.cos(phase)], time, step)
+        time += step
+        out.append(moordyn.GetLineFairTen(line))
+moordyn.Close(system)
+json.dump(out, open(job["out"], "w"))
+"""
+
+
+def write(folder, files):
+    for name, text in files.items():
+        (folder / (name or "deck.dat")).write_text(text)
+
+
+def run(folder, **job):
+    job |= {"deck": str(folder / "deck.dat"), "length": 10.0, "out": str(folder / "out.json")}
+    (folder / "job.json").write_text(json.dumps(job))
+    done = subprocess.run(
+        [sys.executable, "-c", DRIVER, str(folder / "job.json")],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    return done, (
+        np.array(json.loads((folder / "out.json").read_text())) if not done.returncode else None
+    )
+
+
+def at_rest(folder, strains, *, step=0.1, rest=100):
+    done, tension = run(folder, strains=list(strains), step=step, rest=rest)
+    assert done.returncode == 0, done.stdout[-800:] + done.stderr[-400:]
+    return tension
+
+
+def test_a_table_gives_back_its_tension_at_14_strains(tmp_path):
+    *_, deck = export_line(line(), "moordyn", tmp_path / "deck.dat")
+    assert deck == tmp_path / "deck.dat"
+    strains = np.arange(0.1, 1.45, 0.1)
+    assert strains.size == 14
+    table = moordyn_table((tmp_path / "deck_table.txt").read_text())
+    np.testing.assert_allclose(at_rest(tmp_path, strains), np.interp(strains, *table), rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("form", "part"), [("static-dynamic", constant()), ("load-dependent", growing())]
+)
+@pytest.mark.parametrize("frequency", [0.1, 0.5])
+def test_the_dynamic_stiffness_is_that_of_the_three_parameters(tmp_path, form, part, frequency):
+    write(tmp_path, moordyn_files(line(viscoelasticity=part), "deck", form=form))
+    done, tension = run(tmp_path, mean=0.1, amplitude=0.005, frequency=frequency, cycles=40)
+    assert done.returncode == 0, done.stdout[-800:]
+    phase = 2 * np.pi * np.arange(400) / 200
+    waves = np.stack([np.ones(400), np.sin(phase), np.cos(phase)], axis=1)
+    # the tension of a step is that at its end
+    _, rise, lag = np.linalg.lstsq(waves, tension[-400:], rcond=None)[0]
+    found = np.hypot(rise, lag) / 0.005
+    slow, fast = part.static_stiffness, part.fast_stiffness
+    turned = 2j * np.pi * frequency * part.relaxation_time
+    expected = abs(slow + (fast - slow) * turned / (1 + turned))
+    assert found == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.parametrize("part", [constant(), growing()])
+def test_the_slow_stiffness_is_static(tmp_path, part):
+    form = "load-dependent" if part.dynamic_stiffness_per_mean_tension else "static-dynamic"
+    write(tmp_path, moordyn_files(line(viscoelasticity=part), "deck", form=form))
+    tension = at_rest(tmp_path, [0.05, 0.1], step=0.5, rest=int(80 * part.relaxation_time))
+    np.testing.assert_allclose(tension, part.static_stiffness * np.array([0.05, 0.1]), rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("form", "k1", "k2"),
+    [("LINEAR", 0.2, 0.0), ("LINEAR", 1e8, 0.0), ("QUADRATIC", 0.2, 0.5), ("EXP", 0.2, 1.5)],
+)
+def test_a_syrope_starts_on_its_working_curve_and_goes_on_along_the_original_one(
+    tmp_path, form, k1, k2
+):
+    part = syrope(form=form, k1=k1, k2=k2)
+    write(tmp_path, moordyn_files(line(syrope=part), "deck", form="syrope"))
+    strains = [part.initial_strain, 0.045, 0.055]
+    tension = at_rest(tmp_path, strains, step=0.5, rest=120)
+    # MoorDyn puts its curves through points
+    assert tension[0] == pytest.approx(part.mean_tension, rel=1e-3)
+    np.testing.assert_allclose(tension[1:], [3.4e6, 4.2e6], rtol=1e-6)
+
+
+def test_the_traps_are_what_they_are_said_to_be(tmp_path):
+    """If one of these goes away in a later MoorDyn, its guard may go too."""
+    files = moordyn_files(line(), "deck")
+    table = files["deck_table.txt"]
+    rows = table.split("\n")
+    longer = "\n".join([*rows, "2.0 1000.0"])
+    for bad in (table + "\n", longer):
+        write(tmp_path, files | {"deck_table.txt": bad})
+        assert run(tmp_path, strains=[0.5], step=0.1, rest=10)[0].returncode not in (0, None)
+    # beyond the last point the tension stays
+    write(tmp_path, files)
+    assert at_rest(tmp_path, [1.7])[0] == pytest.approx(float(rows[-1].split()[1]), rel=1e-6)
+    # a table beside a dynamic stiffness is replaced by the secant of its last row
+    end = np.array(rows[-1].split(), dtype=float)
+    write(
+        tmp_path,
+        files
+        | {
+            "": files[""]
+            .replace(" deck_table.txt ", " deck_table.txt|50000 ")
+            .replace(" -1 0 ", " 1000|10 0 ")
+        },
+    )
+    done, tension = run(tmp_path, strains=[0.3], step=0.1, rest=100)
+    if done.returncode == 0:
+        assert tension[0] != pytest.approx(np.interp(0.3, *moordyn_table(table)), rel=0.01)
+        assert tension[0] == pytest.approx(0.3 * end[1] / end[0], rel=0.05)
+    # a Syrope without initial conditions kills the process
+    files = moordyn_files(line(syrope=syrope()), "deck", form="syrope")
+    deck = files[""]
+    start, stop = deck.index("-" * 22 + " SYROPE IC"), deck.index("-" * 22 + " OPTIONS")
+    write(tmp_path, files | {"": deck[:start] + deck[stop:]})
+    assert run(tmp_path, strains=[0.03], step=0.1, rest=1)[0].returncode < 0
+
+
+def test_the_deck_states_a_step_because_that_of_moordyn_is_wrong_for_tables(tmp_path):
+    files = moordyn_files(line(), "deck")
+    (step,) = [row[0] for row in moordyn_sections(files[""])["OPTIONS"] if row[1] == "dtM"]
+    write(tmp_path, files | {"": files[""].replace(f"{step} dtM", "0.5 CFL")})
+    assert run(tmp_path, strains=[0.1, 0.2], step=0.1, rest=30)[0].returncode != 0
