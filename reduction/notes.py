@@ -27,7 +27,7 @@ _METHOD = re.compile(
     re.IGNORECASE,
 )
 _REFUSAL = re.compile(
-    r"^refused:|\bnot given\b|: no hyperelastic law|has no tangent modulus|^not fitted"
+    r"(^|: )refused:|\bnot given\b|: no hyperelastic law|has no tangent modulus|^not fitted"
     r"|no stress and no modulus|no load is given",
     re.IGNORECASE,
 )

@@ -199,7 +199,7 @@ def test_the_history_of_a_hose_holds_the_cycles_that_no_log_has(run):
     # the generated hoses do not creep: what there is comes from the wider loop of the fast tests
     left = table.loc[["L-64", "D-64", "B-64", "L-68", "D-68"], "permanent_set [1]"]
     assert (left.abs() < 5e-3).all()
-    page = (run.reports / "index.html").read_text(encoding="utf-8")
+    page = run.report.read_text(encoding="utf-8")
     assert "earlier flex cycles" in page
 
 
@@ -220,7 +220,9 @@ def test_nothing_is_said_of_a_hose_as_if_it_were_rubber_or_marked(run, test):
 def test_no_cubic_is_given_of_a_curve_with_a_kink(run, test):
     with open_archive(run.processed / f"{test}.nc") as archive:
         assert "pull_strain_coefficient" not in archive
-        (note,) = [one for one in archive["note"].to_numpy() if "a cubic of strain misses" in str(one)]
+        (note,) = [
+            one for one in archive["note"].to_numpy() if "a cubic of strain misses" in str(one)
+        ]
     assert str(note).startswith(f"hose-{test[2:]}: refused: quasi-static spring constant")
 
 
@@ -236,3 +238,81 @@ def test_the_uncertainty_of_the_length_scales_every_strain_of_a_comparison(run):
     steep = np.abs(offset) > 1e-6
     expected = 0.05 / 96 * measured.strain[steep] / (0.02 / 96)
     assert scale[steep] / offset[steep] == pytest.approx(expected, rel=1e-6)
+
+
+def copied(tmp_path, change=lambda text: text):
+    folder = tmp_path / "raw"
+    folder.mkdir(exist_ok=True)
+    for path in RAW.glob("*.csv"):
+        (folder / path.name).write_bytes(path.read_bytes())
+    text = change((RAW / "campaign.toml").read_text(encoding="utf-8"))
+    (folder / "campaign.toml").write_text(text, encoding="utf-8")
+    return folder / "campaign.toml"
+
+
+def run_again(path, tmp_path, **options):
+    return run_campaign(
+        load_campaign(path), processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0,
+        **options,
+    )  # fmt: skip
+
+
+def test_a_test_that_is_not_as_it_would_be_made_now_is_waited_for(tmp_path):
+    path = copied(tmp_path)
+    first = run_again(path, tmp_path, tests=["B-64"])
+    statuses = {one.id: one for one in first.comparisons}
+    assert first.exit_status == 0
+    assert statuses["H64-break"].status == "compared_with_notes"
+    assert statuses["H64-static"].status == "no_work"
+    assert "L-64 is not reduced yet" in statuses["H64-static"].message
+    assert run_again(path, tmp_path).exit_status == 0
+    changed = copied(tmp_path, lambda text: text.replace('"96 in"', '"80 in"', 1))
+    again = {one.id: one for one in run_again(changed, tmp_path, tests=["B-64"]).comparisons}
+    assert again["H64-static"].status == "no_work"
+    assert "other logs, settings or software" in again["H64-static"].message
+    assert again["H68-static"].status == "compared_with_notes"
+
+
+def test_break_in_of_the_campaign_is_none_of_a_pull(tmp_path):
+    path = copied(
+        tmp_path,
+        lambda text: text.replace("[defaults]", "[defaults]\nreduction.cycles.break_in_cycles = 1"),
+    )
+    done = run_again(path, tmp_path)
+    assert done.exit_status == 0
+    assert {one.status for one in done.comparisons} == {"compared_with_notes"}
+
+
+def test_verdicts_of_logs_that_are_bad_now_do_not_stay(tmp_path):
+    path = copied(tmp_path)
+    run_again(path, tmp_path)
+    for log in path.parent.glob("*.csv"):
+        log.write_text("nothing\n", encoding="utf-8")
+    done = run_again(path, tmp_path)
+    assert {one.status for one in done.comparisons} == {"failed"}
+    assert not (done.processed / "comparisons.nc").exists()
+    assert not (done.processed / "tables" / "comparisons.csv").exists()
+
+
+def test_what_is_no_hose_is_not_compared(run, command, tmp_path):
+    spec = tmp_path / "H.toml"
+    campaign = (RAW / "campaign.toml").read_text(encoding="utf-8")
+    part = campaign[campaign.index("[hoses.H64]") : campaign.index("[hoses.H68]")]
+    spec.write_text(
+        part.replace("[hoses.H64.cord]", "[cord]").replace("hoses.H64", "hose"), encoding="utf-8"
+    )
+    rope = RAW.parent / "nylon-synthetic"
+    done = run_campaign(
+        load_campaign(rope / "campaign.toml"), processed=tmp_path / "p", reports=tmp_path / "r",
+        clock=lambda: 0.0, tests=["R01"],
+    )  # fmt: skip
+    ended = command("compare", done.processed / "R01.nc", spec)
+    assert ended.returncode == 4
+    assert "is of no stretch hose; found rope" in ended.stderr
+
+
+def test_a_cyclic_test_is_said_to_be_taken_as_dynamic(run):
+    with open_archive(run.processed / "comparisons.nc") as archive:
+        of = archive["note_comparison"].to_numpy() == "H64-dynamic"
+        notes = archive["note"].to_numpy()[of]
+    assert any("taken as dynamic, as cyclic tests are" in note for note in notes)

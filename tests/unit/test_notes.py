@@ -26,6 +26,7 @@ SAID = ("specimen new", "the printed diameters contradict each other")
         ("experiment", "R05: the line goes slack in every cycle", "doubt"),
         ("experiment", "tau drifts over the order of the runs beyond its surface", "doubt"),
         ("experiment", "refused: stiffness forms of mooring codes: no strength", "refusal"),
+        ("test", "hose: refused: quasi-static spring constant: no cubic", "refusal"),
         ("cycles", "one cycle only: there is no scatter from cycle to cycle", "note"),
     ],
 )
