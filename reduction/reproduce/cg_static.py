@@ -110,10 +110,8 @@ def _head(cell: Cell, pages: Pages, term: str) -> Item:
 
 def _range(cell: Cell, pages: Pages) -> Item:
     if cell.erratum == "CG-12":
-        return judge(
-            cell, _last_level(cell.row, pages),
-            "greatest level at which it is as near the slope of Table 8 as those of other lines",
-        )  # fmt: skip
+        off = ", ".join(f"{100 * one:.0f}" for one in _departures(cell.row, pages))
+        return not_testable(cell, f"{off} % off the slope of Table 8 at the three levels")
     if cell.erratum == "CG-13":
         return _range_of_strength(cell, pages)
     years = cell.row.replace("field exposure", EXPOSED_YEARS)
@@ -150,17 +148,6 @@ def _departures(row: str, pages: Pages) -> list[float]:
         abs(pages.polynomial(table, row, tension) / pages.slope("8", row, tension) - 1)
         for tension in _levels(row, pages)
     ]
-
-
-def _last_level(row: str, pages: Pages) -> float:
-    """Greatest level at which the polynomial is as near its slope as those of the other lines."""
-    others = [
-        line for line, (table, *_) in CENTRE_LINES.items() if table != "slope" and line != row
-    ]
-    usual = max(max(_departures(line, pages)) for line in others)
-    near = [departure <= usual for departure in _departures(row, pages)]
-    last = near.index(False) if False in near else len(near)
-    return _levels(row, pages)[last - 1] if last else 0.0
 
 
 def _range_of_strength(cell: Cell, pages: Pages) -> Item:

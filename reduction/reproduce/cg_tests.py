@@ -1,38 +1,33 @@
-"""CG-D-39-80, Tables 10, 20, 21, A-2, A-3 and A-4: strength, abrasion, screening, F tests.
+"""CG-D-39-80, Tables 10, 20, 21 and A-2: strength, abrasion, screening.
 
-Means and deviations are measured; changes, relative variabilities and F follow from them, and
-bound them in turn.
+Means and deviations are measured; changes and relative variabilities follow from them, and
+bound them in turn.  Tables A-3 and A-4 stand in `cg_ftests`.
 """
 
 from __future__ import annotations
 
-from math import gcd
-
-from reduction.outcomes.compare import one_way, ratio_of_means
+from reduction.outcomes.compare import ratio_of_means
 from reduction.published.cell import Cell, printed_step
 from reduction.reproduce.cg_cells import Pages, number, rounding
+from reduction.reproduce.cg_ftests import (
+    AFTER,
+    DRY,
+    GROUPS,
+    HIGH,
+    LOW,
+    MEASURED,
+    PLAITED,
+    SAMPLES,
+    STRAIN,
+    STRENGTH,
+    WET,
+    common_step,
+    item_of_f_test,
+    item_of_group,
+)
 from reduction.reproduce.item import Item, judge, not_testable
 
 __all__ = ["change_of_table_10", "item_of_test"]
-
-MEASURED = "measured"
-PLAITED = "nylon | 8-strand plaited"
-STRENGTH, STRAIN = "tensile_strength", "strain_at_failure"
-DRY, WET, AFTER = "dry, not cycled", "wet, before cycling", "wet, after cycling"
-LOW, HIGH, UNCYCLED = (
-    "wet, cycled, low mean load", "wet, cycled, high mean load", "wet, not cycled",
-)  # fmt: skip
-GROUPS = {
-    f"{DRY} against {WET}": (DRY, WET),
-    "wet, before against after cycling": (WET, AFTER),
-    f"{DRY} against {AFTER}": (DRY, AFTER),
-    "low mean load against not cycled": (LOW, UNCYCLED),
-    "high mean load against not cycled": (HIGH, UNCYCLED),
-    "low against high mean load": (LOW, HIGH),
-    "dry against wet, not cycled": (DRY, UNCYCLED),
-}
-# nine wet samples (sec. A-2.1); six of twelve runs a diameter, three a mean load
-SAMPLES = {DRY: 13, WET: 9, UNCYCLED: 9, AFTER: 6, LOW: 3, HIGH: 3}
 
 
 def item_of_test(cell: Cell, pages: Pages) -> Item:
@@ -47,8 +42,8 @@ def item_of_test(cell: Cell, pages: Pages) -> Item:
         return _effect(cell, pages)
     pair = cell.row.rpartition(" | ")[2]
     if pair in GROUPS:
-        return _f_test(cell, pages, GROUPS[pair])
-    return _group(cell, pages)
+        return item_of_f_test(cell, pages, GROUPS[pair])
+    return item_of_group(cell, pages)
 
 
 def change_of_table_10(pages: Pages, row: str, quantity: str) -> float:
@@ -97,11 +92,8 @@ def _elsewhere(cell: Cell, pages: Pages) -> tuple[float, float, str] | None:
         for table, what in (("13", "hysteresis_energy"), ("12", "hysteresis_energy"),
                             ("5", "apparent_spring_constant")):  # fmt: skip
             key = (table, cell.row, f"{what} number of lines")
-            # of the plaited polyester line Tables 5 and 13 disagree, and 5 is no less likely
-            if key in pages.by_key and (table, line) != (
-                "13",
-                "polyester | 8-strand plaited | 1/2 in",
-            ):
+            # a count that is open itself tells nothing
+            if key in pages.by_key and pages.cell(*key).confidence != "open":
                 return pages.printed(*key), 0.5, f"lines of Table {table}"
     return None
 
@@ -118,7 +110,7 @@ def _dry(cell: Cell, pages: Pages) -> tuple[float, float, str] | None:
         within = pages.value("A-3", pair, "degrees of freedom within")
         return within + 2 - SAMPLES[WET], 0.5, "degrees of freedom of Table A-3"
     if quantity == STRENGTH:
-        half = 0.5 * _common_step(pages, kind)
+        half = 0.5 * common_step(pages, kind)
         return pages.printed("A-3", dry, f"{STRENGTH} {kind}"), half, "Table A-3, in tens of pounds"
     place = ("A-4", dry, f"{STRAIN} {kind}")
     return pages.printed(*place) / 100, pages.half(*place) / 100, "Table A-4"
@@ -233,76 +225,3 @@ def _effect(cell: Cell, pages: Pages) -> Item:
         cell, effect(*means), "the four means of Table A-4",
         tolerance=allowed + 0.5 * printed_step(cell.printed),
     )  # fmt: skip
-
-
-def _common_step(pages: Pages, kind: str) -> int:
-    """What every number of a column of Table A-3 is a multiple of: ten pounds."""
-    numbers = [
-        int(number(cell)) for cell in pages.by_key.values()
-        if cell.table == "A-3" and cell.column == f"{STRENGTH} {kind}"
-    ]  # fmt: skip
-    return gcd(*numbers)
-
-
-def _f_test(cell: Cell, pages: Pages, groups: tuple[str, str]) -> Item:
-    line = cell.row.rpartition(" | ")[0]
-    quantity = STRENGTH if cell.table == "A-3" else STRAIN
-    columns = (f"{quantity} mean", f"{quantity} standard deviation")
-    places = [(cell.table, f"{line} | {group}", column) for column in columns for group in groups]
-    counts = [SAMPLES[group] for group in groups]
-
-    def statistic(first: float, second: float, s_first: float, s_second: float) -> float:
-        return float(one_way([first, second], [s_first, s_second], counts).f_statistic)
-
-    inputs = [pages.printed(*place) for place in places]
-    analysis = one_way(inputs[:2], inputs[2:], counts)
-    counted = f"{counts[0]} and {counts[1]} samples"
-    if cell.column == "F":
-        halves = [pages.half(*place) for place in places]
-        if cell.table == "A-3":
-            steps = [_common_step(pages, column.partition(" ")[2]) for column in columns]
-            halves = [0.5 * step for step in steps for _ in groups]
-        allowed = rounding(statistic, inputs, halves) + 0.5 * printed_step(cell.printed)
-        return judge(
-            cell, statistic(*inputs), f"means and deviations of {counted}", tolerance=allowed
-        )
-    found = {
-        "degrees of freedom between": float(analysis.between),
-        "degrees of freedom within": float(analysis.within),
-        "critical F": float(analysis.critical),
-    }
-    return judge(cell, found[cell.column], counted)
-
-
-def _group(cell: Cell, pages: Pages) -> Item:
-    """Means and deviations of Tables A-3 and A-4."""
-    line, _, condition = cell.row.rpartition(" | ")
-    quantity, _, kind = cell.column.partition(" ")
-    if condition == DRY:
-        scale = 1.0 if quantity == STRENGTH else 100.0
-        place = ("10", f"{line} | new", cell.column)
-        step = float(_common_step(pages, kind)) if quantity == STRENGTH and kind != "mean" else 0.0
-        return judge(
-            cell, scale * pages.value(*place), "Table 10",
-            tolerance=max(scale * pages.half(*place), 0.5 * step),
-        )  # fmt: skip
-    if cell.table == "A-3" and kind == "mean":
-        if condition == AFTER:
-            effect = ("A-2", f"screening | {PLAITED}", f"{STRENGTH} effect of diameter")
-            other, sign = ("13/16", -1) if "| 1/2 in" in cell.row else ("1/2", 1)
-            mean = pages.printed("A-3", f"{PLAITED} | {other} in | {AFTER}", f"{STRENGTH} mean")
-            return judge(
-                cell, mean + sign * 1000 * pages.printed(*effect),
-                "the other diameter and the effect of Table A-2",
-                tolerance=1000 * pages.half(*effect),
-            )  # fmt: skip
-        if "13/16" in cell.row:
-            key = ("8", cell.row.replace(condition, "new"), "quasi_static_strain mean_tension high")
-            return judge(cell, pages.printed(*key), "Table 8 prints it as a range")
-        dry = pages.printed("A-3", f"{line} | {DRY}", f"{STRENGTH} mean")
-        claim = ("sec A-4.6", f"{line} | wet", f"{STRENGTH} fall")
-        return judge(
-            cell, dry * (1 - pages.printed(*claim) / 100), "dry, less the 12 % of sec. A-4.6",
-            tolerance=dry * pages.half(*claim) / 100,
-        )  # fmt: skip
-    return not_testable(cell, MEASURED)
