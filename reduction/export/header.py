@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import textwrap
 
@@ -16,9 +15,8 @@ _WIDTH = 100
 
 
 def number(value: float) -> str:
-    """Ten digits, and never less than gives the number back where it has more."""
-    short = f"{value:.10g}"
-    return short if math.isclose(float(short), value, rel_tol=5e-10) else repr(value)
+    """Shortest of 15 digits: steps that were there before a change of unit are there after it."""
+    return f"{value:.15g}"
 
 
 def real_number(value: float) -> str:

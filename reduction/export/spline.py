@@ -88,7 +88,7 @@ def fit_smooth_curve(strain: Floats, tension: Floats) -> SmoothCurve:
     -----
     The first pieces begin where a curve thinned to five points has them; then the piece with the
     greatest error is halved, again and again, but never below a thousandth of the strain. Least
-    squares on an even grid and on the points; the error is the greatest one over both.
+    squares on an even grid and on the points; the error is the greatest one anywhere.
 
     Examples
     --------
@@ -104,20 +104,37 @@ def fit_smooth_curve(strain: Floats, tension: Floats) -> SmoothCurve:
     knots = knots[np.append(True, np.diff(knots) > _SHORTEST * end)]
     knots = knots[end - knots > _SHORTEST * end]
     best = _fitted(grid, wanted, knots, end, top)
-    error = float(np.abs(best(grid) - wanted).max())
-    fitted, worst = best, int(np.abs(best(grid) - wanted).argmax())
+    error, worst = _greatest_error(best, at, load)
     while error > _ENOUGH * top and knots.size < _MOST:
         bounds = np.append(knots, end)
-        piece = int(np.clip(np.searchsorted(knots, grid[worst], side="right") - 1, 0, None))
+        piece = min(int(np.searchsorted(knots, worst, side="right")), knots.size) - 1
         if bounds[piece + 1] - bounds[piece] <= 2 * _SHORTEST * end:
             piece = int(np.diff(bounds).argmax())
         knots = np.insert(knots, piece + 1, (bounds[piece] + bounds[piece + 1]) / 2)
         fitted = _fitted(grid, wanted, knots, end, top)
-        off = np.abs(fitted(grid) - wanted)
-        worst = int(off.argmax())
-        if off[worst] < error:
-            best, error = fitted, float(off[worst])
+        off, worst = _greatest_error(fitted, at, load)
+        if off < error:
+            best, error = fitted, off
     return SmoothCurve(best.x[:-1].copy(), end, best.c[::-1].T.copy(), error, error / top, words)
+
+
+def _greatest_error(fitted: PPoly, at: Floats, load: Floats) -> tuple[float, float]:
+    """Greatest difference from the straight lines between the points, and its strain."""
+    breaks = np.union1d(at, fitted.x)
+    step = np.clip(np.searchsorted(at, breaks[:-1], "right") - 1, 0, at.size - 2)
+    slope = (np.diff(load) / np.diff(at))[step]
+    # where the slopes are equal: a quadratic in the strain above the start of the piece
+    piece = np.clip(np.searchsorted(fitted.x, breaks[:-1], "right") - 1, 0, fitted.c.shape[1] - 1)
+    cubic, square, linear = fitted.c[:3, piece]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.sqrt(square**2 - 3 * cubic * (linear - slope))
+        both = np.stack([(-square + root) / (3 * cubic), (-square - root) / (3 * cubic)])
+        flat = (slope - linear) / (2 * square)
+    places = fitted.x[piece] + np.concatenate([both, flat[np.newaxis]])
+    inside = (places > breaks[:-1]) & (places < breaks[1:])
+    places = np.concatenate([breaks, places[inside]])
+    off = np.abs(fitted(places) - np.interp(places, at, load))
+    return float(off.max()), float(places[off.argmax()])
 
 
 def _fitted(grid: Floats, wanted: Floats, knots: Floats, end: float, top: float) -> PPoly:

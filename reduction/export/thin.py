@@ -120,7 +120,7 @@ def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floa
         words = "" if has_zero else (
             f"a straight line from 0 0 to the first point at strain {at[1]:g}"
         )  # fmt: skip
-    if np.any(np.diff(load) <= 0):
+    if np.any(np.diff(load) <= _ROUNDING * load[-1]):
         load = load + LIFT * load[-1] * at / at[-1]
         added = f"{LIFT:g} of the greatest tension added over the strain, where it did not rise"
         words = f"{words}; {added}" if words else added
