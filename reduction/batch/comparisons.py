@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,12 @@ __all__ = ["compare_archive", "write_comparisons", "write_named"]
 
 
 def write_comparisons(
-    campaign: Campaign, folder: Path, *, failed: Collection[str], command: str
+    campaign: Campaign,
+    folder: Path,
+    *,
+    failed: Collection[str],
+    waiting: Mapping[str, str],
+    command: str,
 ) -> list[PartStatus]:
     """Compare what a campaign asks for, from the archives of its tests, and write one archive.
 
@@ -40,24 +46,34 @@ def write_comparisons(
         Of its products.
     failed : collection of str
         Tests whose archive, where there is one, is of an earlier run and not used.
+    waiting : mapping of str to str
+        Tests that were not asked for and have to be reduced first, with the reason.
     command : str
         For the product's ``command`` attribute, without paths.
 
     Returns
     -------
     statuses : list of PartStatus
-        One a comparison, in the order of the campaign.
+        One a comparison, in the order of the campaign. Where all failed, an archive of an
+        earlier run is taken away: nothing would say that its verdicts are old.
 
     Raises
     ------
     ArchiveError
         If the archive cannot be written.
     """
+    held = all(plan.measured in waiting for plan in campaign.comparisons.values())
+    stands = held and (folder / "comparisons.nc").exists()
+    kept = "; comparisons.nc is of an earlier run" if stands else ""
     done: list[NamedComparison] = []
     statuses: list[PartStatus] = []
     paths: dict[str, Path] = {}
     for plan in campaign.comparisons.values():
         path = folder / f"{plan.measured}.nc"
+        if plan.measured in waiting:
+            text = f"not compared: {plan.measured} is {waiting[plan.measured]}{kept}"
+            statuses.append(PartStatus(plan.name, "no_work", 0, text))
+            continue
         try:
             if plan.measured in failed:
                 raise DataError(f"test '{plan.measured}' failed: there is no curve of it")
@@ -71,6 +87,8 @@ def write_comparisons(
         status = "compared_with_notes" if named.notes else "compared"
         message = f"{plan.name}: {named.comparison.validation.verdict}"
         statuses.append(PartStatus(plan.name, status, 0, message))
+    if not done and not any(one.status == "no_work" for one in statuses):
+        (folder / "comparisons.nc").unlink(missing_ok=True)
     if done:
         write_named(
             done,
@@ -122,21 +140,36 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
                 needed="the archive of a reduced test with position and tension",
             )
         specimen, index = _specimen(path, archive, plan.specimen)
+        _require_hose(path, archive, index)
+        kind = archive.attrs["test_kind"]
         offset, scale = _of_strain(archive, index)
         comparison = compare_record(
             hose,
             archive["strain"].values[index],
             archive["tension"].values[index],
-            loading=plan.loading or loading_of(archive.attrs["test_kind"]),
+            loading=plan.loading or loading_of(kind),
             cycle_number=archive["cycle_number"].values if "cycle_number" in archive else None,
             branch=archive["branch"].values if "branch" in archive else None,
-            break_in_cycles=_break_in(archive),
+            # a pull has no cycles to break in
+            break_in_cycles=_break_in(archive) if "cycle_number" in archive else 0,
             tension_standard_uncertainty=_declared(archive, "tension", index),
             strain_standard_uncertainty=offset,
             strain_scale_standard_uncertainty=scale,
             calibrate=plan.calibrate,
         )
+        if plan.loading is None and comparison.measured.loading == "dynamic":
+            assumed = f'taken as dynamic, as {kind} tests are; a slow one has loading = "static"'
+            comparison = replace(comparison, notes=(assumed, *comparison.notes))
         return NamedComparison(plan.name, archive.attrs["test"], specimen, hose.name, comparison)
+
+
+def _require_hose(path: Path, archive: xr.Dataset, index: int) -> None:
+    kind = str(archive["specimen_kind"].values[index]) if "specimen_kind" in archive else ""
+    if kind not in ("", "stretch hose"):
+        raise DataError(
+            f"{path} is of no stretch hose", found=kind,
+            needed='specimens.NAME.kind = "stretch hose"',
+        )  # fmt: skip
 
 
 def _specimen(path: Path, archive: xr.Dataset, wanted: str) -> tuple[str, int]:

@@ -146,6 +146,6 @@ def _in_one_line(hose: PredictedHose) -> str:
     design, events = hose.plan.design, hose.events
     return (
         f"{hose.plan.name}: {np.degrees(float(design.wrap_angle)):.4g} deg, {design.rubber_law} "
-        f"rubber, cords pick up at {float(events.pick_up.strain):.4g}, "
-        f"working load {float(events.working.tension):.4g} N at {float(events.working.strain):.4g}"
+        f"rubber, cords pick up at {100 * float(events.pick_up.strain):.4g} %, working load "
+        f"{float(events.working.tension):.4g} N at {100 * float(events.working.strain):.4g} %"
     )

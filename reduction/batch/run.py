@@ -281,13 +281,17 @@ def run_campaign(
         )
     now_failed = {status.test for status in statuses if status.status == "failed"}.union(failed)
     runs = {run for plan in campaign.experiments.values() for run in plan.runs}
+    compared = {plan.measured for plan in campaign.comparisons.values()}
     asked = {survey.plan.id for survey in chosen}
-    left_out = [entry for entry in surveys if entry.plan.id in runs - asked - now_failed]
+    left_out = [
+        entry for entry in surveys if entry.plan.id in (runs | compared) - asked - now_failed
+    ]
+    waiting = waiting_runs(folder, left_out, basis)
     experiments = write_experiments(
         campaign,
         folder,
         failed=now_failed,
-        waiting=waiting_runs(folder, left_out, basis),
+        waiting=waiting,
         raw_sha256={
             entry.plan.id: "\n".join(source.sha256 for source in entry.sources)
             for entry in surveys
@@ -297,7 +301,9 @@ def run_campaign(
     )
     write_outcomes(campaign, folder, command=command)
     hoses = write_predictions(campaign, folder, command=command)
-    comparisons = write_comparisons(campaign, folder, failed=now_failed, command=command)
+    comparisons = write_comparisons(
+        campaign, folder, failed=now_failed, waiting=waiting, command=command
+    )
     if progress is not None:
         progress("tables", campaign.id)
     ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]

@@ -8,6 +8,7 @@ from pathlib import Path
 from reduction.campaign.faults import in_toml
 from reduction.campaign.hosemodel import ComparisonSection
 from reduction.campaign.plan import ComparisonPlan, TestPlan, product_of
+from reduction.record import Specimen
 
 __all__ = ["plan_comparison"]
 
@@ -21,6 +22,7 @@ def plan_comparison(
     *,
     tests: Mapping[str, TestPlan],
     hoses: Collection[str],
+    specimens: Mapping[str, Specimen],
 ) -> ComparisonPlan:
     """A comparison with every name in it resolved.
 
@@ -36,6 +38,8 @@ def plan_comparison(
         Of the campaign.
     hoses : collection of str
         Names of the hoses of the campaign.
+    specimens : mapping of str to Specimen
+        Of the campaign.
 
     Returns
     -------
@@ -66,17 +70,22 @@ def plan_comparison(
             path, f"{place}: what is predicted is no hose of the campaign",
             found=section.predicted, needed="one of [hoses]: " + (", ".join(hoses) or "none"),
         )  # fmt: skip
-    specimens = tests[section.measured.partition("/")[0]].specimens
-    if section.specimen is None and len(specimens) > 1:
+    pulled = tests[section.measured.partition("/")[0]].specimens
+    if section.specimen is None and len(pulled) > 1:
         raise in_toml(
             path, f"{place}: '{section.measured}' has several specimens",
-            needed="specimen = one of " + ", ".join(specimens),
+            needed="specimen = one of " + ", ".join(pulled),
         )  # fmt: skip
-    specimen = section.specimen or specimens[0]
-    if specimen not in specimens:
+    specimen = section.specimen or pulled[0]
+    if specimen not in pulled:
         raise in_toml(
             path, f"{place}: '{section.measured}' has no such specimen", found=specimen,
-            needed="one of " + ", ".join(specimens),
+            needed="one of " + ", ".join(pulled),
+        )  # fmt: skip
+    if specimens[specimen].kind != "stretch hose":
+        raise in_toml(
+            path, f"{place}: '{specimen}' is no stretch hose", found=specimens[specimen].kind,
+            needed='kind = "stretch hose" of what is held against a hose',
         )  # fmt: skip
     if len(set(section.calibrate)) < len(section.calibrate):
         raise in_toml(

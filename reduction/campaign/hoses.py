@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import pi
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +37,7 @@ _DIMENSIONS: dict[str, Dimension] = {
     "dead_length": "length",
 }
 """Keys that may have a standard uncertainty."""
+_MOST_CORD_STRAIN = 1.0
 _PARAMETERS = {
     "wrap_diameter": "layer_diameter",
     "layer_diameters": "layer_diameter",
@@ -109,8 +111,10 @@ def hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection
     except SettingsError as error:
         if error.problem.startswith(str(path)):
             raise
+        problem = error.problem.replace("layer_diameter", key)
+        problem = problem.replace("dead_length_share", "dead_length over length")
         raise in_toml(
-            path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
+            path, f"{place}: {problem}", found=error.found, needed=error.needed,
             hint=error.hint,
         ) from error  # fmt: skip
     step = read.value("strain_step", keys.strain_step, "strain")
@@ -137,17 +141,36 @@ def hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection
 
 def _layer(read: TableReader, layer: LayerSection) -> HelicalLayer:
     place = f"layers.{layer.name}"
+    angle = read.value(place, layer.wrap_angle, "angle")
+    if not 0 < angle < pi / 2:
+        raise in_toml(
+            read.path, f"{read.place}.{place}.wrap_angle lies across the axis or along it",
+            found=layer.wrap_angle, needed="between 0 and 90 deg, from the hose axis",
+        )  # fmt: skip
     limits = [
         np.nan if text is None else read.value(place, text, "strain")
         for text in (layer.strain_limit, layer.compression_limit)
     ]
-    return HelicalLayer(layer.name, read.value(place, layer.wrap_angle, "angle"), *limits)
+    # a comparison with NaN is false: what is not stated is no fault
+    if limits[0] < 0 or limits[1] < 0 or limits[1] >= 1:
+        raise in_toml(
+            read.path, f"{read.place}.{place} has a limit that no layer has",
+            found=f"{limits[0]:g} in tension, {limits[1]:g} in compression",
+            needed="positive numbers, compression below 100 %",
+        )  # fmt: skip
+    return HelicalLayer(layer.name, angle, *limits)
 
 
 def _cord(read: TableReader, place: str, cord: CordSection) -> CordCurve:
     at = TableReader(read.path, "cord" if place == "hose" else f"{place}.cord")
     strain = [at.value("strain", text, "strain") for text in cord.strain]
     load = [at.value("load", text, "force") for text in cord.load]
+    if max(strain, default=0.0) > _MOST_CORD_STRAIN:
+        raise in_toml(
+            at.path, f"{at.place}.strain goes beyond what a cord can be stretched",
+            found=f"{100 * max(strain):g} %", needed=f"at most {100 * _MOST_CORD_STRAIN:g} %",
+            hint='A bare number is a share: 22 % is 0.22 or "22 %".',
+        )  # fmt: skip
     return CordCurve(np.array(strain), np.array(load))
 
 
@@ -193,10 +216,12 @@ def _uncertainties(
             number = read.value(place, text, _DIMENSIONS[key])
             if key == "dead_length":
                 number = number / length
-        if not (np.isfinite(number) and number >= 0):
+        size = abs(float(np.mean(value)))
+        # a dead length may be nil and not known well
+        if not (np.isfinite(number) and 0 <= number < (size or 1.0)):
             raise in_toml(
                 read.path, f"{read.place}.{place} is no standard uncertainty", found=str(text),
-                needed="zero or more; a dead_length needs the length",
+                needed="zero or more, below the number itself; a dead_length needs the length",
             )  # fmt: skip
         found[name] = number
     return found

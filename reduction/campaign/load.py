@@ -302,7 +302,7 @@ def load_campaign(path: Path) -> Campaign:
         for name, section in file.hoses.items()
     }
     comparisons = {
-        name: plan_comparison(path, name, section, tests=plans, hoses=hoses)
+        name: plan_comparison(path, name, section, tests=plans, hoses=hoses, specimens=specimens)
         for name, section in file.comparisons.items()
     }
     return Campaign(

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
+
+from pydantic import Strict
 
 from reduction.campaign.faults import in_toml
 from reduction.errors import SettingsError
@@ -10,7 +13,9 @@ from reduction.units import Dimension, parse_quantity
 
 __all__ = ["Number", "TableReader"]
 
-Number = str | float
+Number = str | Annotated[float, Strict()]
+"""A number of TOML or text with a unit; true and false are neither."""
+_GREATEST = 1e15
 
 
 class TableReader:
@@ -30,7 +35,12 @@ class TableReader:
     def value(self, key: str, text: Number, dimension: Dimension) -> float:
         """Value in SI of what stands under a key."""
         try:
-            return parse_quantity(text, dimension)
+            value = parse_quantity(text, dimension)
+            if not abs(value) < _GREATEST:
+                raise SettingsError(
+                    "a number is beyond anything physical", found=str(text), needed="a finite one"
+                )
+            return value
         except SettingsError as error:
             raise self.fault(f"{key}: {error.problem}", error) from error
 

@@ -33,8 +33,8 @@ class WaveLoadKeys(BaseModel):
     outer_diameter: str
     wall_thickness: str
     wall_density: str
-    content_density: str = "0 kg/m^3"
-    """0 of an empty hose."""
+    content_density: str
+    """0 kg/m^3 of an empty hose."""
     water_density: str = f"{SEAWATER_DENSITY:g} kg/m^3"
     water_depth: str
     wave_height: str

@@ -12,6 +12,7 @@ from reduction.campaign.hoses import load_hose, target_of
 from reduction.cli.hosedesigns import designed, show_designs
 from reduction.cli.numbers import plain, short, table_of
 from reduction.cli.outcome import Outcome
+from reduction.errors import SettingsError
 from reduction.ingest.source import hash_source
 from reduction.pipeline.hosedesigns import design_hoses
 from reduction.pipeline.prediction import predict_from_plan
@@ -51,6 +52,9 @@ def predict_hose(path: Path, *, out: Path | None, outcome: Outcome) -> None:
     _show(hose, outcome, units)
     if target is not None:
         show_designs(designs, target, outcome, units)
+        if all(one.refusal for one in designs):
+            outcome.error(f"{path}: target: no hose like this one does that")
+            outcome.raise_status(SettingsError.exit_status)
     if out is not None:
         write_hoses(
             [hose],

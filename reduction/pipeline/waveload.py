@@ -5,7 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from reduction.predict.coefficients import FlowRegime, flow_regime
+from reduction.predict.coefficients import (
+    GREATEST_DIAMETER_TO_LENGTH,
+    FlowRegime,
+    flow_regime,
+)
 from reduction.predict.difference import LoadDifference, load_difference
 from reduction.predict.environment import AnchorForce, anchor_force
 from reduction.predict.extremes import LoadExtremes, find_extremes
@@ -17,6 +21,9 @@ from reduction.predict.wavetheory import WaveTheory, describe_wave, regular_wave
 from reduction.record import Floats
 
 __all__ = ["PredictedWaveLoad", "predict_wave_load"]
+
+_LINEAR = 0.6
+"""Share of the breaking height above which the neglected terms are no small ones."""
 
 
 @dataclass(frozen=True)
@@ -142,7 +149,26 @@ def predict_wave_load(
     load = wave_load(wave, section, time, vertical_width=vertical_width, **given)
     extremes = find_extremes(wave, section, vertical_width=vertical_width, **given)
     used = described.theory if asked is None else asked
+    regime = flow_regime(
+        wave,
+        outer_diameter,
+        current_velocity=current_velocity,
+        drag_coefficient=drag_coefficient,
+        inertia_coefficient=inertia_coefficient,
+    )
     notes = list(described.reasons)
+    slender = float(regime.diameter_to_length)
+    if slender > GREATEST_DIAMETER_TO_LENGTH:
+        notes.append(
+            f"the diameter is {100 * slender:.0f} % of the wave length: the hose scatters the "
+            "wave, and Morison's equation does not hold above "
+            f"{100 * GREATEST_DIAMETER_TO_LENGTH:.0f} %"
+        )
+    if used == "airy" and described.breaking_ratio > _LINEAR:
+        notes.append(
+            f"at {100 * described.breaking_ratio:.0f} % of the height at which it breaks a wave is "
+            "far from linear: Airy's theory does not hold"
+        )
     if used != described.theory:
         notes.append(f"computed by {used}, as asked for; by depth {described.theory} applies")
     return PredictedWaveLoad(
@@ -158,13 +184,7 @@ def predict_wave_load(
         load=load,
         extremes=extremes,
         difference=load_difference(load, extremes),
-        regime=flow_regime(
-            wave,
-            outer_diameter,
-            current_velocity=current_velocity,
-            drag_coefficient=drag_coefficient,
-            inertia_coefficient=inertia_coefficient,
-        ),
+        regime=regime,
         anchor=anchor_force(
             wave,
             section,

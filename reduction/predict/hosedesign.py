@@ -142,7 +142,7 @@ def design_fabric(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike) ->
     _refuse(
         "tension", load, load > rubber, "is below that of the rubber alone",
         needed=f"above {_first(rubber, load <= rubber):.4g} N",
-        hint="Take a thinner or softer wall, or design_diameters, which makes the hose smaller.",
+        hint="Take a thinner or softer wall, or a smaller hose.",
     )  # fmt: skip
     count = (load - rubber) / cords
     room = 1 / np.asarray(like.cord_diameter, dtype=np.float64)

@@ -111,9 +111,9 @@ class HoseDesign:
         }
         for name, value in positive.items():
             number = np.asarray(value, dtype=np.float64)
-            _need(name, number, number > 0, "above zero")
+            _need(name, number, (number > 0) & np.isfinite(number), "above zero")
         modulus = np.asarray(self.rubber_modulus, dtype=np.float64)
-        _need("rubber_modulus", modulus, modulus >= 0, "zero or more")
+        _need("rubber_modulus", modulus, (modulus >= 0) & np.isfinite(modulus), "zero or more")
         _need("layer_diameter", inner, inner > bore, "above inner_diameter")
         _need("layer_diameter", outer, outer >= inner, "the inner layer before the outer one")
         _need("outer_diameter", skin, skin > outer, "above the diameter of the cord layers")
@@ -147,7 +147,8 @@ def _need(name: str, value: Floats, is_good: Bools, needed: str) -> None:
     bad = np.atleast_1d(~is_good)
     found = np.broadcast_to(np.atleast_1d(value), bad.shape)[bad].flat[0]
     where = "" if bad.size == 1 else f" of {int(bad.sum())} of {bad.size} designs"
-    raise SettingsError(f"{name}{where} is no hose", found=f"{found:g} in SI", needed=needed)
+    shown = f"{np.degrees(found):g} deg" if name == "wrap_angle" else f"{found:g} in SI"
+    raise SettingsError(f"{name}{where} is not that of a hose", found=shown, needed=needed)
 
 
 @dataclass(frozen=True)

@@ -178,10 +178,10 @@ def test_quiet_says_nothing(predict):
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ('"68 deg"', '"98 deg"', "wrap_angle is no hose"),
+        ('"68 deg"', '"98 deg"', "wrap_angle is not that of a hose"),
         ('"68 deg"', '"?"', "gumby.toml"),
         ('"2.5 in"', '"3.6 in"', "above inner_diameter"),
-        ('"5 in"', '"-5 in"', "outer_diameter is no hose"),
+        ('"5 in"', '"-5 in"', "outer_diameter is not that of a hose"),
         ('"10 lbf", "18 lbf"', '"18 lbf", "10 lbf"', "cord.load does not rise at point 5"),
         ('"neo-hookean"', '"ogden"', "rubber_law"),
         ("[hose]", '[hose]\nstrain_step = "0.0001 %"', "has no end of strains"),
@@ -210,3 +210,23 @@ def test_an_error_with_json_is_one_object(predict):
     done = predict("--json", spec=SPEC.replace('"68 deg"', '"98 deg"'))
     assert done.returncode == 2
     assert json.loads(done.stdout)["exit_status"] == 2
+
+
+def test_a_target_is_answered_with_hoses_that_reach_it(predict):
+    spec = SPEC + '[target]\nstrain = "130 %"\ntension = "4000 lbf"\n'
+    done = predict("--json", spec=spec)
+    designs = json.loads(done.stdout)["designs"]
+    assert [one["varied"] for one in designs] == [
+        "wrap angle", "wrap angle and fabric", "wrap angle and diameters",
+    ]  # fmt: skip
+    for one in designs[1:]:
+        assert one["events"]["working"]["strain"] == pytest.approx(1.3)
+        assert one["events"]["working"]["tension"] == pytest.approx(4000 * 4.4482216152605)
+    assert "Hoses for 130 % and 4000 lbf" in predict("--units", "us", spec=spec).stdout
+
+
+def test_a_target_that_no_hose_reaches_ends_with_status_2(predict):
+    done = predict(spec=SPEC + '[target]\nstrain = "0.1 %"\n')
+    assert done.returncode == 2
+    assert "target: no hose like this one does that" in done.stderr
+    assert "no hose by wrap angle" in done.stdout

@@ -74,12 +74,12 @@ def test_two_layers_have_their_own_diameters(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"68 deg"', '"98 deg"', "wrap_angle is no hose; found .* needed between 0 and 90 deg"),
+        ('"68 deg"', '"98 deg"', "wrap_angle is not that of a hose; found .* needed between 0 and 90 deg"),
         ('"68 deg"', '"68"', "hose.wrap_angle: a value has no unit"),
         ('"68 deg"', '"68 m"', "hose.wrap_angle: unit 'm' is not a unit of angle"),
-        ('"2.5 in"', '"-2.5 in"', "inner_diameter is no hose; found -0.0635"),
-        ('"2.5 in"', '"3.6 in"', "layer_diameter is no hose; .*above inner_diameter"),
-        ('"5 in"', '"3.4 in"', "outer_diameter is no hose; .*above the diameter of the cord"),
+        ('"2.5 in"', '"-2.5 in"', "inner_diameter is not that of a hose; found -0.0635"),
+        ('"2.5 in"', '"3.6 in"', "wrap_diameter is not that of a hose; .*above inner_diameter"),
+        ('"5 in"', '"3.4 in"', "outer_diameter is not that of a hose; .*above the diameter of the cord"),
         ('"0 lbf", "10 lbf"', '"0 lbf", "40 lbf"', "cord.load does not rise at point 3"),
         ('"0 lbf", "10 lbf"', '"1 lbf", "10 lbf"', "cord.load does not begin at zero"),
         ('[0.0, "10 %", 0.2]', "[0.0, 0.2]", "2 strains, 3 loads"),
@@ -87,7 +87,7 @@ def test_two_layers_have_their_own_diameters(tmp_path):
         ('wrap_diameter = "3.5 in"', "", "where its cords lie; found neither"),
         ('length = "2 m"\n', "", "hose.dead_length stands without length"),
         ('length = "2 m"', 'length = "0 m"', "hose.length is not positive"),
-        ('"0.1 m"', '"2.1 m"', "dead_length_share is no hose"),
+        ('"0.1 m"', '"2.1 m"', "dead_length over length is not that of a hose"),
         ('wrap_angle = "0.5 deg"', 'wrap = "0.5 deg"', "is no number of a hose that may be"),
         ('wrap_angle = "0.5 deg"', 'wrap_angle = "-1 deg"', "is no standard uncertainty"),
         (
@@ -98,6 +98,19 @@ def test_two_layers_have_their_own_diameters(tmp_path):
         ("[hose.standard", "strain_step = 0\n[hose.standard", "hose.strain_step is no step"),
         ("[hose.standard", 'greatest_strain = "-5 %"\n[hose.standard', "is not positive"),
         ("[hose]", '[hose]\nrubber_law = "ogden"', "rubber_law"),
+        ('[0.0, "10 %", 0.2]', "[0.0, 10, 22]", "beyond what a cord can be stretched; found 2200 %"),
+        ('wrap_angle = "0.5 deg"', 'wrap_angle = "70 deg"', "below the number itself"),
+        ('"2 m"', '"1e300 m"', "hose.length: a number is beyond anything physical"),
+        ("[hose]", "[hose]\ncord_load_scale = true", "cord_load_scale"),
+        (
+            "[cord]", '[[hose.layers]]\nname = "K"\nwrap_angle = "95 deg"\n[cord]',
+            "hose.layers.K.wrap_angle lies across the axis",
+        ),
+        (
+            "[cord]",
+            '[[hose.layers]]\nname = "K"\nwrap_angle = "70 deg"\nstrain_limit = "-2 %"\n[cord]',
+            "hose.layers.K has a limit that no layer has; found -0.02 in tension",
+        ),
     ],
 )  # fmt: skip
 def test_a_hose_that_cannot_be_is_refused_with_its_key(tmp_path, old, new, message):
@@ -160,6 +173,16 @@ def test_a_campaign_names_what_is_measured_and_what_is_predicted(tmp_path):
     assert two.specimen == "b"
 
 
+def test_a_rope_is_not_held_against_a_hose(tmp_path):
+    path = tmp_path / "campaign.toml"
+    text = CAMPAIGN.replace('[specimens.a]\nkind = "stretch hose"', '[specimens.a]\nkind = "rope"')
+    path.write_text(
+        text + HOSE + '[comparisons.one]\nmeasured = "S"\npredicted = "H"\n', encoding="utf-8"
+    )
+    with pytest.raises(SettingsError, match="'a' is no stretch hose; found rope"):
+        load_campaign(path)
+
+
 @pytest.mark.parametrize(
     ("table", "message"),
     [
@@ -196,4 +219,7 @@ def test_steps_are_named_as_test_and_step(tmp_path):
     assert campaign.comparisons["one"].measured == "Q.slow-pull"
     section = ComparisonSection.model_validate(tomllib.loads('measured = "Q"\npredicted = "H"'))
     with pytest.raises(SettingsError, match="is no test of the campaign; found Q"):
-        plan_comparison(campaign.path, "one", section, tests=campaign.tests, hoses=campaign.hoses)
+        plan_comparison(
+            campaign.path, "one", section, tests=campaign.tests, hoses=campaign.hoses,
+            specimens=campaign.specimens,
+        )  # fmt: skip

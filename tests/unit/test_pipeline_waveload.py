@@ -150,3 +150,19 @@ def test_a_length_that_is_not_that_of_the_period_is_told(predict):
 def test_what_cannot_be_computed_is_refused(predict, changes, message):
     with pytest.raises(DataError, match=message):
         predict(**changes)
+
+
+def test_a_hose_as_wide_as_a_fifth_of_the_wave_is_told_to_scatter_it(predict):
+    wide = predict(
+        LEAST_WAVE, outer_diameter=4.5, wall_thickness=0.1, water_depth=20.0, elevation=0.0
+    )
+    length = 9.80665 * PERIOD**2 / (2 * np.pi)  # deep water
+    assert any(f"{100 * 4.5 / length:.0f} % of the wave length" in note for note in wide.notes)
+    assert not any("scatters" in note for note in predict(LEAST_WAVE).notes)
+
+
+def test_a_linear_wave_near_breaking_is_told_not_to_be_one(predict):
+    # Miche: 0.142 L tanh(kd), of which 60 % is the limit here
+    high = predict(wave_height=0.7 * 0.142 * LENGTH * np.tanh(2 * np.pi / LENGTH * DEPTH))
+    assert any("far from linear" in note for note in high.notes)
+    assert not any("far from linear" in note for note in predict().notes)
