@@ -12,7 +12,7 @@ from reduction.published.read import cells_of
 from reduction.reproduce.item import Item, judge, not_testable
 from reduction.reproduce.wording import judge_limit
 
-__all__ = ["Answer", "Answers", "Key", "items_from"]
+__all__ = ["Answer", "Answers", "Key", "item_of", "items_from"]
 
 _ROUND_OFF = 1e-9
 
@@ -73,10 +73,29 @@ def items_from(report: ReportId, answers: Mapping[Key, Answer | str]) -> list[It
     unknown = answers.keys() - {cell.key for cell in cells}
     if unknown:
         raise DataError(f"{report} has no such cell", found=" / ".join(min(unknown)))
-    return [_item(cell, answers) for cell in cells]
+    return [item_of(cell, answers) for cell in cells]
 
 
-def _item(cell: Cell, answers: Mapping[Key, Answer | str]) -> Item:
+def item_of(cell: Cell, answers: Mapping[Key, Answer | str]) -> Item:
+    """The item of one cell.
+
+    Parameters
+    ----------
+    cell : Cell
+        As printed.
+    answers : mapping of Key to Answer or str
+        By cell.
+
+    Returns
+    -------
+    item : Item
+        With its verdict.
+
+    Raises
+    ------
+    DataError
+        If the cell has no answer.
+    """
     if cell.key not in answers:
         raise DataError(f"nothing is said of a cell of {cell.report}", found=" / ".join(cell.key))
     answer = answers[cell.key]

@@ -61,7 +61,7 @@ class _Row:
 
 @dataclass(frozen=True)
 class _Table:
-    name: str
+    title: str
     counts: Counts
     rows: tuple[_Row, ...]
 
@@ -119,10 +119,15 @@ def _report(report: ReportId, items: Sequence[Item]) -> _Report:
         id=report,
         title=TITLES[report],
         counts=counts_of(items),
-        tables=tuple(_Table(name, counts[name], tuple(own)) for name, own in rows.items()),
+        tables=tuple(_Table(_title(name), counts[name], tuple(own)) for name, own in rows.items()),
         errata=tuple(errata),
         without_cell=tuple(one.erratum.id for one in errata if not one.items),
     )
+
+
+def _title(table: str) -> str:
+    """A table has a number on its page; equations, sections and parts have a name."""
+    return table if table[0].islower() else f"Table {table}"
 
 
 def number_beside(value: float, printed: str) -> str:

@@ -20,7 +20,7 @@ from reduction.reproduce.answers import Answer, Answers, items_from
 from reduction.reproduce.armour_equations import armour, equation_answers, response
 from reduction.reproduce.item import Item
 
-__all__ = ["items"]
+__all__ = ["answers", "items"]
 
 _AXIAL, _SHEAR, _BENDING, _TORSION = (
     "axial force T", "shear force N'", "bending moment G'", "torsion moment H",
@@ -39,8 +39,18 @@ def items() -> list[Item]:
     items : list of Item
         In the order of its cells.
     """
-    answers = _settings() | _trends() | _errors() | _complementary() | equation_answers()
-    return items_from("Wang-2022", answers)
+    return items_from("Wang-2022", answers())
+
+
+def answers() -> Answers:
+    """What every printed number ought to be.
+
+    Returns
+    -------
+    answers : Answers
+        By cell.
+    """
+    return _settings() | _trends() | _errors() | _complementary() | equation_answers()
 
 
 def _settings() -> Answers:
@@ -48,7 +58,7 @@ def _settings() -> Answers:
     elements, usual = "finite element model", "usual angles, quoted"
     first, last = "winding_angle, from", "winding_angle, to"
     setting = "a setting"
-    answers: Answers = {
+    found: Answers = {
         ("sec 4", "theory used in the offshore engineering industry", "number of its reference"):
             Answer(9.0, "section 1 gives [9] to [11] to Knapp and [8] to Cardou"),
         ("sec 4.1", elements, first): Answer(10.0, "the least of the nine angles of section 5"),
@@ -60,21 +70,21 @@ def _settings() -> Answers:
         ("sec 4.2", elements, "axial strain"): setting,
     }  # fmt: skip
     for name in ("elastic_modulus", "poisson_ratio", "density"):
-        answers["1", "steel of the wires", name] = "a property of the steel"
+        found["1", "steel of the wires", name] = "a property of the steel"
     for (table, small, large), other in (
         (("sec 1", rods, springs), "sec 3.2"),
         (("sec 3.2", "theory of small angles", "theory of large angles"), "sec 1"),
     ):
         limits = ((small, 0.0, 20.0), (large, 70.0, 90.0))
         for row, low, high in limits:
-            answers[table, row, first] = Answer(low, f"printed in {other} too")
-            answers[table, row, last] = Answer(high, f"printed in {other} too")
+            found[table, row, first] = Answer(low, f"printed in {other} too")
+            found[table, row, last] = Answer(high, f"printed in {other} too")
     for row, (degrees, _, _) in _NAMED.items():
-        answers["sec 2", row, first] = answers["sec 2", row, last] = usual
-        answers["sec 5.3", row, "winding_angle"] = (
+        found["sec 2", row, first] = found["sec 2", row, last] = usual
+        found["sec 5.3", row, "winding_angle"] = (
             f"a setting; {degrees:g} deg is among the usual angles of section 2"
         )
-    return answers
+    return found
 
 
 def _peak(values: Floats) -> float:
@@ -115,7 +125,7 @@ def _errors() -> Answers:
     true = response(45.0, "torsion_stress", theory="conjugate")
     wrong = 100 * float(abs(response(45.0, "torsion_stress") / true - 1))
     largest = max(normal for _, normal, _ in _NAMED.values())
-    answers: Answers = {
+    found: Answers = {
         ("sec 5.2", f"{_AXIAL} of small and intermediate angles", "greatest error"): Answer(
             100 * float(np.max(np.abs(linear))),
             "against the rod that both simplify, from 10 to 80 deg; the finite elements are absent",
@@ -131,17 +141,17 @@ def _errors() -> Answers:
     }  # fmt: skip
     for row in _NAMED:
         for column in ("increase of the normal stress", "decrease of the shear stress"):
-            answers["sec 5.3", row, column] = missing
-    return answers
+            found["sec 5.3", row, column] = missing
+    return found
 
 
 def _complementary() -> Answers:
     names = {_BENDING: "bending_moment", _SHEAR: "shear_force", _TORSION: "torsion_moment"}
     pair = np.array([20.0, 70.0])
-    answers: Answers = {}
+    found: Answers = {}
     for row, name in names.items():
         low, high = response(pair, name)
-        answers["sec 5.2", row, "at 20 deg over at 70 deg"] = Answer(
+        found["sec 5.2", row, "at 20 deg over at 70 deg"] = Answer(
             float(low / high), "theory of intermediate angles", meaning=1.0
         )
-    return answers
+    return found

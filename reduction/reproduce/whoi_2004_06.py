@@ -18,7 +18,7 @@ from reduction.reproduce.answers import Answer, Answers, items_from
 from reduction.reproduce.hose_equations import equation_answers
 from reduction.reproduce.item import Item
 
-__all__ = ["items"]
+__all__ = ["answers", "items"]
 
 _FABRIC, _HOSE = "nylon tire cord fabric", "stretch hose"
 _MEDIUM, _HIGH = "medium high stretching hose", "high stretching hose"
@@ -33,7 +33,18 @@ def items() -> list[Item]:
     items : list of Item
         In the order of its cells.
     """
-    return items_from("WHOI-2004-06", equation_answers() | _cords() | _angles() | _tests())
+    return items_from("WHOI-2004-06", answers())
+
+
+def answers() -> Answers:
+    """What every printed number ought to be.
+
+    Returns
+    -------
+    answers : Answers
+        By cell.
+    """
+    return equation_answers() | _cords() | _angles() | _tests()
 
 
 def _cords() -> Answers:

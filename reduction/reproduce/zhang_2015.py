@@ -28,7 +28,7 @@ from reduction.reproduce.item import Item
 from reduction.reproduce.wave_equations import equation_answers
 from reduction.reproduce.wave_tables import table_answers
 
-__all__ = ["items"]
+__all__ = ["answers", "items"]
 
 _HOSE = {
     "outer_diameter": 114.0,
@@ -62,8 +62,19 @@ def items() -> list[Item]:
     items : list of Item
         In the order of its cells.
     """
-    answers = _conditions() | _hose() | _waves() | _coefficients() | _depths() | _claims()
-    return items_from("Zhang-2015", answers | table_answers() | equation_answers())
+    return items_from("Zhang-2015", answers())
+
+
+def answers() -> Answers:
+    """What every printed number ought to be.
+
+    Returns
+    -------
+    answers : Answers
+        By cell.
+    """
+    tables = _conditions() | _hose() | _waves() | _coefficients() | table_answers()
+    return tables | equation_answers() | _depths() | _claims()
 
 
 def _conditions() -> Answers:
@@ -73,7 +84,7 @@ def _conditions() -> Answers:
     neighbour = "the limit of the neighbouring theory"
     depth, end = "relative depth d/L, from", "relative depth d/L, to"
     limit = float(breaking_height(_NUMBER, 0.2 * _LENGTH)) / _LENGTH
-    answers: Answers = {
+    found: Answers = {
         ("1", _AIRY, depth): Answer(0.2, neighbour),
         ("1", _STOKES, end): Answer(0.2, neighbour),
         ("1", _STOKES, depth): Answer(0.1, neighbour),
@@ -84,8 +95,8 @@ def _conditions() -> Answers:
         ),
     }
     for cell in _cells("1"):
-        answers.setdefault(cell.key, quoted)
-    return answers | {cell.key: "measured by others, and quoted" for cell in _cells("2")}
+        found.setdefault(cell.key, quoted)
+    return found | {cell.key: "measured by others, and quoted" for cell in _cells("2")}
 
 
 def _cells(table: str) -> list[Cell]:
@@ -96,7 +107,7 @@ def _hose() -> Answers:
     """Table 3 from the immersion of (11), and (11) from Table 3."""
     hose = "floating pipeline"
     share = 0.834
-    answers: Answers = {
+    found: Answers = {
         ("3", hose, "outer_diameter D"): Answer(
             _IMMERSION / share,
             "h over h/D of (11), which are rounded",
@@ -105,14 +116,14 @@ def _hose() -> Answers:
     }
     for name, symbol in _SYMBOLS.items():
         value, low, high = (_needed(name, _IMMERSION + half) for half in (0.0, -0.05, 0.05))
-        answers["3", hose, f"{name} {symbol}"] = Answer(
+        found["3", hose, f"{name} {symbol}"] = Answer(
             value,
             "what h = 95.1 mm needs with the others; the tolerance is that of h",
             tolerance=max(abs(high - value), abs(low - value)),
         )
     depth, area = _immersed(**_HOSE)
     how = "floating position of the hose of Table 3"
-    return answers | {
+    return found | {
         ("eq 11", hose, "immersion_depth h"): Answer(depth, how),
         ("eq 11", hose, "immersion_depth over outer_diameter h/D"): Answer(
             depth / _HOSE["outer_diameter"], how
@@ -224,7 +235,7 @@ def _depths() -> Answers:
         return float(1.5 * pi * _HEIGHT / _LENGTH * np.sinh(2 * deep) / np.sinh(deep) ** 4) - second
 
     airy, stokes = _EXAMPLES
-    answers: Answers = {
+    found: Answers = {
         ("sec 5.1", airy, "water_depth"): Answer(
             float(np.arctanh(1 / coth)) / _NUMBER,
             "horizontal F0 at 0.90 s in Table 7, nearly all inertia",
@@ -236,10 +247,8 @@ def _depths() -> Answers:
     }
     for section in ("sec 5.3", "conclusion"):
         for example, depth in _EXAMPLES.items():
-            answers[section, example, "water_depth"] = Answer(
-                depth, "printed in sec 5.1 and 5.2 too"
-            )
-    return answers
+            found[section, example, "water_depth"] = Answer(depth, "printed in sec 5.1 and 5.2 too")
+    return found
 
 
 def _claims() -> Answers:

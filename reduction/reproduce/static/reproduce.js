@@ -53,19 +53,26 @@
       apply();
     });
   }
-  // an id stands in a list that may be folded
+  // what a link leads to may be folded, or filtered away with its report
   const unfold = () => {
     const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
-    const folded = target && target.closest("details");
-    if (folded && !folded.open) { folded.open = true; target.scrollIntoView(); }
+    if (!target) return;
+    if (target.closest("section[hidden]")) {
+      report.value = "";
+      apply();
+    }
+    const folded = target.closest("details");
+    if (folded) folded.open = true;
+    target.scrollIntoView();
   };
   addEventListener("hashchange", unfold);
   document.addEventListener("click", (event) => {
-    if (event.target.closest("td a[href^='#']")) setTimeout(unfold);
+    const link = event.target.closest("a[href^='#']:not([data-only])");
+    if (link && link.hash === location.hash) setTimeout(unfold);
   });
   addEventListener("beforeprint", () => {
     document.querySelectorAll("details").forEach((part) => { part.open = !part.hidden; });
   });
   apply();
-  unfold();
+  if (location.hash) unfold();
 })();

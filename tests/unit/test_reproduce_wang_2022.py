@@ -1,0 +1,67 @@
+"""Wang (2022) again: what comes back, what is wrong, and what cannot be known."""
+
+from collections import Counter
+
+import pytest
+from misprinted import verdicts_of_misprints
+
+from reduction.published.read import cells_of, errata_of
+from reduction.reproduce.wang_2022 import answers, items
+
+ITEMS = items()
+BY_KEY = {item.cell.key: item for item in ITEMS}
+
+
+def test_every_cell_has_its_item_in_its_place():
+    assert [item.cell for item in ITEMS] == list(cells_of("Wang-2022"))
+
+
+def test_nothing_is_unexplained_or_open():
+    assert Counter(one.verdict for one in ITEMS) == {
+        "reproduced": 30, "erratum": 24, "not_testable": 21,
+    }  # fmt: skip
+
+
+def test_each_erratum_is_shown_by_a_cell():
+    assert {item.cell.erratum for item in ITEMS} - {""} == {
+        one.id for one in errata_of("Wang-2022")
+    }
+
+
+def test_a_changed_digit_is_found():
+    verdicts = verdicts_of_misprints("Wang-2022", answers())
+    # an error of 100 % comes back, and its cause is an erratum
+    (wrong,) = [key for key, verdict in verdicts.items() if verdict != "unexplained"]
+    assert wrong == ("sec 5.3", "shear stress of intermediate angles", "greatest error")
+    # two limits, and the words of one ratio, hold no digit that could be changed
+    assert len(verdicts) == 27
+
+
+@pytest.mark.parametrize("row", ["umbilical", "flexible pipe", "cryogenic hose"])
+@pytest.mark.parametrize(
+    "column", ["increase of the normal stress", "decrease of the shear stress"]
+)
+def test_errors_against_finite_elements_are_not_testable(row, column):
+    item = BY_KEY["sec 5.3", row, column]
+    assert item.verdict == "not_testable" and "finite-element" in item.how
+
+
+@pytest.mark.parametrize(
+    ("row", "column", "verdict", "value", "within"),
+    [
+        ("bending moment G', numerical", "winding_angle of its peak", "reproduced", 45.0, 0.02),
+        ("shear force N', numerical", "winding_angle of its peak", "erratum", 52.7, 0.05),
+        ("torsion moment H, numerical", "winding_angle of its peak", "erratum", 60.0, 0.02),
+        ("bending moment G'", "at 20 deg over at 70 deg", "reproduced", 1.0, 1e-12),
+        ("torsion moment H", "at 20 deg over at 70 deg", "erratum", -1.0, 1e-12),
+        ("axial force T of small and intermediate angles", "greatest error", "reproduced",
+         0.0485, 0.0015),
+        ("shear stress of intermediate angles", "greatest error", "reproduced", 100.0, 1e-9),
+        ("axial force T, numerical", "squared correlation with a straight line in the angle",
+         "erratum", 0.995, 0.0005),
+    ],
+)  # fmt: skip
+def test_claims(row, column, verdict, value, within):
+    (item,) = [one for one in ITEMS if (one.cell.row, one.cell.column) == (row, column)]
+    assert item.verdict == verdict
+    assert item.recomputed == pytest.approx(value, abs=within)

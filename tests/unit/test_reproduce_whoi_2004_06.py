@@ -1,0 +1,77 @@
+"""WHOI-2004-06 again: what comes back, what is wrong, and what cannot be known."""
+
+from collections import Counter
+
+import pytest
+from misprinted import verdicts_of_misprints
+
+from reduction.published.read import cells_of, errata_of
+from reduction.reproduce.whoi_2004_06 import answers, items
+
+ITEMS = items()
+BY_KEY = {item.cell.key: item for item in ITEMS}
+
+
+def counted(**where):
+    return Counter(
+        item.verdict
+        for item in ITEMS
+        if all(getattr(item.cell, name).startswith(text) for name, text in where.items())
+    )
+
+
+def test_every_cell_has_its_item_in_its_place():
+    assert [item.cell for item in ITEMS] == list(cells_of("WHOI-2004-06"))
+
+
+def test_nothing_is_unexplained_or_open():
+    assert counted() == {"reproduced": 33, "erratum": 15, "not_testable": 21}
+
+
+def test_misprints_of_the_equations():
+    # (10) its number, (15) one of three powers, (20), (25) and both of (26)
+    wrong = [item.cell.table for item in ITEMS if item.verdict == "erratum"]
+    assert [table for table in wrong if table.startswith("eq")] == [
+        "eq 10", "eq 15", "eq 20", "eq 25", "eq 26", "eq 26",
+    ]  # fmt: skip
+    assert counted(table="eq") == {"erratum": 6, "reproduced": 20}
+
+
+def test_each_erratum_is_shown_by_a_cell():
+    assert {item.cell.erratum for item in ITEMS} - {""} == {
+        one.id for one in errata_of("WHOI-2004-06")
+    }
+
+
+def test_a_changed_digit_is_found():
+    verdicts = verdicts_of_misprints("WHOI-2004-06", answers())
+    # (13) is right and said to follow from (12), which it does not
+    (wrong,) = [key for key, verdict in verdicts.items() if verdict != "unexplained"]
+    assert wrong[0] == "eq 13" and verdicts[wrong] == "erratum"
+    assert len(verdicts) == 33
+
+
+@pytest.mark.parametrize(
+    ("row", "percent", "cord"),
+    [
+        ("medium high stretching hose", "61.0 %", "3.30 %"),
+        ("high stretching hose", "102.5 %", "5.65 %"),
+    ],
+)
+def test_measured_stretches_are_possible_and_no_more(row, percent, cord):
+    item = BY_KEY["sec 3.0", row, "maximum stretch"]
+    assert item.verdict == "not_testable"
+    assert percent in item.how and cord in item.how
+
+
+def test_what_is_recomputed():
+    fabric = "nylon tire cord fabric"
+    right = {
+        ("sec 1.1", fabric, "gap between cords over the cord diameter"): 0.3369,
+        ("sec 1.2.1", "stretch hose", "neutral wrap angle"): 54.7356,
+        ("footnote 1", fabric, "linear density"): 0.186667,
+        ("sec 1.2.2", fabric, "breaking strength of the fabric"): 1020.0,
+        ("sec 1.2.2", fabric, "number of plies"): 2.001,
+    }
+    for key, value in right.items():
+        assert BY_KEY[key].recomputed == pytest.approx(value, rel=5e-4)
