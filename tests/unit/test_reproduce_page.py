@@ -1,0 +1,104 @@
+"""The page of reproduced numbers: every cell with its verdict, and nothing fetched."""
+
+import re
+from collections import Counter
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import pytest
+
+from reduction.published.read import REPORTS, cells_of, errata_of
+from reduction.reproduce.item import Item
+from reduction.reproduce.page import TITLES, number_beside, render_reproduction
+from reduction.reproduce.reports import reproduce
+
+VOID = {"meta", "input", "link", "br"}
+
+
+class Read(HTMLParser):
+    """Tags with their attributes, in order, and whether they close as they open."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.tags, self.open, self.text = [], [], ""
+        self.feed(html)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text += data if self.open[-1:] not in (["script"], ["style"]) else ""
+
+
+WHOLE = reproduce()
+HTML = render_reproduction(WHOLE)
+PAGE = Read(HTML)
+
+
+def test_tags_close_and_ids_are_unique():
+    assert PAGE.open == []
+    ids = [attrs["id"] for _, attrs in PAGE.tags if "id" in attrs]
+    assert [one for one, n in Counter(ids).items() if n > 1] == []
+
+
+def test_every_cell_stands_on_the_page_with_its_verdict():
+    shown = Counter(attrs["data-verdict"] for tag, attrs in PAGE.tags if "data-verdict" in attrs)
+    assert shown == Counter(item.verdict for items in WHOLE.values() for item in items)
+
+
+def test_links_lead_to_an_id_of_the_page():
+    ids = {attrs["id"] for _, attrs in PAGE.tags if "id" in attrs}
+    links = [attrs["href"] for tag, attrs in PAGE.tags if tag == "a"]
+    assert all(link.startswith("#") and link[1:] in ids for link in links)
+    assert {one.id for report in REPORTS for one in errata_of(report)} <= ids
+
+
+def test_nothing_is_fetched():
+    assert not [tag for tag, attrs in PAGE.tags if "src" in attrs or tag in ("link", "iframe")]
+    assert "default-src 'none'" in HTML
+    assert not re.search(r"url\(|@import|https?://", HTML)
+
+
+def test_the_filter_knows_reports_and_verdicts():
+    options = re.findall(r"<option[^>]*>([^<]*)</option>", HTML)
+    assert options == ["all", *REPORTS]
+    ticks = [a["value"] for tag, a in PAGE.tags if tag == "input" and a.get("name") == "verdict"]
+    assert ticks == ["reproduced", "erratum", "open", "not_testable", "unexplained"]
+    # without a script there is no filter, and everything is shown
+    (form,) = (attrs for tag, attrs in PAGE.tags if tag == "form")
+    assert "hidden" in form
+
+
+def test_each_report_has_its_title():
+    assert TITLES.keys() == set(REPORTS)
+    assert all(title in PAGE.text for title in TITLES.values())
+
+
+def test_words_of_a_cell_are_no_markup_and_an_unexplained_cell_stands_out():
+    cell = replace(cells_of("Wang-2022")[0], row="<b>steel</b>", note="a & b")
+    html = render_reproduction({"Wang-2022": [Item(cell, 1.0, "unexplained", "x < y")]})
+    assert "&lt;b&gt;steel" in html and "a &amp; b" in html and "x &lt; y" in html
+    assert re.search(r'<a href="#filter" data-only="unexplained" class=bad>', html)
+    # errata of the report without a cell here are named
+    assert "No single cell: WA-1, WA-2" in html
+
+
+@pytest.mark.parametrize(
+    ("value", "printed", "text"),
+    [
+        (84.2132, "84.21", "84.2132"),
+        (1020.0, "about 1,000", "1,020.00"),
+        (3.2612e-11, "3.26e-11", "3.2612e-11"),
+        (1e-16, "0.02", "0"),
+        (0.34202, "fr", "0.34202"),
+        (float("nan"), "1", ""),
+        (2.5e12, "2", "2.5e+12"),
+    ],
+)
+def test_a_recomputed_number_has_two_digits_more(value, printed, text):
+    assert number_beside(value, printed) == text
