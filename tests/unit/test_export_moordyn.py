@@ -1,0 +1,71 @@
+import math
+
+import pytest
+from export_lines import constant, growing, line, syrope
+from export_readers import moordyn_sections, moordyn_table
+
+from reduction.errors import SettingsError
+from reduction.export.moordyn import moordyn_files
+
+
+def row_of(files):
+    (row,) = moordyn_sections(files[""])["LINE TYPES"]
+    return row
+
+
+def test_a_table_is_named_in_the_row_and_has_numerical_damping():
+    files = moordyn_files(line(viscoelasticity=constant()), "x")
+    assert list(files) == ["", "x_table.txt"]
+    assert row_of(files) == [
+        "new_tether", "0.026", "0.6", "x_table.txt", "-1", "0", "1.2", "1", "0", "0",
+    ]  # fmt: skip
+    strain, _ = moordyn_table(files["x_table.txt"])
+    assert strain.size == 30
+    assert "share of critical, numerical" in files[""]
+
+
+def test_static_and_dynamic_stiffness_have_the_dashpot_of_the_series_form():
+    files = moordyn_files(line(viscoelasticity=constant()), "x", form="static-dynamic")
+    row = row_of(files)
+    assert row[3] == "20000|50000"
+    slow, fast = map(float, row[4].split("|"))
+    assert slow == pytest.approx(9e4 * (5 / 3) ** 2)
+    # a tenth of critical for segments of 2 m
+    assert fast == pytest.approx(0.1 * 2 * math.sqrt(5e4 * 0.6))
+    assert "K_1 tau = 90000 N s" in " ".join(files[""].split())
+
+
+def test_a_stiffness_that_grows_is_written_as_three_numbers():
+    files = moordyn_files(line(viscoelasticity=growing()), "x", form="load-dependent")
+    assert row_of(files)[3] == "20000|30000|10"
+    assert "found at mean tension 2 kN" in files[""]
+
+
+def test_a_syrope_has_its_three_files_and_its_initial_conditions():
+    files = moordyn_files(line(syrope=syrope()), "x", form="syrope")
+    assert files["x_syrope.dat"] == "x_owc.dat OWC\nLINEAR WCType\n0.2 k1\n0 k2"
+    strain, tension = moordyn_table(files["x_owc.dat"])
+    assert tension[-1] == 6.5e6
+    assert strain[-1] == 0.08
+    assert row_of(files)[3:5] == ["SYROPE:x_syrope.dat|150000000|25", "100000000|1000000"]
+    sections = moordyn_sections(files[""])
+    assert sections["SYROPE IC"] == [["1", "3000000", "1000000"]]
+    assert list(sections).index("SYROPE IC") == list(sections).index("LINES") + 1
+    # damping of the fast spring would ask for tiny steps: no node is free
+    assert sections["LINES"][0][5] == "1"
+
+
+@pytest.mark.parametrize(
+    ("fields", "form", "message"),
+    [
+        ({}, "static-dynamic", "static and dynamic stiffness of new tether are not known"),
+        ({"viscoelasticity": constant()}, "load-dependent", "does not grow"),
+        ({}, "syrope", "has no Syrope working curves"),
+        ({}, "spring", "form of a MoorDyn line is not known"),
+        ({"linear_density": math.nan}, "table", "linear density of new tether is not known"),
+        ({"diameter": math.nan}, "table", "diameter of new tether is not known"),
+    ],
+)
+def test_what_the_line_has_not_is_refused(fields, form, message):
+    with pytest.raises(SettingsError, match=message):
+        moordyn_files(line(**fields), "x", form=form)

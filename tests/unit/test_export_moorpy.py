@@ -1,0 +1,43 @@
+import math
+
+import pytest
+import yaml
+from export_lines import growing, line
+from export_readers import moordyn_sections, moorpy_table
+
+from reduction.errors import SettingsError
+from reduction.export.moorpy import moorpy_files
+
+
+def test_the_name_of_the_table_stands_in_bars_and_the_table_ends_at_a_rule():
+    files = moorpy_files(line(), "x")
+    (row,) = moordyn_sections(files[""])["LINE TYPES"]
+    assert row[3] == "|x_moorpy.txt|"
+    assert files["x_moorpy.txt"].endswith("\n---")
+    assert moorpy_table(files["x_moorpy.txt"]).shape == (2, 30)
+    assert "working folder" in files[""]
+
+
+def test_the_library_is_over_break_strength_and_diameter():
+    one = line(viscoelasticity=growing(), rated_break_strength=5e4)
+    props = yaml.safe_load(moorpy_files(one, "x", form="library")[""])["lineProps"]["new_tether"]
+    assert all(isinstance(value, float) for value in props.values())
+    assert props["MBL_d2"] * 0.026**2 == pytest.approx(5e4)
+    assert props["EA_MBL"] == 0.4
+    assert props["EAd_MBL"] == 0.6
+    assert props["EAD_LM"] == props["EAd_MBL_Lm"] == 10
+    assert not {"d_min", "d_max"} & set(props)
+
+
+@pytest.mark.parametrize(
+    ("fields", "form", "message"),
+    [
+        ({}, "library", "library of MoorPy is linear"),
+        ({"viscoelasticity": growing()}, "library", "rated break strength"),
+        ({}, "cubic", "form of a MoorPy line is not known"),
+        ({"linear_density": math.nan}, "table", "linear density"),
+    ],
+)
+def test_what_the_line_has_not_is_refused(fields, form, message):
+    with pytest.raises(SettingsError, match=message):
+        moorpy_files(line(**fields), "x", form=form)

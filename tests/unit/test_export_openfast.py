@@ -1,0 +1,20 @@
+from export_lines import line, syrope
+from export_readers import moordyn_sections
+
+from reduction.export.moordyn import moordyn_files
+from reduction.export.openfast import openfast_files
+
+
+def test_the_row_is_that_of_moordyn_and_options_of_the_other_code_are_left_out():
+    files, other = openfast_files(line(), "x"), moordyn_files(line(), "x")
+    assert files["x_table.txt"] == other["x_table.txt"]
+    sections, others = moordyn_sections(files[""]), moordyn_sections(other[""])
+    assert sections["LINE TYPES"] == others["LINE TYPES"]
+    assert {row[1] for row in sections["OPTIONS"]} == {"dtM", "g", "WtrDpth"}
+    assert "sought beside the executable: put them there, or write the path" in " ".join(
+        files[""].split()
+    )
+
+
+def test_syrope_says_which_version_it_needs():
+    assert "June 2026" in openfast_files(line(syrope=syrope()), "x", form="syrope")[""]

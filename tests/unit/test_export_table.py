@@ -1,0 +1,89 @@
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+from export_lines import line
+
+from reduction.errors import ArchiveError, SettingsError
+from reduction.export.table import (
+    TableColumn,
+    ValueTable,
+    curve_table,
+    table_text_of,
+    write_netcdf,
+)
+
+TABLE = ValueTable(
+    "K_ap of 1/2 in line & more",
+    (
+        TableColumn("tension", "N", "tension", np.array([0.0, 4.4482216152605])),
+        TableColumn("apparent_spring_constant", "N", "K_ap", np.array([1.0, np.nan])),
+        TableColumn("is_tested", "", "tested", np.array([False, True])),
+    ),
+    sources=("CG-D-39-80, Table 3",),
+    notes=("B_7 is open",),
+    is_synthetic=True,
+)
+
+
+def test_csv_has_units_sources_and_empty_cells():
+    rows = table_text_of(TABLE, "csv").split("\r\n")
+    assert rows[0] == "tension [N],apparent_spring_constant [N],is_tested,what,source"
+    assert rows[2].startswith("4.4482216152605,,yes,K_ap of 1/2 in line & more,")
+    assert "Synthetic" in rows[1]
+    assert "CG-D-39-80, Table 3" in rows[1]
+
+
+def test_us_units_are_for_reading():
+    rows = table_text_of(TABLE, "csv", units="us").split("\r\n")
+    assert rows[0].startswith("tension [lbf]")
+    assert float(rows[2].split(",")[0]) == pytest.approx(1)
+
+
+def test_json_has_null_for_what_is_not_known():
+    document = json.loads(table_text_of(TABLE, "json"))
+    assert document["values"]["apparent_spring_constant"] == [1.0, None]
+    assert document["values"]["is_tested"] == [False, True]
+    assert document["units"]["tension"] == "N"
+    assert document["synthetic"] is True
+
+
+def test_latex_escapes_and_markdown_has_a_row_a_point():
+    text = table_text_of(TABLE, "latex")
+    assert r"line \& more" in text
+    assert r"B\_7 is open" in text
+    assert r"4.4482216152605 &  & yes \\" in text
+    rows = table_text_of(TABLE, "markdown").split("\n")
+    assert "| 0 | 1 | no |" in rows
+    assert "- Source: CG-D-39-80, Table 3" in rows
+
+
+def test_netcdf_keeps_values_units_and_sources(tmp_path):
+    write_netcdf(TABLE, tmp_path / "t.nc")
+    with xr.open_dataset(tmp_path / "t.nc") as found:
+        np.testing.assert_array_equal(found["tension"], TABLE.columns[0].values)
+        assert found["tension"].attrs["units"] == "N"
+        assert found["is_tested"].attrs["flag_meanings"] == "no yes"
+        assert found.attrs["source"] == "CG-D-39-80, Table 3"
+        assert found.attrs["synthetic"] == "yes"
+
+
+def test_a_curve_says_which_points_were_tested():
+    one = line(
+        strain=np.array([0.2, 0.3, 0.6]), tension=np.array([1.0, 2.0, 3.0]), tested=(0.2, 0.3)
+    )
+    table = curve_table(one)
+    assert table.columns[2].values.tolist() == [False, True, True, False]
+    assert "straight line from 0 0" in table.notes[-1]
+
+
+def test_faults_are_named(tmp_path):
+    with pytest.raises(SettingsError, match="form of a table is not known"):
+        table_text_of(TABLE, "html")
+    short = TableColumn("strain", "1", "strain", np.array([0.0]))
+    with pytest.raises(SettingsError, match="differ in length"):
+        ValueTable("t", (*TABLE.columns, short), ("s",))
+    (tmp_path / "folder.nc").mkdir()
+    with pytest.raises(ArchiveError, match="cannot be written"):
+        write_netcdf(TABLE, tmp_path / "folder.nc")

@@ -1,0 +1,60 @@
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.export.thin import LIFT, curve_from_zero, thin_curve
+
+
+def test_chords_of_a_parabola_have_the_error_of_even_steps():
+    """T = 100 e^2 over n even steps: the chord is off by 100 h^2 / 4."""
+    strain = np.linspace(0, 1, 5000)
+    found = thin_curve(strain, 100 * strain**2, most=30)
+    assert found.strain.size == 30
+    assert found.error == pytest.approx(25 / 29**2, rel=0.01)
+    assert found.share == found.error / 100
+
+
+def test_a_curve_with_few_points_is_kept():
+    found = thin_curve([0, 0.1, 0.3], [0, 5, 9], most=30)
+    np.testing.assert_array_equal(found.strain, [0, 0.1, 0.3])
+    assert found.error == 0
+    assert found.words == ""
+
+
+def test_corners_are_found():
+    strain = np.linspace(0, 1, 1001)
+    tension = np.where(strain < 0.4, strain, 0.4 + 30 * (strain - 0.4))
+    found = thin_curve(strain, tension, most=3)
+    np.testing.assert_allclose(found.strain, [0, 0.4, 1])
+    assert found.error < 1e-9
+
+
+def test_slack_is_told_from_what_was_not_measured():
+    strain, tension, words = curve_from_zero([0.1, 0.2, 0.5], [0.0, 0.0, 8.0])
+    np.testing.assert_allclose(strain, [0, 0.2, 0.5])
+    np.testing.assert_allclose(tension, [0, LIFT * 8 * 0.4, 8 * (1 + LIFT)])
+    assert words.startswith("slack from 0 0 to strain 0.2")
+    assert "straight line" in curve_from_zero([0.1, 0.2], [1.0, 2.0])[2]
+
+
+def test_negative_tension_before_the_line_comes_taut_is_left_out():
+    strain, tension, _ = curve_from_zero([-0.1, 0.0, 0.2], [-3.0, 0.0, 8.0])
+    np.testing.assert_array_equal(strain, [0, 0.2])
+    np.testing.assert_array_equal(tension, [0, 8])
+
+
+@pytest.mark.parametrize(
+    ("strain", "tension", "message"),
+    [
+        ([0.1], [1.0], "not two points"),
+        ([0.1, 0.2], [1.0], "not two points"),
+        ([0.1, np.nan], [1.0, 2.0], "not numbers"),
+        ([0.0, 0.2, 0.1], [0.0, 2.0, 1.0], "a loop is not exported"),
+        ([0.0, 0.1, 0.2], [0.0, 2.0, 1.0], "turns back at 1 of 2 steps"),
+        ([0.0, 0.2], [5.0, 8.0], "tension where it has no strain"),
+        ([0.1, 0.2], [0.0, 0.0], "ends at no tension"),
+    ],
+)
+def test_a_curve_that_no_code_can_take_is_refused(strain, tension, message):
+    with pytest.raises(DataError, match=message):
+        curve_from_zero(strain, tension)

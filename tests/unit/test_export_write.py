@@ -1,0 +1,40 @@
+import pytest
+from export_lines import constant, line
+
+from reduction.errors import SettingsError
+from reduction.export.write import FORMATS, FORMS, export_line
+
+
+@pytest.mark.parametrize("to", FORMATS)
+def test_the_file_that_was_asked_for_is_there_and_is_the_last(to, tmp_path):
+    path = tmp_path / "my line.dat"
+    written = export_line(line(), to, path)
+    assert written[-1] == path
+    assert set(tmp_path.iterdir()) == set(written)
+    assert all(" " not in one.name for one in written[:-1])
+
+
+def test_files_of_two_codes_may_stand_in_one_folder(tmp_path):
+    """MoorDyn does not survive the end of the table that MoorPy needs."""
+    first = export_line(line(), "moordyn", tmp_path / "a.dat")
+    second = export_line(line(), "moorpy", tmp_path / "a.txt")
+    assert not set(first) & set(second)
+
+
+def test_forms_are_handed_on(tmp_path):
+    one = line(viscoelasticity=constant())
+    export_line(one, "moordyn", tmp_path / "a.dat", form="static-dynamic")
+    assert "20000|50000" in (tmp_path / "a.dat").read_text()
+    export_line(one, "whoi-cable", tmp_path / "a.cbl", form="table")
+    assert "T = (0.0, 0.0) (" in (tmp_path / "a.cbl").read_text()
+
+
+def test_unknown_formats_and_forms_are_refused(tmp_path):
+    with pytest.raises(SettingsError, match="format is not known"):
+        export_line(line(), "ansys", tmp_path / "a")
+    with pytest.raises(SettingsError, match="orcaflex has no form 'table'"):
+        export_line(line(), "orcaflex", tmp_path / "a", form="table")
+    with pytest.raises(SettingsError, match=r"needed one of table, library"):
+        export_line(line(), "moorpy", tmp_path / "a", form="syrope")
+    assert set(FORMS) < set(FORMATS)
+    assert list(tmp_path.iterdir()) == []
