@@ -87,8 +87,9 @@ def write_comparisons(
         status = "compared_with_notes" if named.notes else "compared"
         message = f"{plan.name}: {named.comparison.validation.verdict}"
         statuses.append(PartStatus(plan.name, status, 0, message))
-    if not done and not any(one.status == "no_work" for one in statuses):
-        (folder / "comparisons.nc").unlink(missing_ok=True)
+    old = folder / "comparisons.nc"
+    if old.is_file() and not done and not any(one.status == "no_work" for one in statuses):
+        old.unlink()
     if done:
         write_named(
             done,

@@ -8,6 +8,8 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -129,7 +131,18 @@ def _of_surface(
         )
     columns = np.broadcast_arrays(*(given[name] for name in line.factor_names))
     shape = columns[0].shape
-    points = evaluate_surface(surface, np.stack([one.ravel() for one in columns], axis=1))
+    at = np.stack([one.ravel() for one in columns], axis=1)
+    points = evaluate_surface(surface, at)
+    others = [
+        evaluate_surface(replace(surface, coefficient=one), at) for one in surface.alternatives
+    ]
+
+    def span(name: str, ends: Callable[..., Floats]) -> Floats:
+        found: Floats = getattr(points, name)
+        for other in others:
+            found = ends(found, getattr(other, name))
+        return found.reshape(shape)
+
     inside = points.is_inside.reshape(shape)
     if extrapolate == "refuse" and not inside.all():
         _refuse_outside(line, surface, columns, inside)
@@ -141,10 +154,10 @@ def _of_surface(
         inside=inside,
         untested=inside & untested,
         value=points.value.reshape(shape),
-        low=points.low.reshape(shape),
-        high=points.high.reshape(shape),
-        surface_low=points.surface_low.reshape(shape),
-        surface_high=points.surface_high.reshape(shape),
+        low=span("low", np.minimum),
+        high=span("high", np.maximum),
+        surface_low=span("surface_low", np.minimum),
+        surface_high=span("surface_high", np.maximum),
     )
 
 
@@ -219,6 +232,12 @@ def _values(
         notes.append(
             "the peak tension is above what the source allows: 60 % of the break strength where "
             "a line is always loaded, 30 % where it goes slack"
+        )
+    below = int(np.sum(numbers["value"] < 0))
+    if below:
+        notes.append(
+            f"{below} of {inside.size} values are below zero, which {of.quantity} cannot be: the "
+            "surface says nothing there"
         )
     return DesignValues(
         quantity=of.quantity,

@@ -43,6 +43,9 @@ class LineSurface:
         Of any run: where a point has more, nothing was tested. [1]
     exponent : float
         Of Box and Cox; 1 where the quantity was fitted as it is, 0 for its logarithm. [1]
+    alternatives : ndarray, shape (n_alternatives, n_terms)
+        Other coefficients that may be the right ones, where that is open: an interval spans
+        them all. [as coefficient]
     errata : tuple of str
         Ids that touch it.
     notes : tuple of str
@@ -59,6 +62,7 @@ class LineSurface:
     degrees_of_freedom: float
     greatest_leverage: float
     exponent: float = 1.0
+    alternatives: Floats = field(default_factory=lambda: np.empty((0, 0)))
     errata: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 

@@ -1,0 +1,130 @@
+"""Published lines as they are looked up, against numbers typed from the tables."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError, SettingsError
+from reduction.lookup.line import look_up
+from reduction.published.linesource import published_sources
+
+LBF = 4.4482216152605
+
+
+@pytest.fixture(scope="module")
+def lines():
+    return published_sources()
+
+
+def centre(line):
+    surface = next(iter(line.surfaces.values()))
+    middle = (surface.low + surface.high) / 2
+    return dict(zip(line.factor_names, middle, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity", "printed"),
+    [
+        # B1 of Tables 3, 4, 12, 13, 16, 18 of CG-D-39-80: 1e4 lb, lb in/in, 1e4 lb, s
+        ("polyester-double-braid-0.5in-new", "apparent_spring_constant", 9.457e4 * LBF),
+        ("nylon-double-braid-0.5in-new", "apparent_spring_constant", 3.451e4 * LBF),
+        ("nylon-double-braid-1.25in-new", "apparent_spring_constant", 19.790e4 * LBF),
+        # Table 13: Table 11 prints the column of K_1 in its place
+        ("polyester-double-braid-0.5in-new", "hysteresis_energy", 1.20 * LBF),
+        ("nylon-double-braid-0.75in-new", "hysteresis_energy", 8.23 * LBF),
+        ("polyester-double-braid-0.5in-new", "dissipation_spring_constant", 3.593e4 * LBF),
+        ("nylon-8-strand-plaited-0.5in-new", "relaxation_time", 2.057),
+    ],
+)
+def test_the_centre_of_a_surface_is_its_printed_mean(lines, name, quantity, printed):
+    line = lines[name]
+    assert look_up(line, quantity, **centre(line)).value == pytest.approx(printed, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("diameter", "frequency", "read", "step"),
+    # Figure 4 as read in the text, 1e4 lb; the lines of 3/4 and 1 in stand in each other's place
+    [("0.75", 0.3, 11.9, 0.5), ("1", 0.3, 11.4, 0.5), ("1.25", 0.1, 17.5, 0.25)],
+)
+def test_figure_4_comes_back(lines, diameter, frequency, read, step):
+    line = lines[f"nylon-double-braid-{diameter}in-new"]
+    at = {"frequency": frequency, "mean_tension": 4000 * LBF, "tension_amplitude": 1600 * LBF}
+    if diameter != "0.75":
+        with pytest.raises(DataError, match="outside what was tested"):
+            look_up(line, "apparent_spring_constant", **at)
+    found = look_up(line, "apparent_spring_constant", extrapolate="flag", **at)
+    assert found.value / LBF / 1e4 == pytest.approx(read, abs=step)
+    assert found.is_inside == (diameter == "0.75")
+
+
+def test_an_open_coefficient_widens_the_interval_over_both_prints(lines):
+    line = lines["polyester-8-strand-plaited-0.5in-new"]
+    # B4, of the square of the amplitude: -.188 (Table 3) or -.118 (Table 5), in 1e4 lb
+    surface = line.surfaces["apparent_spring_constant"]
+    face = centre(line) | {"tension_amplitude": surface.high[2]}
+    found = look_up(line, "apparent_spring_constant", **face)
+    middle = (found.surface_low + found.surface_high) / 2
+    # B1 + B4 + B7 with either; the half width differs by the sigma of either
+    assert middle - found.value == pytest.approx(0.5 * 0.070e4 * LBF, rel=0.1)
+    assert any("open" in note for note in found.notes)
+
+
+def test_a_mean_that_is_open_is_not_given(lines):
+    line = lines["polyester-8-strand-plaited-0.5in-4-years"]
+    with pytest.raises(SettingsError, match="its mean B1 is open"):
+        look_up(line, "hysteresis_energy", **centre(line))
+
+
+def test_what_is_lost_is_told(lines):
+    line = lines["nylon-double-braid-0.5in-5-years"]
+    with pytest.raises(SettingsError, match="column of Table 15 is lost"):
+        look_up(line, "dissipation_spring_constant", **centre(line))
+
+
+def test_a_surface_that_fails_its_test_says_so(lines):
+    line = lines["nylon-double-braid-0.5in-new"]
+    found = look_up(line, "relaxation_time", **centre(line))
+    assert any("fails its F test" in note for note in found.notes)
+
+
+def test_the_scatter_is_that_of_r2(lines):
+    # Table 3: r2 = .999; 5 of fifteen degrees of freedom; at the centre a third of the variance
+    line = lines["nylon-double-braid-0.5in-new"]
+    found = look_up(line, "apparent_spring_constant", **centre(line))
+    # B5, B6, B7 at +-1 in 8 runs, B8, B9, B10 at +-1 in 4; the squares .000, -.031, .029 are small
+    explained = 8 * (0.105**2 + 1.677**2 + 0.274**2) + 4 * (0.065**2 + 0.100**2 + 0.095**2)
+    sigma = np.sqrt(explained * 0.001 / 0.999 / 5) * 1e4 * LBF
+    half = float(found.surface_high - found.value)
+    assert half == pytest.approx(2.570582 * sigma / np.sqrt(3), rel=1e-3)
+
+
+def test_k_0_of_a_line_without_a_row_is_the_slope_of_its_load_strain_curve(lines):
+    # Table 8, nylon double braid 3/4 in; its K_0 row has no range
+    line = lines["nylon-double-braid-0.75in-new"]
+    tension = 4011 * LBF
+    curve = next(one for one in line.curves if one.quantity == "strain")
+    step = 1.0
+    slope = np.polynomial.polynomial.polyval([tension - step, tension + step], curve.coefficient)
+    found = look_up(line, "quasi_static_spring_constant", mean_tension=tension)
+    assert found.value == pytest.approx(2 * step / (slope[1] - slope[0]), rel=1e-6)
+    assert any("slope of load against strain" in note for note in found.notes)
+
+
+def test_moduli_of_tethers_are_those_of_table_6(lines):
+    # T-2 of the new tether: 128 psi from 0.60 to 1.20
+    found = look_up(
+        lines["rubber-tether-new-T-2"], "tangent_modulus", strain=[0.6, 0.9, 1.19],
+        branch="ascending",
+    )  # fmt: skip
+    assert found.value == pytest.approx(np.full(3, 128 * 6894.757293168), rel=1e-9)
+    with pytest.raises(SettingsError, match="differs by branch"):
+        look_up(lines["rubber-tether-new-T-2"], "tangent_modulus", strain=1.0, branch="descending")
+
+
+def test_every_line_gives_something_or_says_why_not(lines):
+    for line in lines.values():
+        assert line.quantities or line.absent
+        for quantity in line.surfaces:
+            found = look_up(line, quantity, **centre(line))
+            assert np.isfinite(found.value)
+            assert found.is_inside
+            assert not found.is_untested
