@@ -8,7 +8,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Literal
 
@@ -27,6 +27,7 @@ __all__ = ["Branch", "look_up"]
 
 _LEVERAGE = 1 + 1e-9
 _K = 1.96
+_DASHPOT = "dashpot_coefficient"
 Branch = Literal["ascending", "descending"]
 
 
@@ -82,6 +83,8 @@ def look_up(
     >>> look_up(line, "strain", tension=[10.0, 50.0]).value
     array([0.1, 0.5])
     """
+    if quantity == _DASHPOT and quantity not in line.surfaces and line.has_dashpot:
+        return _dashpot(line, extrapolate, levels)
     surface = line.surfaces.get(quantity)
     given = {name: np.asarray(value, dtype=np.float64) for name, value in levels.items()}
     for name, value in given.items():
@@ -106,6 +109,47 @@ def look_up(
             needed=" or ".join(dict.fromkeys(needed)),
         )
     return _of_curve(line, _of_branch(line, curves, branch), given, extrapolate)
+
+
+def _dashpot(
+    line: LineSource,
+    extrapolate: Literal["refuse", "flag"],
+    levels: Mapping[str, ArrayLike],
+) -> DesignValues:
+    """N = K_1 tau, whose two surfaces are of the same runs and taken as independent."""
+    spring, time = (
+        look_up(line, name, extrapolate=extrapolate, **levels)
+        for name in ("dissipation_spring_constant", "relaxation_time")
+    )
+    value = spring.value * time.value
+
+    def half(end: str) -> Floats:
+        parts = (
+            (getattr(one, end) - one.value) * other.value
+            for one, other in ((spring, time), (time, spring))
+        )
+        return np.asarray(np.hypot(*parts))
+
+    return replace(
+        spring,
+        quantity=_DASHPOT,
+        unit=quantity_of(_DASHPOT).unit,
+        value=value,
+        low=value - half("low"),
+        high=value + half("high"),
+        surface_low=value - half("surface_low"),
+        surface_high=value + half("surface_high"),
+        errata=tuple(dict.fromkeys((*spring.errata, *time.errata))),
+        notes=tuple(
+            dict.fromkeys(
+                (
+                    "N = K_1 tau; the intervals take the scatter of the two as independent",
+                    *spring.notes,
+                    *time.notes,
+                )
+            )
+        ),
+    )
 
 
 def _of_branch(line: LineSource, curves: list[LineCurve], branch: Branch | None) -> LineCurve:

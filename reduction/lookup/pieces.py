@@ -28,6 +28,7 @@ __all__ = [
     "PieceKind",
     "piece_of_cycles",
     "piece_of_steps",
+    "pieces_of_branches",
     "pieces_of_curves",
 ]
 
@@ -95,22 +96,23 @@ def _runs(known: Bools) -> list[tuple[int, int]]:
     return [(first, stop) for first, stop in pairs if stop - first >= _FEWEST]
 
 
-def pieces_of_curves(
-    curves: ModulusCurves,
-    specimen: int,
+def pieces_of_branches(
+    strain: ArrayLike,
+    tension: ArrayLike,
+    standard_uncertainty: ArrayLike,
     *,
     name: str,
     branch: PieceBranch = "mean",
     kind: Literal["cyclic", "first-loading"] = "cyclic",
 ) -> tuple[CurvePiece, ...]:
-    """Mean tension of the cycles of one test, or of its first rise, as pieces.
+    """Tension of both branches on one grid of strain, as an archive holds it, as pieces.
 
     Parameters
     ----------
-    curves : ModulusCurves
-        Of a test. [SI]
-    specimen : int
-        Row. [1]
+    strain : array_like, shape (n,)
+        Rising. [1]
+    tension, standard_uncertainty : array_like, shape (2, n)
+        Ascending, then descending; NaN where not known. [N]
     name : str
         Of the pieces.
     branch : {"ascending", "descending", "mean"}, optional
@@ -127,6 +129,8 @@ def pieces_of_curves(
     ------
     SettingsError
         If another branch than the ascending one is asked of a first rise.
+    DataError
+        If there are not two branches on the grid, or strain does not rise.
 
     Notes
     -----
@@ -135,30 +139,78 @@ def pieces_of_curves(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> rows, none = np.full((1, 2, 3), 0.0), np.empty(0)
-    >>> load = np.array([[[10.0, 20.0, 30.0], [6.0, 18.0, 30.0]]])
-    >>> bins = np.array([0.1, 0.2, 0.3])
-    >>> curves = ModulusCurves(bins, none, 0.1, *5 * (rows,), rows, rows, rows, load,
-    ...     rows + 1.0, none, none, none)
-    >>> pieces_of_curves(curves, 0, name="T-1 new")[0].tension
+    >>> load = [[10.0, 20.0, 30.0], [6.0, 18.0, 30.0]]
+    >>> piece, = pieces_of_branches([0.1, 0.2, 0.3], load, np.ones((2, 3)), name="T-1 new")
+    >>> piece.tension
     array([ 8., 19., 30.])
     """
-    load = curves.branch_tension[specimen]
-    spread = curves.branch_tension_standard_uncertainty[specimen]
     if kind == "first-loading" and branch != "ascending":
         raise SettingsError("a first rise only rises", found=branch, needed="branch = ascending")
+    grid = as_increasing("strain", strain)
+    load, spread = as_same_shape(tension=tension, standard_uncertainty=standard_uncertainty)
+    if load.shape != (2, grid.size):
+        raise DataError(
+            "tension is not that of two branches on the grid of strain",
+            found=f"shape {load.shape}",
+            needed=f"(2, {grid.size})",
+        )
     if branch == "mean":
-        tension, uncertainty = load.mean(axis=0), np.hypot(spread[0], spread[1]) / 2
+        level, uncertainty = load.mean(axis=0), np.hypot(spread[0], spread[1]) / 2
     else:
         row = BRANCH_NAMES.index(branch)
-        tension, uncertainty = load[row], spread[row]
-    strain = curves.strain_bin
+        level, uncertainty = load[row], spread[row]
     with np.errstate(invalid="ignore"):
-        known = np.isfinite(uncertainty) & (tension > 0) & (strain > 0)
+        known = np.isfinite(uncertainty) & (level > 0) & (grid > 0)
     return tuple(
-        CurvePiece(name, kind, branch, strain[low:high], tension[low:high], uncertainty[low:high])
+        CurvePiece(name, kind, branch, grid[low:high], level[low:high], uncertainty[low:high])
         for low, high in _runs(known)
+    )
+
+
+def pieces_of_curves(
+    curves: ModulusCurves,
+    specimen: int,
+    *,
+    name: str,
+    branch: PieceBranch = "mean",
+    kind: Literal["cyclic", "first-loading"] = "cyclic",
+) -> tuple[CurvePiece, ...]:
+    """Mean tension of the cycles of one test, or of its first rise, as pieces.
+
+    Parameters
+    ----------
+    curves : ModulusCurves
+        Of a test. [SI]
+    specimen : int
+        Row. [1]
+    name, branch, kind
+        As `pieces_of_branches`.
+
+    Returns
+    -------
+    pieces : tuple of CurvePiece
+        As `pieces_of_branches`.
+
+    Raises
+    ------
+    SettingsError
+        As `pieces_of_branches`.
+
+    Notes
+    -----
+    ``branch_tension`` with its type A uncertainty: a modulus alone leaves tension unknown ([1]_).
+
+    Examples
+    --------
+    See `tests/oracle/test_composite_truth.py`.
+    """
+    return pieces_of_branches(
+        curves.strain_bin,
+        curves.branch_tension[specimen],
+        curves.branch_tension_standard_uncertainty[specimen],
+        name=name,
+        branch=branch,
+        kind=kind,
     )
 
 

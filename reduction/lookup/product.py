@@ -175,7 +175,14 @@ class LineSource:
     @property
     def quantities(self) -> tuple[str, ...]:
         """What can be asked for."""
-        return tuple(dict.fromkeys([*self.surfaces, *(one.quantity for one in self.curves)]))
+        derived = ["dashpot_coefficient"] if self.has_dashpot else []
+        of_curves = [one.quantity for one in self.curves]
+        return tuple(dict.fromkeys([*self.surfaces, *derived, *of_curves]))
+
+    @property
+    def has_dashpot(self) -> bool:
+        """True where N = K_1 tau follows from two surfaces."""
+        return {"dissipation_spring_constant", "relaxation_time"} <= self.surfaces.keys()
 
 
 @dataclass(frozen=True)

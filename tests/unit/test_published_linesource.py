@@ -74,6 +74,20 @@ def test_a_mean_that_is_open_is_not_given(lines):
         look_up(line, "hysteresis_energy", **centre(line))
 
 
+def test_damping_is_the_product_of_its_two_surfaces(lines):
+    # B1 of polyester double braid: K_1 3.593e4 lb (Table 16), tau 1.488 s (Table 17)
+    line = lines["polyester-double-braid-0.5in-new"]
+    found = look_up(line, "dashpot_coefficient", **centre(line))
+    assert found.value == pytest.approx(3.593e4 * LBF * 1.488)
+    assert found.unit == "N s"
+    parts = [
+        look_up(line, name, **centre(line))
+        for name in ("dissipation_spring_constant", "relaxation_time")
+    ]
+    share = np.hypot(*[(one.high - one.value) / one.value for one in parts])
+    assert (found.high - found.value) / found.value == pytest.approx(share)
+
+
 def test_what_is_lost_is_told(lines):
     line = lines["nylon-double-braid-0.5in-5-years"]
     with pytest.raises(SettingsError, match="column of Table 15 is lost"):
@@ -123,7 +137,7 @@ def test_moduli_of_tethers_are_those_of_table_6(lines):
 def test_every_line_gives_something_or_says_why_not(lines):
     for line in lines.values():
         assert line.quantities or line.absent
-        for quantity in line.surfaces:
+        for quantity in line.surfaces:  # those that follow from them are tested above
             found = look_up(line, quantity, **centre(line))
             assert np.isfinite(found.value)
             assert found.is_inside
