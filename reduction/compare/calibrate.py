@@ -12,7 +12,6 @@ References
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from scipy.stats import t as student
@@ -21,7 +20,7 @@ from reduction.compare.difference import difference_of
 from reduction.compare.fitproblem import FitProblem, FitSpread, parameter_bounds, spread_of
 from reduction.compare.identifiability import identify_directions, plausible_error
 from reduction.compare.product import Calibration, Identifiability, MeasuredCurve
-from reduction.compare.trials import design_with, input_contributions, number_of
+from reduction.compare.trials import design_with, known_uncertainties, number_of
 from reduction.errors import DataError, SettingsError
 from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign
@@ -47,12 +46,13 @@ def calibrate_hose(
 
     Least of
 
-    .. math:: \sum_i \frac{[T(\varepsilon_i; \theta) + \sum_j z_j c_{ij} - D_i]^2}{u_i^2 + s^2}
+    .. math:: \sum_i \frac{[T_i(\theta, z) + \sum_j z_j c_{ij} - D_i]^2}{u_i^2 + s^2}
               + \sum_j z_j^2
 
     over the numbers :math:`\theta` between their bounds and the shared errors :math:`z`, each of
-    unit variance: calibration of load and strain, scatter that cycles have in common, and the
-    uncertain numbers that are not fitted.  That is generalised least squares, written out.
+    unit variance.  Errors of strain move the strains at which T is taken, uncertain numbers that
+    are not fitted change the hose, and :math:`T_i` is read from it as the curve was from the
+    samples; errors of load and the scatter that cycles have in common are in proportion.
 
     Parameters
     ----------
@@ -124,13 +124,10 @@ def calibrate_hose(
     judged = measured.tension_of(measured.judged)
     used = np.isfinite(judged)
     start = np.array([number_of(design, name) for name in names])
-    problem = _pose(design, measured, names, bounds or {}, held)
+    problem, sources = _pose(design, measured, names, bounds or {}, held)
     p = len(names)
     first = problem.solve(problem.start(start / problem.unit), problem.noise)
-    near = design_with(design, dict(zip(names, (first[:p] * problem.unit).tolist(), strict=True)))
-    sources, shared = _shared(near, measured, held)
-    problem = replace(problem, shared=shared[:, used])
-    remainder = problem.remainder(problem.solve(first, problem.noise))
+    remainder = problem.remainder(first)
     excess = remainder @ remainder / (remainder.size - p) - np.mean(problem.noise**2)
     model_error = float(np.sqrt(np.maximum(excess, 0.0)))
     noise = np.hypot(problem.noise, model_error)
@@ -141,12 +138,12 @@ def calibrate_hose(
     deviation = np.sqrt(np.diagonal(spread.covariance))
     half = student.ppf(0.975, spread.freedom) * deviation * problem.unit
     told_apart = identify_directions(
-        problem.slopes(best[:p]) / problem.unit,
-        tension=problem.tension_at(best[None, :p])[0],
+        problem.slopes(best[: problem.n_traced])[:, :p] / problem.unit,
+        tension=problem.tension_at(best[None, : problem.n_traced])[0],
         names=names,
         plausible=problem.unit,
         value=value,
-        contribution=problem.shared,
+        contribution=problem.error_slopes(best),
         misfit=float(np.sqrt(np.mean(problem.remainder(best) ** 2))),
     )
     margin = _AT_BOUND * (problem.high - problem.low)
@@ -189,7 +186,8 @@ def _pose(
     names: tuple[str, ...],
     bounds: Mapping[str, tuple[float, float]],
     held: Mapping[str, float],
-) -> FitProblem:
+) -> tuple[FitProblem, tuple[str, ...]]:
+    """The problem, and the names of the errors that are fitted beside the numbers."""
     if not names or len(set(names)) < len(names):
         raise SettingsError(
             "what to calibrate cannot be read",
@@ -218,28 +216,32 @@ def _pose(
             needed=f"{len(names) + 2} or more",
         )
     floor = _LEAST_NOISE * float(np.sqrt(np.mean(judged[used] ** 2)))
-    return FitProblem(
+    stated = known_uncertainties(design, held)
+    moved = {
+        name: spread
+        for name, spread in (
+            ("strain_offset", measured.strain_offset_uncertainty),
+            ("strain_scale", measured.strain_scale_uncertainty),
+        )
+        if spread > 0
+    }
+    in_proportion = [k for k, name in enumerate(measured.source) if name not in moved]
+    scatter = measured.scatter_contribution
+    problem = FitProblem(
         design=design,
         names=names,
         unit=unit,
         low=low_high[:, 0],
         high=low_high[:, 1],
-        strain=measured.strain[used],
-        tension=judged[used],
+        held=stated,
+        moved=moved,
+        measured=measured,
         noise=np.maximum(measured.independent_uncertainty()[used], floor),
-        shared=_shared(design, measured, held)[1][:, used],
+        shared=np.vstack([measured.contribution[in_proportion], scatter])[:, used],
     )
-
-
-def _shared(
-    design: HoseDesign, measured: MeasuredCurve, held: Mapping[str, float]
-) -> tuple[tuple[str, ...], Floats]:
-    """Names and signed contributions of all errors that strains share, on the whole axis."""
-    inputs, of_inputs = input_contributions(design, held, measured.strain)
-    scatter = measured.scatter_contribution
     common = tuple(f"scatter of the cycles {k + 1}" for k in range(scatter.shape[0]))
-    rows = np.vstack([measured.contribution, scatter, of_inputs])
-    return (*measured.source, *common, *inputs), rows
+    rest = tuple(measured.source[k] for k in in_proportion)
+    return problem, (*stated, *moved, *rest, *common)
 
 
 def _notes_of_numbers(

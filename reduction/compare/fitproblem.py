@@ -9,6 +9,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
 
@@ -16,11 +17,12 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from reduction.compare.identifiability import plausible_error
+from reduction.compare.product import MeasuredCurve
 from reduction.compare.residuals import autocorrelation_length
-from reduction.compare.trials import trial_tension
+from reduction.compare.trials import number_of, range_of, trial_tension
 from reduction.errors import FitError
 from reduction.predict.product import HoseDesign
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Bools, Floats, freeze_arrays
 
 __all__ = ["FitProblem", "FitSpread", "parameter_bounds", "spread_of"]
 
@@ -66,7 +68,10 @@ def parameter_bounds(name: str, start: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class FitProblem:
-    """Measured points and what is to be fitted to them; numbers in plausible errors.
+    """Measured points and what is to be fitted to them.
+
+    What is fitted stands in one vector: numbers in plausible errors, then errors in standard
+    uncertainties, those of held numbers, of strain, and those in proportion.
 
     Parameters
     ----------
@@ -76,10 +81,24 @@ class FitProblem:
         Numbers that are fitted.
     unit, low, high : ndarray, shape (n_parameter,)
         Plausible error of each [SI], and its bounds in that unit.
-    strain, tension, noise : ndarray, shape (n_strain,)
-        Measured points, and the standard uncertainty that no two of them share. [1], [N], [N]
-    shared : ndarray, shape (n_source, n_strain)
-        What they share, signed; fitted beside the numbers. [N]
+    held : mapping of str to float
+        Standard uncertainties of numbers that are not fitted. [SI]
+    moved : mapping of str to float
+        Standard uncertainties of ``strain_offset`` and ``strain_scale``. [1]
+    measured : MeasuredCurve
+        The test. [SI]
+    noise : ndarray, shape (n_used,)
+        Standard uncertainty that no two measured points share. [N]
+    shared : ndarray, shape (n_source, n_used)
+        Errors in proportion that they share, signed. [N]
+
+    Notes
+    -----
+    A strain that was read high moves the whole curve, and its kink with it.  Minus the slope
+    times the error, the change in proportion, leaves the kink where it is: a fit would find the
+    error by that alone, and call the place of the kink the angle's.  So strains are moved, the
+    numbers that are held are changed in the design, and the hose is read at the strains between
+    the bin centres as the test was.
     """
 
     design: HoseDesign
@@ -87,8 +106,9 @@ class FitProblem:
     unit: Floats
     low: Floats
     high: Floats
-    strain: Floats
-    tension: Floats
+    held: Mapping[str, float]
+    moved: Mapping[str, float]
+    measured: MeasuredCurve
     noise: Floats
     shared: Floats
 
@@ -96,34 +116,82 @@ class FitProblem:
         """Make the arrays read-only."""
         freeze_arrays(self)
 
-    def tension_at(self, steps: Floats) -> Floats:
-        """Tension of trials (n_trial, n_parameter), shape (n_trial, n_strain). [N]."""
-        return trial_tension(self.design, self.names, steps * self.unit, self.strain)
+    @property
+    def used(self) -> Bools:
+        """Which strains of the judged curve were measured, shape (n_strain,)."""
+        return np.isfinite(self.tension_of_test())
 
-    def slopes(self, at: Floats) -> Floats:
-        """Derivative of tension by each number in plausible errors, (n_strain, n_parameter)."""
-        p = at.size
-        ends = np.vstack([at - _DIFFERENCE * np.eye(p), at + _DIFFERENCE * np.eye(p)])
-        ends = np.clip(ends, self.low, self.high)
+    @property
+    def n_traced(self) -> int:
+        """Numbers and errors whose effect is computed by the hose, not in proportion."""
+        return len(self.names) + len(self.held) + len(self.moved)
+
+    @property
+    def n_error(self) -> int:
+        """Errors that are fitted beside the numbers."""
+        return len(self.held) + len(self.moved) + len(self.shared)
+
+    def tension_of_test(self) -> Floats:
+        """Judged curve, shape (n_strain,). [N]."""
+        return self.measured.tension_of(self.measured.judged)
+
+    def tension_at(self, traced: Floats) -> Floats:
+        """Tension of trials (n_trial, n_traced) as the test shows it, (n_trial, n_used). [N]."""
+        p, q = len(self.names), len(self.held)
+        values = [traced[:, :p] * self.unit]
+        for k, (name, spread) in enumerate(self.held.items()):
+            at = number_of(self.design, name) + spread * traced[:, p + k]
+            values.append(np.clip(at, *range_of(name))[:, None])
+        numbers, names = np.hstack(values), (*self.names, *self.held)
+        error = dict(zip(self.moved, traced[:, p + q :].T, strict=True))
+        none = np.zeros(traced.shape[0])
+        offset, scale = (
+            self.moved.get(name, 0.0) * error.get(name, none)
+            for name in ("strain_offset", "strain_scale")
+        )
+        node = self.measured.reading.node
+        tension = np.empty((traced.shape[0], self.noise.size))
+        used = self.used
+        axes, which = np.unique(np.column_stack([offset, scale]), axis=0, return_inverse=True)
+        for k, (by, factor) in enumerate(axes):
+            trials = which.ravel() == k
+            strain = (node - by) / (1 + factor)
+            # a record that is read low has strains just below zero: the curve goes on there
+            curve = trial_tension(self.design, names, numbers[trials], np.abs(strain))
+            tension[trials] = self.measured.reading.of(np.sign(strain) * curve)[:, used]
+        return tension
+
+    def slopes(self, traced: Floats) -> Floats:
+        """Derivative of tension by each number and traced error, (n_used, n_traced)."""
+        step = _DIFFERENCE * np.eye(traced.size)
+        ends = np.vstack([traced - step, traced + step])
+        p = len(self.names)
+        ends[:, :p] = np.clip(ends[:, :p], self.low, self.high)
         below, above = np.split(self.tension_at(ends), 2)
-        width = np.diagonal(ends[p:] - ends[:p])
+        width = np.diagonal(ends[traced.size :] - ends[: traced.size])
         return np.asarray((above - below) / width[:, None]).T
 
+    def error_slopes(self, x: Floats) -> Floats:
+        """What one standard uncertainty of each error does, shape (n_error, n_used). [N]."""
+        of_traced = self.slopes(x[: self.n_traced])[:, len(self.names) :]
+        return np.vstack([of_traced.T, self.shared])
+
     def remainder(self, x: Floats) -> Floats:
-        """Fitted curve, shared errors in it, less the measured one, shape (n_strain,). [N]."""
-        at, z = np.split(x, [self.unit.size])
-        return np.asarray(self.tension_at(at[None, :])[0] + z @ self.shared - self.tension)
+        """Fitted curve, shared errors in it, less the measured one, shape (n_used,). [N]."""
+        traced, z = np.split(x, [self.n_traced])
+        curve = self.tension_at(traced[None, :])[0] + z @ self.shared
+        return np.asarray(curve - self.tension_of_test()[self.used])
 
     def residual(self, x: Floats, noise: Floats) -> Floats:
-        """What is squared and summed: every strain, then every shared error."""
-        return np.concatenate([self.remainder(x) / noise, x[self.unit.size :]])
+        """What is squared and summed: every strain, then every error."""
+        return np.concatenate([self.remainder(x) / noise, x[len(self.names) :]])
 
     def jacobian(self, x: Floats, noise: Floats) -> Floats:
-        """Of `residual`, by the numbers and the shared errors."""
-        slopes = self.slopes(x[: self.unit.size])
-        k = self.shared.shape[0]
+        """Of `residual`, by the numbers and the errors."""
+        slopes = self.slopes(x[: self.n_traced])
         data = np.hstack([slopes, self.shared.T]) / noise[:, None]
-        prior = np.hstack([np.zeros((k, self.unit.size)), np.eye(k)])
+        p, k = len(self.names), self.n_error
+        prior = np.hstack([np.zeros((k, p)), np.eye(k)])
         return np.vstack([data, prior])
 
     def start(self, first: Floats) -> Floats:
@@ -131,7 +199,10 @@ class FitProblem:
         p = first.size
         offsets = np.array(list(product(_START_STEPS, repeat=p)))
         tried = np.clip(first + offsets, self.low, self.high)
-        error = (self.tension_at(tried) - self.tension) / self.noise
+        curve = trial_tension(
+            self.design, self.names, tried * self.unit, self.measured.strain[self.used]
+        )
+        error = (curve - self.tension_of_test()[self.used]) / self.noise
         # a number that the curve does not show stays where the design has it
         cost = np.sum(error**2, axis=1) + 1e-3 * np.sum(offsets**2, axis=1)
         return np.asarray(tried[int(np.argmin(cost))])
@@ -144,7 +215,7 @@ class FitProblem:
         FitError
             If the search does not end.
         """
-        k = self.shared.shape[0]
+        k = self.n_error
         margin = 1e-6 * (self.high - self.low)  # a search may not begin on a bound
         inside = np.clip(first[: self.unit.size], self.low + margin, self.high - margin)
         x0 = np.concatenate([inside, np.zeros(k)])

@@ -15,18 +15,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.compare.cells import fill_cells, tension_at_centres
+from reduction.compare.cells import Cells, fill_cells, reading_of, tension_at_centres
 from reduction.compare.product import Loading, MeasuredCurve
 from reduction.compare.samples import select_samples
 from reduction.compare.scatter import bin_noise, branch_scatter, shared_scatter
-from reduction.errors import SettingsError
-from reduction.record import Floats
+from reduction.errors import DataError, SettingsError
+from reduction.record import Bools, Floats, Integers
 
 __all__ = ["SharedUncertainty", "measured_curve"]
 
 _ONE_BRANCH = (
     "one branch was measured: it is judged itself, and lies above a midline by half the loop"
 )
+_GREATEST_STRAIN = 10.0  # no hose stretches to eleven times its length
 
 
 @dataclass(frozen=True)
@@ -103,8 +104,8 @@ def measured_curve(
     Raises
     ------
     DataError
-        If the series do not pair up, no sample belongs to a branch, or no cycle is left
-        after break-in.
+        If the series do not pair up, no sample belongs to a branch, no cycle is left after
+        break-in, or a strain is one that no hose has.
     SettingsError
         If the step is not positive, one of ``cycle_number`` and ``branch`` is missing, or
         ``loading`` is neither.
@@ -113,7 +114,11 @@ def measured_curve(
     -----
     *Bias.* A mean over a bin is high by a 24th of its bend; the third term takes that off, so
     that a parabola comes back exactly.  Where the cords pick up, the slope jumps and the curve
-    is rounded over one bin.  A bin at the end of a branch has one neighbour and no bend.
+    is rounded over one bin; ``reading`` says how.  A bin at the end of a branch has one neighbour
+    and no bend.  No value lies beyond the samples that it is read from.
+
+    *End.* The last samples rarely reach the centre of their bin.  Where they do not, the curve
+    goes on to the last sample, by the mean of those samples and the slope from the bin below.
 
     *Uncertainty* of the means is type A: scatter over the cycles, and for a single pull the
     noise in the bins and from bin to bin.  Where cycles lie high or low as a whole, that part
@@ -152,6 +157,13 @@ def measured_curve(
     step = samples.least_step() if strain_step is None else strain_step
     if not (np.isfinite(step) and step > 0):
         raise SettingsError("strain_step cannot be used", found=f"{step:g}", needed="above zero")
+    greatest = float(samples.strain.max())
+    if greatest > _GREATEST_STRAIN:
+        raise DataError(
+            "no hose stretches as far as this test: strain in per cent?",
+            found=f"a strain of {greatest:.4g}, {100 * greatest:.4g} %",
+            needed=f"strains as a part of the relaxed length, {_GREATEST_STRAIN:g} at most",
+        )
     n_cycle = samples.cycle_number.size
     cells, centre = fill_cells(
         samples.strain, samples.tension, row=samples.row, n_rows=2 * n_cycle, step=step
@@ -172,7 +184,14 @@ def measured_curve(
     of_branch = np.sqrt(variance)
     if not is_paired:
         of_branch[0] = type_a
-    source, contribution = _contributions(centre, judged, shared or SharedUncertainty())
+    known = shared or SharedUncertainty()
+    source, contribution = _contributions(centre, judged, known)
+    in_mean = np.isfinite(cycles) & np.isfinite(judged)
+    row_weight = np.zeros(by_cycle.shape)
+    part = in_mean / np.maximum(in_mean.sum(axis=0), 1)
+    row_weight[samples.n_break_in :, : 1 + is_paired] = part[:, None] / (1 + is_paired)
+    rows = 2 * np.arange(samples.n_break_in, n_cycle)[:, None] + np.arange(1 + is_paired)
+    end = _end_of_curve(cells, rows, np.isfinite(judged), type_a)
     return MeasuredCurve(
         strain=centre,
         tension=by_cycle,
@@ -186,8 +205,54 @@ def measured_curve(
         source=source,
         contribution=contribution,
         loading=loading,
+        reading=reading_of(
+            samples.strain,
+            row=samples.row,
+            cells=cells,
+            row_weight=row_weight.reshape(by_row.shape),
+            centre=centre,
+            step=step,
+        ),
+        strain_offset_uncertainty=known.strain_offset,
+        strain_scale_uncertainty=known.strain_scale,
+        end_strain=centre[0] + step * end[0],
+        end_tension=end[1],
+        end_standard_uncertainty=end[2],
         cycles_pooled=samples.cycles_pooled,
         notes=samples.notes if is_paired else (*samples.notes, _ONE_BRANCH),
+    )
+
+
+def _end_of_curve(
+    cells: Cells, rows: Integers, is_judged: Bools, type_a: Floats
+) -> tuple[float, float, float]:
+    """Strain from the first centre in bins, tension and type A where samples end; NaN if earlier.
+
+    ``rows`` has the shape (n_cycle, n_branch).
+    """
+    nothing = float("nan"), float("nan"), float("nan")
+    seen = np.flatnonzero(is_judged)
+    last = int(seen[-1]) if seen.size else -1
+    if not 0 <= last < is_judged.size - 1:
+        return nothing
+    gap = 1 + cells.offset[rows, last + 1] - cells.offset[rows, last]
+    there = np.isfinite(gap).all(axis=1)
+    if 2 * there.sum() < rows.shape[0] or not there.any():
+        return nothing
+    rows, gap = rows[there], gap[there]
+    level, count = cells.tension[rows, last + 1], cells.count[rows, last + 1]
+    onward = cells.furthest[rows, last + 1] - cells.offset[rows, last + 1]
+    tension = level + (level - cells.tension[rows, last]) / gap * onward
+    of_cycle = tension.mean(axis=1)
+    noise = cells.residual.sum() / max(cells.freedom.sum(), 1.0)
+    leverage = (1 + onward / gap) ** 2 / count + (onward / gap) ** 2 / cells.count[rows, last]
+    variance = noise * float(leverage.mean()) / rows.size
+    if of_cycle.size > 1:
+        variance = max(variance, float(np.var(of_cycle, ddof=1)) / of_cycle.size)
+    return (
+        last + 1 + float(cells.furthest[rows, last + 1].mean()),
+        float(of_cycle.mean()),
+        float(np.hypot(type_a[last], np.sqrt(variance))),
     )
 
 

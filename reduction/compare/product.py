@@ -22,6 +22,7 @@ from reduction.record import Floats, Integers, freeze_arrays
 
 __all__ = [
     "BRANCHES",
+    "NODES_A_BIN",
     "Calibration",
     "Comparison",
     "CurveName",
@@ -32,12 +33,44 @@ __all__ = [
     "Identifiability",
     "Loading",
     "MeasuredCurve",
+    "Reading",
     "Validation",
 ]
 
 Loading = Literal["static", "dynamic"]
 CurveName = Literal["ascending", "descending", "midline"]
 BRANCHES: tuple[CurveName, CurveName] = ("ascending", "descending")
+NODES_A_BIN = 40
+"""Steps of the strains between two bin centres at which a prediction is read."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How a test shows a curve: weights of the strains between the bin centres.
+
+    Samples lie at some strains of a bin and the mean is moved to its centre; at a kink that is
+    not the tension at the centre.  A prediction that is read in the same way has the same kink.
+
+    Parameters
+    ----------
+    node : ndarray, shape (n_node,)
+        Equally spaced strains, `NODES_A_BIN` a bin, from one bin below the first bin. [1]
+    weight : ndarray, shape (n_strain, 3 * NODES_A_BIN + 1)
+        Of the nodes from the bin below each bin to the bin above it; zero where the judged curve
+        is not known. [1]
+    """
+
+    node: Floats
+    weight: Floats
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+    def of(self, curve: Floats) -> Floats:
+        """A curve at the nodes, shape (..., n_node), as the test shows it, (..., n_strain)."""
+        windows = np.lib.stride_tricks.sliding_window_view(curve, self.weight.shape[1], axis=-1)
+        return np.asarray(np.einsum("...bm,bm->...b", windows[..., ::NODES_A_BIN, :], self.weight))
 
 
 @dataclass(frozen=True)
@@ -70,6 +103,13 @@ class MeasuredCurve:
         Of each, to the judged curve, one standard uncertainty, signed. [N]
     loading : {"static", "dynamic"}
         How it was pulled.
+    reading : Reading
+        How the judged curve was read from the samples.
+    strain_offset_uncertainty, strain_scale_uncertainty : float
+        Standard uncertainties of which ``contribution`` is the change of tension in proportion. [1]
+    end_strain, end_tension, end_standard_uncertainty : float
+        Where the judged curve ends beyond its last bin centre: mean of the samples between, and
+        its type A; NaN where there are none. [1], [N], [N]
     cycles_pooled : int
         Consecutive cycles in a row of ``tension``.
     notes : tuple of str
@@ -88,6 +128,12 @@ class MeasuredCurve:
     source: tuple[str, ...]
     contribution: Floats
     loading: Loading
+    reading: Reading
+    strain_offset_uncertainty: float = 0.0
+    strain_scale_uncertainty: float = 0.0
+    end_strain: float = float("nan")
+    end_tension: float = float("nan")
+    end_standard_uncertainty: float = float("nan")
     cycles_pooled: int = 1
     notes: tuple[str, ...] = ()
 

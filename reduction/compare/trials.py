@@ -2,17 +2,14 @@
 
 References
 ----------
-.. [1] M. Norgaard, N. K. Poulsen and O. Ravn, "New developments in state estimation for
-   nonlinear systems," Automatica, vol. 36, 2000 (divided differences over sqrt(3) standard
-   deviations).
-.. [2] JCGM 101:2008, "Propagation of distributions using a Monte Carlo method."
+.. [1] JCGM 101:2008, "Propagation of distributions using a Monte Carlo method."
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import pi, sqrt
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -24,9 +21,15 @@ from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
 from reduction.predict.sensitivity import hose_sensitivity
 from reduction.record import Floats
 
-__all__ = ["design_with", "input_contributions", "input_draws", "number_of", "trial_tension"]
+__all__ = [
+    "design_with",
+    "input_draws",
+    "known_uncertainties",
+    "number_of",
+    "range_of",
+    "trial_tension",
+]
 
-_WIDTH = sqrt(3.0)
 _LOWEST = {"dead_length_share": 0.0, "rubber_modulus": 0.0}
 _SMALLEST = 1e-6  # of what has to be above zero
 _CUT = 3.0
@@ -163,73 +166,6 @@ def trial_tension(
     return tension
 
 
-def input_contributions(
-    design: HoseDesign, standard_uncertainty: Mapping[str, float], strain: Floats
-) -> tuple[tuple[str, ...], Floats]:
-    r"""What the uncertain numbers of a design do to its tension, through the kinks of the curve.
-
-    With :math:`T_\pm` at :math:`\pm\sqrt 3` standard uncertainties of one number, a change in
-    proportion and a bend are
-
-    .. math:: c_1 = \frac{T_+ - T_-}{2\sqrt 3}, \qquad
-              c_2 = \frac{T_+ + T_- - 2 T_0}{2\sqrt 3}
-
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose.
-    standard_uncertainty : mapping of str to float
-        By name of `reduction.predict.product.HOSE_PARAMETERS`, in SI. [rad, m, m-1, Pa or 1]
-    strain : ndarray, shape (n_strain,)
-        Of the whole length. [1]
-
-    Returns
-    -------
-    source : tuple of str, length n_source
-        Names, with "bend of" before that of a second contribution.
-    contribution : ndarray, shape (n_source, n_strain)
-        Signed, one standard uncertainty each. [N]
-
-    Raises
-    ------
-    SettingsError
-        If there is no such number, or an uncertainty is negative or unknown.
-
-    Notes
-    -----
-    Half a degree of wrap angle moves the strain at which the cords pick up by several points.
-    Just below it the derivative is that of the rubber alone, and would call a hose wrong whose
-    cords pick up a little earlier; a difference over the width of the distribution does not
-    [1]_.  The bend is the mean square of a quadratic term, E[z^4] = 3, so that the shift
-    of the mean that it brings is in it.  A number that would leave its range (a dead length
-    below zero) is cut there, and the difference taken over what is left.
-
-    Examples
-    --------
-    A scale of the cord load has no bend: the curve is linear in it.
-
-    >>> from reduction.predict.cordcurve import CordCurve
-    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
-    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
-    >>> source, parts = input_contributions(design, {"cord_load_scale": 0.1}, np.array([0.9]))
-    >>> print(source, bool(abs(parts[1, 0]) < 1e-9 * parts[0, 0]))
-    ('cord_load_scale', 'bend of cord_load_scale') True
-    """
-    names, rows = [], []
-    for name, spread in _known(design, standard_uncertainty).items():
-        centre = number_of(design, name)
-        ends = np.clip(centre + _WIDTH * spread * np.array([-1.0, 1.0]), *_range_of(name))
-        below, above = (centre - ends[0]) / spread, (ends[1] - centre) / spread
-        values = np.array([ends[0], centre, ends[1]])[:, None]
-        low, middle, high = trial_tension(design, [name], values, strain)
-        bend = np.zeros(strain.size)
-        if below > 0 and above > 0:
-            bend = 2 * ((high - middle) / above - (middle - low) / below) / (above + below)
-        names += [name, f"bend of {name}"]
-        rows += [(high - low) / (above + below), sqrt(3.0) / 2 * bend]
-    return tuple(names), np.array(rows).reshape(-1, strain.size)
-
-
 def input_draws(
     design: HoseDesign,
     standard_uncertainty: Mapping[str, float],
@@ -264,7 +200,7 @@ def input_draws(
     Notes
     -----
     Normal and independent, cut at three standard uncertainties and at the range of the number
-    (propagation of distributions, [2]_).  Where cords pick up, tension is no linear function
+    (propagation of distributions, [1]_).  Where cords pick up, tension is no linear function
     of the angle over the width of its uncertainty, and no covariance from derivatives has the
     shapes of curve that it makes.
 
@@ -277,7 +213,7 @@ def input_draws(
     >>> print(error.shape, error[:, 0].max(), bool(abs(error[:, 1].std() / 143 - 1) < 0.1))
     (500, 2) 0.0 True
     """
-    known = _known(design, standard_uncertainty)
+    known = known_uncertainties(design, standard_uncertainty)
     if not known:
         return np.zeros((0, strain.size))
     normal = np.random.default_rng(_SEED).standard_normal((n_draws, len(HOSE_PARAMETERS)))
@@ -286,7 +222,7 @@ def input_draws(
         [
             np.clip(
                 number_of(design, name) + spread * steps[:, HOSE_PARAMETERS.index(name)],
-                *_range_of(name),
+                *range_of(name),
             )
             for name, spread in known.items()
         ],
@@ -297,8 +233,36 @@ def input_draws(
     return np.asarray(tension[1:] - tension[0])
 
 
-def _known(design: HoseDesign, standard_uncertainty: Mapping[str, float]) -> dict[str, float]:
-    """Uncertainties above zero, in the order of `HOSE_PARAMETERS`."""
+def known_uncertainties(
+    design: HoseDesign, standard_uncertainty: Mapping[str, float]
+) -> dict[str, float]:
+    """Uncertainties above zero, in the order of `HOSE_PARAMETERS`.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose.
+    standard_uncertainty : mapping of str to float
+        By name of `reduction.predict.product.HOSE_PARAMETERS`. [SI]
+
+    Returns
+    -------
+    known : dict of str to float
+        Those that are stated and not zero. [SI]
+
+    Raises
+    ------
+    SettingsError
+        If there is no such number, or an uncertainty is negative or unknown.
+
+    Examples
+    --------
+    >>> from reduction.predict.cordcurve import CordCurve
+    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> print(known_uncertainties(design, {"rubber_modulus": 1e5, "wrap_angle": 0.0}))
+    {'rubber_modulus': 100000.0}
+    """
     for name, spread in standard_uncertainty.items():
         number_of(design, name)
         if not (np.isfinite(spread) and spread >= 0):
@@ -314,7 +278,29 @@ def _known(design: HoseDesign, standard_uncertainty: Mapping[str, float]) -> dic
     }
 
 
-def _range_of(name: str) -> tuple[float, float]:
+def range_of(name: str) -> tuple[float, float]:
+    """Between what a number of a hose has to lie.
+
+    Parameters
+    ----------
+    name : str
+        Of `reduction.predict.product.HOSE_PARAMETERS`.
+
+    Returns
+    -------
+    low, high : float
+        In the unit of the number. [SI]
+
+    Raises
+    ------
+    Nothing
+        A name of no number has the range of one that has to be above zero.
+
+    Examples
+    --------
+    >>> print(range_of("dead_length_share"))
+    (0.0, 0.99)
+    """
     if name == "wrap_angle":
         return _SMALLEST, pi / 2 - _SMALLEST
     return _LOWEST.get(name, _SMALLEST), 0.99 if name == "dead_length_share" else np.inf

@@ -6,7 +6,7 @@ from measured_hoses import Truth
 
 from reduction.compare.cells import fill_cells, tension_at_centres
 from reduction.compare.measured import SharedUncertainty, measured_curve
-from reduction.compare.product import MeasuredCurve
+from reduction.compare.product import MeasuredCurve, Reading
 from reduction.compare.samples import select_samples
 from reduction.compare.scatter import branch_scatter, shared_scatter
 from reduction.errors import DataError, SettingsError
@@ -263,6 +263,7 @@ def test_a_measured_curve_checks_its_shapes():
         MeasuredCurve(
             one, np.zeros((1, 2, 3)), np.zeros((1, 2, 3), int), np.ones(1, int), np.zeros((2, 4)),
             np.zeros((2, 3)), one, one, np.zeros((0, 3)), (), np.zeros((0, 3)), "static",
+            Reading(np.zeros(201), np.zeros((3, 121))),
         )  # fmt: skip
 
 
