@@ -14,7 +14,8 @@ import pytest
 
 from reduction.cycles.find import find_cycles
 from reduction.lookup.composite import CompositeRule, composite_curve
-from reduction.lookup.pieces import CurvePiece, piece_of_cycles, pieces_of_curves
+from reduction.lookup.cyclepiece import piece_of_cycles
+from reduction.lookup.pieces import CurvePiece, pieces_of_curves
 from reduction.moduli.tangent import tangent_curves
 from reduction.phases.standstill import find_standstills
 from reduction.settings import CycleSettings, ModulusSettings, PhaseSettings

@@ -75,6 +75,16 @@ def test_the_uncertainty_is_that_of_the_curve_times_the_tethers_less_what_gives(
     assert half.standard_uncertainty[half.is_tested] == pytest.approx(4.0, rel=1e-3)
 
 
+def test_splices_take_their_share_of_the_uncertainty():
+    # F = 400 strain, splices of 2 m that give 0.001 a newton: 2.5 of 4.5 mm/N are the rubber's
+    soft = {"relaxed_free_length": 1.0, "relaxed_splice_length": 2.0,
+            "splice_compliance": 0.001, "splice_exponent": 1.0}  # fmt: skip
+    curve = curve_of(lambda at: 400 * at, spread=3.0)
+    one = assemble([Tether(curve, StrainModel("T", "tension-driven", soft))])
+    found = one.standard_uncertainty[one.is_tested][1:-1]
+    assert found == pytest.approx(3.0 * 2.5 / 4.5, rel=1e-3)
+
+
 def test_what_cannot_be_assembled_is_refused():
     with pytest.raises(SettingsError, match="an assembly has tethers; found 0"):
         equal_tethers(spring(), 0)

@@ -6,7 +6,12 @@ import pytest
 
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.composite import composite_curve
-from reduction.lookup.pieces import CurvePiece, piece_of_cycles, piece_of_steps, pieces_of_curves
+from reduction.lookup.pieces import (
+    CurvePiece,
+    piece_of_steps,
+    pieces_of_branches,
+    pieces_of_curves,
+)
 from reduction.moduli.product import ModulusCurves
 from reduction.moduli.stepwise import reduce_stepwise
 from reduction.record import StepReadings
@@ -75,36 +80,6 @@ def test_a_first_rise_has_one_branch():
         pieces_of_curves(curves([1, 2], [1, 2]), 0, name="T", kind="first-loading")
 
 
-def test_cycles_can_be_chosen_and_give_the_tension_of_their_law():
-    rng = np.random.default_rng(3)
-    cycle = np.repeat([1, 2, 3], 2000)
-    up = np.tile(np.repeat([1, 2], 1000), 3)
-    strain = np.tile(np.concatenate([np.linspace(0.5, 1, 1000), np.linspace(1, 0.5, 1000)]), 3)
-    # softens cycle by cycle; the way down is 4 N below
-    tension = (110 - 10 * cycle) * strain**2 - 4.0 * (up == 2) + rng.normal(0, 0.1, strain.size)
-    (one, last, mean) = (
-        piece_of_cycles(strain, tension, cycle, up, name="T", cycles=pair, branch=way, n_bins=20)
-        for pair, way in (((1, 1), "ascending"), ((3, 3), "descending"), ((2, 3), "mean"))
-    )
-    assert one.tension == pytest.approx(100 * one.strain**2, abs=0.12)
-    assert last.tension == pytest.approx(80 * last.strain**2 - 4, abs=0.12)
-    assert mean.tension == pytest.approx(85 * mean.strain**2 - 2, abs=0.12)
-    # 50 samples of 0.1 N in a bin
-    assert np.median(one.standard_uncertainty) == pytest.approx(0.1 / np.sqrt(50), rel=0.15)
-
-
-def test_too_few_samples_are_refused():
-    with pytest.raises(DataError, match="cycles 1 to 2 of T are too few samples for 50 bins"):
-        piece_of_cycles([0.1], [1.0], [1], [1], name="T", cycles=(1, 2))
-
-
-def test_cycles_of_the_other_branch_alone_give_no_curve():
-    at = np.linspace(0.5, 1.0, 300)
-    with pytest.raises(DataError, match="T is no curve"):
-        piece_of_cycles(at, at, np.ones(300), np.ones(300), name="T", cycles=(1, 1),
-                        branch="descending")  # fmt: skip
-
-
 @pytest.mark.parametrize(
     ("strain", "tension", "spread", "message"),
     [
@@ -122,3 +97,10 @@ def test_what_is_no_curve_is_refused(strain, tension, spread, message):
     arrays = [np.array(one, dtype=float) for one in (strain, tension, spread)]
     with pytest.raises(DataError, match=message):
         CurvePiece("T", "cyclic", "mean", *arrays)
+
+
+def test_branches_have_to_fit_their_grid():
+    with pytest.raises(DataError, match="not that of two branches on the grid"):
+        pieces_of_branches([0.1, 0.2], [1.0, 2.0], [0.1, 0.1], name="T")
+    with pytest.raises(DataError, match="strain are not above the one before"):
+        pieces_of_branches([0.2, 0.1], [[1.0, 2.0]] * 2, [[0.1, 0.1]] * 2, name="T")

@@ -154,6 +154,13 @@ def test_refusals_of_the_stages_before_are_handed_on():
     assert "no step beds" in named(steps[1:], "working strain")[0].reason
 
 
+def test_holds_before_the_bedding_in_are_no_working_strain():
+    pair = HeldPair("R-1", 1, 2, 10.0, 20.0, None, "held when new")
+    before = StepOfProgramme("Q", RopeStep("quasi-static", held=(pair,)), "R-1", 0)
+    (one,) = named([before, bedding()], "working strain")
+    assert one.reason == "no step holds one tension after a lower one"
+
+
 def test_a_hold_that_ends_before_the_reference_time_gives_no_polymer_strain():
     hold = CreepOfHold("R-1", 1e-3, 1e-5, 20.0, 0.1, 1e-2, 600.0)
     step = StepOfProgramme("C", RopeStep("creep", creep=(hold,)), "R-1", 0)
