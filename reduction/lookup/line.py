@@ -118,7 +118,7 @@ def _dashpot(
 ) -> DesignValues:
     """N = K_1 tau, whose two surfaces are of the same runs and taken as independent."""
     spring, time = (
-        look_up(line, name, extrapolate=extrapolate, **levels)
+        look_up(line, name, branch=None, extrapolate=extrapolate, **levels)
         for name in ("dissipation_spring_constant", "relaxation_time")
     )
     value = spring.value * time.value

@@ -1,0 +1,29 @@
+"""The counts of the README are those of the command, and docs/lookup.md runs."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from reduction.reproduce.reports import counts_of, reproduce
+
+ROOT = Path(__file__).parents[2]
+VERDICTS = ("reproduced", "erratum", "open", "not_testable", "unexplained")
+
+
+def test_the_readme_counts_what_reproduce_counts():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    for report, items in reproduce().items():
+        (row,) = re.findall(rf"^\| {report} \|(.*)\|$", readme, re.M)
+        shown = [int(cell) for cell in row.split("|")]
+        counts = counts_of(items)
+        assert shown == [len(items), *(counts[name] for name in VERDICTS)], report
+
+
+def test_the_example_of_the_look_up_runs():
+    page = (ROOT / "docs" / "lookup.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"^```python\n(.*?)^```$", page, re.M | re.S)
+    names = {}
+    exec(code, names)  # noqa: S102 - the documentation's own example
+    values = names["values"]
+    assert np.all(values.low < values.value) and np.all(values.value < values.high)
