@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from reduction.export.product import ExportLine, Syrope, Viscoelasticity
+from reduction.export.dynamics import Syrope, Viscoelasticity
+from reduction.export.product import ExportLine
 
 
 def rubber(strain):

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 from reduction.cli.numbers import plain
 from reduction.cli.outcome import Outcome
 from reduction.errors import SettingsError
 from reduction.export.fromarchive import CurveName, line_from_archive
+from reduction.export.fromlookup import line_from_lookup
 from reduction.export.product import ExportLine
 from reduction.export.write import export_line
+from reduction.published.linesource import published_sources
 from reduction.units import Dimension, UnitSystem, parse_quantity
 
 __all__ = ["export_source"]
@@ -20,6 +22,11 @@ _DIMENSIONS: dict[str, Dimension] = {
     "linear_density": "linear_density",
     "wet_linear_density": "linear_density",
     "rated_break_strength": "force",
+}
+_LEVELS: dict[str, Dimension] = {
+    "frequency": "frequency",
+    "mean_tension": "force",
+    "tension_amplitude": "force",
 }
 
 
@@ -32,9 +39,15 @@ def export_source(
     curve: str | None,
     specimen: str | None,
     stated: dict[str, str | None],
+    levels: dict[str, str | None],
+    extrapolate: str,
     outcome: Outcome,
 ) -> None:
     """Write the curve of a source in a format, and say what was written."""
+    if extrapolate not in ("refuse", "flag"):
+        raise SettingsError(
+            "--extrapolate is not known", found=repr(extrapolate), needed="refuse or flag"
+        )
     if curve not in (None, "mean", "ascending", "descending"):
         raise SettingsError(
             "--curve is not known", found=repr(curve), needed="mean, ascending or descending"
@@ -44,7 +57,14 @@ def export_source(
         for name, text in stated.items()
         if text is not None
     }
-    line = line_of(source, cast("CurveName | None", curve), specimen, values)
+    line = line_of(
+        source,
+        cast("CurveName | None", curve),
+        specimen=specimen,
+        stated=values,
+        levels={name: text for name, text in levels.items() if text is not None},
+        extrapolate=cast('Literal["refuse", "flag"]', extrapolate),
+    )
     units = cast("UnitSystem", outcome.units)
     paths = export_line(line, to, out, form=form, units=units)
     outcome.say(f"{line.name}: {line.curve}")
@@ -76,14 +96,50 @@ def export_source(
 
 
 def line_of(
-    source: str, curve: CurveName | None, specimen: str | None, stated: dict[str, Any]
+    source: str,
+    curve: CurveName | None,
+    *,
+    specimen: str | None,
+    stated: dict[str, Any],
+    levels: dict[str, str],
+    extrapolate: Literal["refuse", "flag"],
 ) -> ExportLine:
-    """The line that a word on the command line means; another kind of source is added here."""
+    """The line that a word on the command line means: a published one, or that of an archive."""
+    published = published_sources()
+    if source in published:
+        line = published[source]
+        if curve == "mean" or specimen is not None:
+            raise SettingsError(
+                f"{source} is one published line, and its report has no mean of the branches",
+                found=f"--curve {curve}" if curve == "mean" else f"--specimen {specimen}",
+                needed="--curve ascending or descending, or neither",
+            )
+        strength = float(stated.get("rated_break_strength", line.rated_break_strength))
+        at = {
+            name: parse_quantity(
+                text,
+                _LEVELS[name],
+                rated_break_strength=strength if strength > 0 else None,
+            )
+            for name, text in levels.items()
+        }
+        return line_from_lookup(
+            line, branch=curve, levels=at or None, extrapolate=extrapolate, **stated
+        )
     path = Path(source)
     if not path.is_file():
+        words = source.lower().replace("-", " ").split()
+        near = [name for name in published if all(word in name for word in words)]
         raise SettingsError(
             "there is nothing of that name to export",
             found=source,
-            needed="an archive (.nc) of a reduced test or of predicted hoses",
+            needed="an archive (.nc) of a reduced test or of predicted hoses, or one of "
+            + ", ".join(near or published),
+        )
+    if levels:
+        raise SettingsError(
+            "levels of a cycle choose nothing in an archive of one test",
+            found=", ".join(f"--{name.replace('_', '-')}" for name in levels),
+            needed="a published line",
         )
     return line_from_archive(path, curve=curve, specimen=specimen, **stated)

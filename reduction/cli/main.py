@@ -233,7 +233,10 @@ def compare(
 @app.command()
 def export(
     source: Annotated[
-        str, typer.Argument(help="An archive of a test or of hoses.", show_default=False)
+        str,
+        typer.Argument(
+            help="A published line, or an archive of a test or of hoses.", show_default=False
+        ),
     ],
     to: Annotated[
         str,
@@ -258,6 +261,12 @@ def export(
         str | None, typer.Option(help="Less the water it displaces.")
     ] = None,
     rated_break_strength: Annotated[str | None, typer.Option(help='"28 kN".')] = None,
+    frequency: Annotated[str | None, typer.Option(help='Of the stiffness, "0.3 Hz".')] = None,
+    mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
+    tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
+    extrapolate: Annotated[
+        str, typer.Option(help="Outside the levels: refuse or flag.")
+    ] = "refuse",
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
@@ -279,6 +288,12 @@ def export(
                 "wet_linear_density": wet_linear_density,
                 "rated_break_strength": rated_break_strength,
             },
+            levels={
+                "frequency": frequency,
+                "mean_tension": mean_tension,
+                "tension_amplitude": tension_amplitude,
+            },
+            extrapolate=extrapolate,
             outcome=outcome,
         )
 

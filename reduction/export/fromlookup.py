@@ -15,7 +15,8 @@ from typing import Any, Literal
 import numpy as np
 
 from reduction.errors import DataError, SettingsError
-from reduction.export.product import ExportLine, Viscoelasticity
+from reduction.export.dynamics import Viscoelasticity
+from reduction.export.product import ExportLine
 from reduction.lookup.curve import evaluate_curve
 from reduction.lookup.line import look_up
 from reduction.lookup.product import DesignValues, LineCurve, LineSource
@@ -25,6 +26,8 @@ __all__ = ["line_from_lookup"]
 
 _POINTS = 201
 _MEANS = 9
+_ROUNDING = 1e-9
+_MOST_CUT, _LEAST_CUT = 0.9, 0.05  # shares of the greatest tension that a cut may leave or take
 _STRAIN = ("strain", "quasi_static_strain")
 _TENSION = ("tension", "branch_tension")
 Branch = Literal["ascending", "descending"]
@@ -65,7 +68,7 @@ def line_from_lookup(
         If there is no curve of strain and tension, or it differs by branch and none is said, or
         the dynamics were not measured.
     DataError
-        If the curve falls, or a level is outside what was tested.
+        If the curve falls before its last tenth of tension, or a level is outside what was tested.
 
     Notes
     -----
@@ -75,8 +78,8 @@ def line_from_lookup(
     among them goes slack; the note says how far off it is.
     """
     curve = _curve_of(source, branch)
-    strain, tension = _points(source, curve)
-    notes = [*source.notes, *curve.notes]
+    strain, tension, cut = _points(source, curve)
+    notes = [*source.notes, *curve.notes, *cut]
     words = "of a pull" if not curve.branch else f"{curve.branch} branch"
     sources = [f"{source.source}: {curve.quantity} over {curve.variable}, {words}"]
     if curve.errata:
@@ -125,7 +128,9 @@ def _curve_of(source: LineSource, branch: Branch | None) -> LineCurve:
             found=", ".join(source.quantities) or "nothing",
             needed="strain over tension, or tension over strain",
         )
-    of_branch = [one for one in found if one.branch in ("", branch or "")]
+    # where one branch alone was measured it need not be asked for
+    wanted = branch or (found[0].branch if len(found) == 1 else "")
+    of_branch = [one for one in found if one.branch in ("", wanted)]
     if not of_branch:
         raise SettingsError(
             f"the curve of {source.name} differs by branch",
@@ -135,7 +140,8 @@ def _curve_of(source: LineSource, branch: Branch | None) -> LineCurve:
     return of_branch[0]
 
 
-def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats]:
+def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[str]]:
+    """Strain and tension where both rise, and what was cut."""
     at = curve.at if curve.at.size else np.linspace(curve.low, curve.high, _POINTS)
     value = evaluate_curve(curve, at)[0]
     strain, tension = (value, at) if curve.quantity in _STRAIN else (at, value)
@@ -145,23 +151,38 @@ def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats]:
             found="values that are open or lost",
             hint="The errata of the source say which.",
         )
-    back = (np.diff(strain) <= 0) | (np.diff(tension) <= 0)
-    if back.any():
-        first = int(np.argmax(back))
-        raise DataError(
-            f"the curve of {source.name} does not rise throughout what was tested",
-            found=f"strain {strain[first]:.4g} to {strain[first + 1]:.4g}, tension "
-            f"{tension[first]:.5g} to {tension[first + 1]:.5g} N",
-            needed="one that rises",
+    # segments that meet give their joint twice
+    new = np.append(True, (np.diff(strain) != 0) | (np.diff(tension) != 0))
+    strain, tension, notes = strain[new], tension[new], []
+    back = np.flatnonzero((np.diff(strain) <= 0) | (np.diff(tension) <= 0))
+    if back.size:
+        first, top = int(back[0]), float(tension.max())
+        if not curve.coefficient.size or tension[first] < _MOST_CUT * top:
+            raise DataError(
+                f"the curve of {source.name} does not rise throughout what was tested",
+                found=f"strain {strain[first]:.4g} to {strain[first + 1]:.4g}, tension "
+                f"{tension[first]:.5g} to {tension[first + 1]:.5g} N",
+                needed="one that rises",
+            )
+        strain, tension = strain[: first + 1], tension[: first + 1]
+        notes.append(
+            f"ends at {tension[-1]:.5g} N, where the polynomial turns back; the source gives it up "
+            f"to {top:.5g} N"
         )
-    return strain, tension
+    below = (strain < 0) | ((strain == 0) & (tension > 0))
+    if below.any() and tension[below][-1] < _LEAST_CUT * tension[-1]:
+        notes.append(
+            f"the polynomial has no strain up to {tension[below][-1]:.4g} N; that part is left out"
+        )
+        strain, tension = strain[~below], tension[~below]
+    return strain, tension, notes
 
 
 def _tested(curve: LineCurve, strain: Floats, tension: Floats) -> tuple[float, float]:
     ends = np.array([curve.low, curve.high])
     if curve.quantity in _STRAIN:
         ends = np.interp(ends, tension, strain)
-    return float(ends[0]), float(ends[1])
+    return max(float(ends[0]), 0.0), min(float(ends[1]), float(strain[-1]))
 
 
 def _dynamics(
@@ -180,8 +201,12 @@ def _dynamics(
     slope, worst = _growth(source, levels)
     holds = ", ".join(f"{name.replace('_', ' ')} {value:.5g}" for name, value in levels.items())
     told = [
-        f"{found.source}: {found.quantity} {float(found.value):.6g} {found.unit}, 95 percent "
-        f"{float(found.low):.4g} to {float(found.high):.4g}"
+        f"{found.source}: {found.quantity} {float(found.value):.6g} {found.unit}, "
+        + (
+            f"95 percent {float(found.low):.4g} to {float(found.high):.4g}"
+            if math.isfinite(float(found.high))
+            else "no interval known"
+        )
         + (f", errata {', '.join(found.errata)}" if found.errata else "")
         + ("" if found.is_inside else ", OUTSIDE what was tested")
         + (", untested corner" if found.is_untested else "")
@@ -243,4 +268,6 @@ def _growth(source: LineSource, levels: Mapping[str, float]) -> tuple[float, flo
         for name in ("quasi_static_spring_constant", "dissipation_spring_constant")
     )
     slope, start = np.polyfit(means, total, 1)
+    if abs(slope) * np.ptp(means) < _ROUNDING * np.abs(total).max():
+        slope = 0.0
     return float(slope), float(np.abs(slope * means + start - total).max())

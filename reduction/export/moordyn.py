@@ -5,8 +5,8 @@ What MoorDyn 2.7 does with a file that is not to its liking, and what is done he
 * a line end after the last row, or more than 30 rows, and it does not start: neither is written;
 * below the first and beyond the last row it keeps the tension: the first row is 0 0, the header
   gives the last one;
-* a loop gives NaN, and a table beside ``|EA_d`` is replaced by its last secant: neither is possible
-  here;
+* a loop gives nonsense, and a table beside ``|EA_d`` is replaced by its last secant: neither is
+  possible here;
 * a Syrope line without initial conditions ends in a segmentation fault: they are always written;
 * its own choice of a time step (CFL) takes the stiffness of a table as zero, and the line blows up:
   the deck states a step, from the steepest part of the curve;
@@ -30,13 +30,14 @@ from typing import Literal
 import numpy as np
 
 from reduction.errors import SettingsError
+from reduction.export.deck import SEGMENT_LENGTH, deck, line_type
+from reduction.export.dynamics import Syrope, Viscoelasticity
 from reduction.export.header import header_lines, number, one_line
-from reduction.export.product import ExportLine, Syrope, Viscoelasticity
+from reduction.export.product import ExportLine
 from reduction.export.thin import ThinnedCurve, thin_curve
 
 __all__ = [
-    "MOST_POINTS", "NUMERICAL_DAMPING", "MoorDynForm", "deck", "line_type", "moordyn_files",
-    "table_text",
+    "MOST_POINTS", "NUMERICAL_DAMPING", "MoorDynForm", "moordyn_files", "table_text",
 ]  # fmt: skip
 
 MoorDynForm = Literal["table", "static-dynamic", "load-dependent", "syrope"]
@@ -44,15 +45,7 @@ MOST_POINTS = 30
 """Rows that a table of MoorDyn may have. [1]"""
 NUMERICAL_DAMPING = -1.0
 """Internal damping where none was measured, as MoorDyn takes it: share of critical. [1]"""
-_LENGTH = 10.0
-_SEGMENTS = 5
-_COURANT = 0.1
 _FAST_SHARE = 0.1
-_SHORTEST_STEP, _LONGEST_STEP = 1e-4, 0.02
-_COLUMNS = (
-    "TypeName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx",
-    "(name) (m) (kg/m) (N) (N-s/-) (N-m^2) (-) (-) (-) (-)",
-)
 
 
 def table_text(line: ExportLine, curve: ThinnedCurve) -> str:
@@ -68,98 +61,6 @@ def table_text(line: ExportLine, curve: ThinnedCurve) -> str:
     return "\n".join(
         [first, "Strain Tension", "(-) (N)", *(f"{number(e)} {number(t)}" for e, t in rows)]
     )
-
-
-def line_type(line: ExportLine, stiffness: str, damping: str) -> str:
-    """Return the row of the line types."""
-    water = line.hydrodynamics
-    numbers = (water.normal_drag, water.normal_added_mass, water.axial_drag, water.axial_added_mass)
-    diameter, mass = line.volume_diameter[0], line.needed("linear_density")
-    row = (line.identifier, number(diameter), number(mass), stiffness, damping, "0")
-    return " ".join((*row, *map(number, numbers)))
-
-
-def deck(
-    line: ExportLine,
-    row: str,
-    head: list[str],
-    *,
-    strain: float,
-    stiffness: float,
-    damping: float = 0.0,
-    conditions: tuple[str, ...] = (),
-) -> str:
-    """A whole input file: one line between two points, with a strain that it may have.
-
-    Parameters
-    ----------
-    line : ExportLine
-        For its name.
-    row : str
-        Of `line_type`.
-    head : list of str
-        Front matter.
-    strain : float
-        At the start. [1]
-    stiffness : float
-        Greatest slope of tension over strain; it limits the time step. [N]
-    damping : float
-        Of the fast spring; it does so too. 0 where it is numerical. [N s]
-    conditions : tuple of str
-        Section of initial conditions, where the form needs one.
-
-    Returns
-    -------
-    text : str
-        Point 1 is fixed, point 2 is coupled; 10 m of line. Gravity is left out, so that the
-        tension is that of the strain.
-    """
-    segments, step = _steps(line.needed("linear_density"), stiffness, damping)
-    top = -100.0 + _LENGTH * (1 + strain)
-    rule = "-" * 22
-    return "\n".join(
-        [
-            "MoorDyn input file with one line type, in a deck that tries it",
-            *head,
-            f"{rule} LINE TYPES {rule}",
-            *_COLUMNS,
-            row,
-            f"{rule} POINTS {rule}",
-            "ID Attachment X Y Z Mass Volume CdA Ca",
-            "(-) (-) (m) (m) (m) (kg) (m^3) (m^2) (-)",
-            "1 Fixed 0 0 -100 0 0 0 0",
-            f"2 Coupled 0 0 {number(top)} 0 0 0 0",
-            f"{rule} LINES {rule}",
-            "ID LineType AttachA AttachB UnstrLen NumSegs LineOutputs",
-            "(-) (name) (ID) (ID) (m) (-) (-)",
-            f"1 {line.identifier} 1 2 {number(_LENGTH)} {segments} -",
-            *conditions,
-            f"{rule} OPTIONS {rule}",
-            "0 writeLog",
-            "1 disableOutTime",
-            "0 g",
-            "200 WtrDpth",
-            f"{step:.3g} dtM",
-            "10 TmaxIC",
-            "0.1 dtIC",
-            f"{rule} OUTPUTS {rule}",
-            "FairTen1",
-            "AnchTen1",
-            f"{rule} need this line {rule}",
-            "",
-        ]
-    )
-
-
-def _steps(mass: float, stiffness: float, damping: float) -> tuple[int, float]:
-    """Segments of the deck and a stable time step; one segment where five ask for a tiny one."""
-    length = _LENGTH / _SEGMENTS
-    step = _COURANT * length * math.sqrt(mass / stiffness)
-    if damping > 0:
-        step = min(step, _COURANT * mass * length**2 / damping)
-    if step < _SHORTEST_STEP:
-        return 1, _LONGEST_STEP  # no node is free
-    return _SEGMENTS, min(step, _LONGEST_STEP)
 
 
 def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -> dict[str, str]:
@@ -210,7 +111,7 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
             needed="K_0, K_1 and tau",
             hint="Export the curve instead: --form table.",
         )
-    fast = _FAST_SHARE * _LENGTH / _SEGMENTS
+    fast = _FAST_SHARE * SEGMENT_LENGTH
     fast *= math.sqrt(part.fast_stiffness * line.needed("linear_density"))
     damping = f"{number(part.slow_dashpot_coefficient)}|{number(fast)}"
     if form == "static-dynamic":
@@ -229,8 +130,8 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
         line,
         None,
         *_said(line),
-        *stiffness_words(part),
-        f"BA_d {fast:.4g} N s: {_FAST_SHARE:g} of critical for segments of {_LENGTH / _SEGMENTS:g} "
+        *_stiffness_words(part),
+        f"BA_d {fast:.4g} N s: {_FAST_SHARE:g} of critical for segments of {SEGMENT_LENGTH:g} "
         "m, numerical, not measured; without it the integration grows",
     )
     return {
@@ -244,7 +145,7 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
     }
 
 
-def stiffness_words(part: Viscoelasticity) -> tuple[str, ...]:
+def _stiffness_words(part: Viscoelasticity) -> tuple[str, ...]:
     """What the numbers of the stiffness are."""
     return (
         f"EA_s {part.static_stiffness:.6g} N is K_0; EA_d {part.fast_stiffness:.6g} N is K_0 + "

@@ -22,8 +22,9 @@ from typing import Literal
 import numpy as np
 
 from reduction.errors import SettingsError
+from reduction.export.deck import deck, line_type
 from reduction.export.header import header_lines, number, real_number
-from reduction.export.moordyn import MOST_POINTS, NUMERICAL_DAMPING, deck, line_type, table_text
+from reduction.export.moordyn import MOST_POINTS, NUMERICAL_DAMPING, table_text
 from reduction.export.product import ExportLine
 from reduction.export.thin import thin_curve
 

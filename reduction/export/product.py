@@ -1,24 +1,16 @@
-"""What a mooring code is told of a line: one curve, its range, its dynamics, its properties.
-
-References
-----------
-.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
-   R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4.
-"""
+"""What a mooring code is told of a line: one curve, its range, its dynamics, its properties."""
 
 from __future__ import annotations
 
 import math
 import re
 from dataclasses import dataclass, field
-from typing import Literal
-
-import numpy as np
 
 from reduction.errors import SettingsError
+from reduction.export.dynamics import Syrope, Viscoelasticity
 from reduction.record import Floats, freeze_arrays
 
-__all__ = ["CYLINDER", "SEA_WATER", "ExportLine", "Hydrodynamics", "Syrope", "Viscoelasticity"]
+__all__ = ["CYLINDER", "SEA_WATER", "ExportLine", "Hydrodynamics"]
 
 SEA_WATER = 1025.0
 """Density that turns a wet mass into a displaced volume. [kg m-3]"""
@@ -41,173 +33,6 @@ class Hydrodynamics:
 CYLINDER = Hydrodynamics(
     1.2, 0.0, 1.0, 0.0, "assumed, not measured: a smooth cylinder across the flow, none along it"
 )
-
-
-@dataclass(frozen=True)
-class Viscoelasticity:
-    """A spring K_0 beside a spring K_1 in series with a dashpot: three parameters of [1]_.
-
-    Parameters
-    ----------
-    static_stiffness : float
-        Of a slow pull, K_0, per unit strain: EA_s of mooring codes. [N]
-    dynamic_stiffness : float
-        Of a fast change, K_0 + K_1: EA_d; where it grows with the mean tension, its value at zero
-        mean tension (alpha). [N]
-    dashpot_coefficient : float
-        N = K_1 tau. [N s]
-    dynamic_stiffness_per_mean_tension : float
-        beta: EA_d = alpha + beta T_mean. [1]
-    mean_tension : float
-        At which the numbers hold; needed where beta is not zero. [N]
-    holds : str
-        In words: levels at which the numbers were found.
-    """
-
-    static_stiffness: float
-    dynamic_stiffness: float
-    dashpot_coefficient: float
-    dynamic_stiffness_per_mean_tension: float = 0.0
-    mean_tension: float = math.nan
-    holds: str = ""
-
-    def __post_init__(self) -> None:
-        """Check that the line is stiffer when it is fast."""
-        numbers = (self.static_stiffness, self.dynamic_stiffness, self.dashpot_coefficient)
-        slope = self.dynamic_stiffness_per_mean_tension
-        if not all(map(math.isfinite, (*numbers, slope))) or min(*numbers, slope) < 0:
-            raise SettingsError(
-                "stiffness and damping of a line are not numbers of at least zero",
-                found=", ".join(f"{value:g}" for value in (*numbers, slope)),
-            )
-        if slope and not self.mean_tension >= 0:
-            raise SettingsError(
-                "a dynamic stiffness that grows with the mean tension has no mean tension",
-                needed="the mean tension at which the damping was found",
-            )
-        if not self.fast_stiffness > self.static_stiffness > 0:
-            raise SettingsError(
-                "the dynamic stiffness is not above the static one",
-                found=f"{self.fast_stiffness:g} N and {self.static_stiffness:g} N",
-                needed="a static stiffness above zero and a dynamic one above that",
-            )
-
-    @property
-    def fast_stiffness(self) -> float:
-        """EA_d at the mean tension, K_0 + K_1. [N]."""
-        slope = self.dynamic_stiffness_per_mean_tension
-        return self.dynamic_stiffness + (slope * self.mean_tension if slope else 0.0)
-
-    @property
-    def relaxation_time(self) -> float:
-        """Of the tension at constant strain, tau = N / K_1. [s]."""
-        return self.dashpot_coefficient / (self.fast_stiffness - self.static_stiffness)
-
-    @property
-    def slow_dashpot_coefficient(self) -> float:
-        r"""Dashpot of the same line as a spring in series with a spring beside a dashpot. [N s].
-
-        Mooring codes put the slow spring :math:`E_1` and its dashpot :math:`B` in series with
-        :math:`EA_d`; equal static stiffness asks for :math:`1/EA_s = 1/E_1 + 1/EA_d`, equal
-        behaviour at every frequency for :math:`B = N (EA_d / (EA_d - EA_s))^2`.
-        """
-        share = self.fast_stiffness / (self.fast_stiffness - self.static_stiffness)
-        return self.dashpot_coefficient * share**2
-
-
-@dataclass(frozen=True)
-class Syrope:
-    """Working curves of a fibre rope that remembers its greatest mean tension.
-
-    Parameters
-    ----------
-    strain, tension : ndarray, shape (n_points,)
-        Original working curve, from 0 0. [1], [N]
-    form : {"LINEAR", "QUADRATIC", "EXP"}
-        Of the working curves below it.
-    k1, k2 : float
-        LINEAR: k1 below 1 is the strain at zero tension over that at the greatest one, from 1 on
-        the slope; k2 is not used. QUADRATIC: 0 <= k1 < 1, 0 < k2 <= 1. EXP: 0 <= k1 < 1, k2 > 0.
-        [1], [N]
-    dynamic_stiffness, dynamic_stiffness_per_mean_tension : float
-        alpha and beta of EA_d = alpha + beta T_mean. [N], [1]
-    slow_damping, fast_damping : float
-        Dashpots of the slow and of the fast spring. [N s]
-    greatest_mean_tension, mean_tension : float
-        Where the line starts: without them MoorDyn ends with a segmentation fault. [N]
-    """
-
-    strain: Floats
-    tension: Floats
-    form: Literal["LINEAR", "QUADRATIC", "EXP"]
-    k1: float
-    k2: float
-    dynamic_stiffness: float
-    dynamic_stiffness_per_mean_tension: float
-    slow_damping: float
-    fast_damping: float
-    greatest_mean_tension: float
-    mean_tension: float
-
-    def __post_init__(self) -> None:
-        """Check what MoorDyn does not."""
-        freeze_arrays(self)
-        allowed = {
-            "LINEAR": (0 < self.k1, "k1 above 0"),
-            "QUADRATIC": (0 <= self.k1 < 1 and 0 < self.k2 <= 1, "0 <= k1 < 1 and 0 < k2 <= 1"),
-            "EXP": (0 <= self.k1 < 1 and self.k2 > 0, "0 <= k1 < 1 and k2 above 0"),
-        }
-        if self.form not in allowed:
-            raise SettingsError(
-                "the form of a Syrope working curve is not known",
-                found=repr(self.form),
-                needed=", ".join(allowed),
-            )
-        is_allowed, needed = allowed[self.form]
-        if not is_allowed:
-            raise SettingsError(
-                f"a Syrope working curve of the form {self.form} cannot have these parameters",
-                found=f"k1 {self.k1:g}, k2 {self.k2:g}",
-                needed=needed,
-            )
-        if not 0 < self.mean_tension <= self.greatest_mean_tension <= self.tension[-1]:
-            raise SettingsError(
-                "the tensions that a Syrope line starts from do not fit its original working curve",
-                found=f"mean {self.mean_tension:g} N, greatest mean {self.greatest_mean_tension:g} "
-                f"N, end of the curve {self.tension[-1]:g} N",
-                needed="0 < mean <= greatest mean <= end of the curve",
-            )
-        alpha, beta = self.dynamic_stiffness, self.dynamic_stiffness_per_mean_tension
-        if not (alpha > 0 and beta >= 0 and self.slow_damping > 0 and self.fast_damping >= 0):
-            raise SettingsError(
-                "stiffness and damping of a Syrope line are out of range",
-                needed="alpha and slow damping above 0, beta and fast damping at least 0",
-            )
-        elastic = np.log1p(beta / alpha * self.tension) / beta if beta else self.tension / alpha
-        steps = np.diff(self.strain - elastic)
-        if np.any(steps <= 0):
-            first = int(np.argmax(steps <= 0))
-            raise SettingsError(
-                "the original working curve is stiffer than the dynamic stiffness: its slow part "
-                "would shrink as the tension grows",
-                found=f"between strains {self.strain[first]:g} and {self.strain[first + 1]:g}",
-                needed="alpha + beta T above the slope of the curve",
-            )
-
-    @property
-    def initial_strain(self) -> float:
-        """Strain at the mean tension, on the working curve of the greatest one. [1]."""
-        top = float(np.interp(self.greatest_mean_tension, self.tension, self.strain))
-        share = self.mean_tension / self.greatest_mean_tension
-        if self.form == "LINEAR" and self.k1 >= 1:
-            return top - (self.greatest_mean_tension - self.mean_tension) / self.k1
-        if self.form == "EXP":
-            share = math.log1p(share * math.expm1(self.k2)) / self.k2
-        elif self.form == "QUADRATIC":
-            # k2 x^2 + (1 - k2) x = T / T_max
-            rest = 1 - self.k2
-            share = (math.sqrt(rest**2 + 4 * self.k2 * share) - rest) / (2 * self.k2)
-        return top * (self.k1 + share * (1 - self.k1))
 
 
 @dataclass(frozen=True)

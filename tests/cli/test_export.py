@@ -1,0 +1,103 @@
+"""The command export: what it writes of an archive and of a published line, and how it refuses."""
+
+import json
+
+import numpy as np
+import pytest
+from export_readers import moordyn_sections, moordyn_table, orcaflex
+
+
+def test_a_reduced_test_becomes_a_deck_and_its_table(command, synthetic, tmp_path):
+    archive = synthetic.processed / "T-1.nc"
+    done = command(
+        "export", archive, "--specimen", "new", "--to", "moordyn", "--out", tmp_path / "t.dat",
+        "--linear-density", "0.6 kg/m", "--json",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout)
+    assert answer["files"] == [str(tmp_path / "t_table.txt"), str(tmp_path / "t.dat")]
+    assert answer["synthetic"] is True
+    assert answer["curve"].startswith("mean of the ascending and descending branches")
+    assert answer["linear_density"] == {"value": 0.6, "unit": "kg m-1"}
+    assert answer["rated_break_strength"]["value"] == pytest.approx(800 * 4.4482216152605)
+    deck = (tmp_path / "t.dat").read_text()
+    assert "SYNTHETIC" in deck
+    assert moordyn_sections(deck)["LINE TYPES"][0][3] == "t_table.txt"
+    strain, _ = moordyn_table((tmp_path / "t_table.txt").read_text())
+    assert answer["tested"]["strain"] == pytest.approx([strain[1], strain[-1]])
+
+
+def test_branches_differ_and_their_mean_lies_between(command, synthetic, tmp_path):
+    found = {}
+    for curve in ("ascending", "mean", "descending"):
+        done = command(
+            "export", synthetic.processed / "T-1.nc", "--specimen", "new", "--curve", curve,
+            "--to", "json", "--out", tmp_path / f"{curve}.json", "--quiet",
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        assert done.stdout == ""
+        values = json.loads((tmp_path / f"{curve}.json").read_text())["values"]
+        found[curve] = np.interp(1.0, values["strain"], values["tension"])
+    assert found["ascending"] > found["mean"] > found["descending"]
+
+
+def test_a_published_line_has_its_stiffness_at_levels_and_its_errata(command, tmp_path):
+    done = command(
+        "export", "polyester-double-braid-0.5in-new", "--to", "moordyn", "--form",
+        "static-dynamic", "--frequency", "0.3 Hz", "--mean-tension", "21 %RBS",
+        "--tension-amplitude", "8.5 %RBS", "--linear-density", "0.1 kg/m", "--out",
+        tmp_path / "p.dat",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "errata CG-15" in done.stdout
+    (row,) = moordyn_sections((tmp_path / "p.dat").read_text())["LINE TYPES"]
+    slow, fast = (float(value) for value in row[3].split("|"))
+    assert fast > slow > 0
+
+
+def test_units_are_for_tables_and_never_for_a_code(command, tmp_path):
+    name = "polyester-double-braid-0.5in-new"
+    command("export", name, "--to", "csv", "--out", tmp_path / "p.csv", "--units", "us")
+    assert (tmp_path / "p.csv").read_text().startswith("strain [1],tension [lbf],is_tested")
+    command(
+        "export", name, "--to", "orcaflex", "--out", tmp_path / "p.yml", "--units", "us",
+        "--linear-density", "0.1 kg/m",
+    )  # fmt: skip
+    _, _, tension = orcaflex((tmp_path / "p.yml").read_text())
+    last = (tmp_path / "p.csv").read_text().strip().split("\n")[-1].split(",")[1]
+    assert tension[-1] == pytest.approx(float(last) * 4.4482216152605)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "message"),
+    [
+        (["no-such-line", "--to", "csv"], 2, "nothing of that name to export"),
+        (["nylon-double", "--to", "csv"], 2, "nylon-double-braid-0.75in-new"),
+        (["polyester-double-braid-0.5in-new", "--to", "moordyn"], 2, "--linear-density"),
+        (["polyester-double-braid-0.5in-new", "--to", "ansys"], 2, "format is not known"),
+        (["polyester-double-braid-0.5in-new", "--to", "csv", "--curve", "loop"], 2, "--curve"),
+        (["polyester-double-braid-0.5in-new", "--to", "csv", "--curve", "mean"], 2, "no mean"),
+        (["polyester-double-braid-0.5in-new", "--to", "csv", "--extrapolate", "yes"], 2, "refuse"),
+        (
+            ["polyester-double-braid-0.5in-new", "--to", "csv", "--mean-tension", "90 %RBS",
+             "--frequency", "0.3 Hz", "--tension-amplitude", "8 %RBS"],
+            4, "outside what was tested",
+        ),
+        (["polyester-double-braid-0.5in-new", "--to", "csv", "--mean-tension", "3 ft"], 2, "force"),
+        (["nylon-8-strand-plaited-0.5in-5-years", "--to", "csv", "--mean-tension", "20 %RBS"], 2, "CG-23"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_named(command, tmp_path, arguments, status, message):
+    done = command("export", *arguments, "--out", tmp_path / "x")
+    assert done.returncode == status
+    assert message in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_levels_choose_nothing_in_an_archive(command, synthetic, tmp_path):
+    done = command(
+        "export", synthetic.processed / "T-1.nc", "--to", "csv", "--out", tmp_path / "x",
+        "--frequency", "0.1 Hz",
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "choose nothing in an archive" in done.stderr

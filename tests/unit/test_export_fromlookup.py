@@ -1,0 +1,157 @@
+import numpy as np
+import pytest
+
+from reduction.errors import DataError, SettingsError
+from reduction.export.fromlookup import line_from_lookup
+from reduction.lookup.product import LineCurve, LineSource, LineSurface
+from reduction.surface.designs import box_behnken
+from reduction.surface.terms import model_matrix, quadratic_exponents
+
+LOW, HIGH = np.array([0.1, 1000.0, 500.0]), np.array([0.5, 3000.0, 900.0])
+EXPONENTS = quadratic_exponents(3)
+DESIGN = box_behnken(3).coded
+INVERSE = np.linalg.inv(model_matrix(DESIGN, EXPONENTS).T @ model_matrix(DESIGN, EXPONENTS))
+LEVELS = {"frequency": 0.3, "mean_tension": 2000.0, "tension_amplitude": 700.0}
+
+
+def surface(quantity, centre, *, per_mean=0.0, errata=()):
+    coefficient = np.zeros(10)
+    coefficient[0] = centre
+    place = [tuple(row) for row in EXPONENTS].index((0, 1, 0))
+    coefficient[place] = per_mean
+    return LineSurface(
+        quantity, coefficient, EXPONENTS, LOW, HIGH, INVERSE, 10.0, 5.0, 0.75, errata=errata
+    )
+
+
+def source(*, curves=None, growth=5000.0, **changed):
+    pull = LineCurve(
+        "strain", "tension", 0.0, 4000.0, coefficient=np.array([0, 1e-4, -1e-8]), errata=("CG-8",)
+    )
+    rest = LineCurve(
+        "quasi_static_spring_constant", "mean_tension", 0.0, 4000.0, coefficient=np.array([2e4])
+    )
+    fields = {
+        "factor_names": ("frequency", "mean_tension", "tension_amplitude"),
+        "surfaces": {
+            "dissipation_spring_constant": surface(
+                "dissipation_spring_constant", 3e4, per_mean=growth, errata=("CG-14",)
+            ),
+            "relaxation_time": surface("relaxation_time", 3.0),
+        },
+        "curves": (pull, rest) if curves is None else curves,
+        "linear_density": 0.1,
+        "notes": ("wet",),
+    } | changed
+    return LineSource("a rope", "CG-D-39-80", "nylon", "braid", "new", 0.0127, 28e3, **fields)
+
+
+def test_strain_over_tension_becomes_tension_over_strain():
+    found = line_from_lookup(source())
+    np.testing.assert_allclose(
+        found.strain, 1e-4 * found.tension - 1e-8 * found.tension**2, atol=1e-15
+    )
+    assert found.tested == pytest.approx((0.0, 0.24))
+    assert found.viscoelasticity is None
+    assert found.linear_density == 0.1
+    assert "errata that touch the curve: CG-8" in found.sources
+    assert found.notes == ("wet",)
+
+
+def test_static_and_dynamic_stiffness_are_k_0_and_k_0_with_k_1():
+    part = line_from_lookup(source(growth=0.0), levels=LEVELS).viscoelasticity
+    assert (part.static_stiffness, part.fast_stiffness) == pytest.approx((2e4, 5e4))
+    assert part.dashpot_coefficient == pytest.approx(9e4)
+    assert part.dynamic_stiffness_per_mean_tension == 0
+
+
+def test_growth_with_the_mean_tension_is_its_slope_and_the_value_at_the_mean_is_kept():
+    found = line_from_lookup(source(), levels=LEVELS)
+    part = found.viscoelasticity
+    # 5000 N from 2000 to 3000 N of mean
+    assert part.dynamic_stiffness_per_mean_tension == pytest.approx(5.0)
+    assert part.dynamic_stiffness == pytest.approx(5e4 - 5 * 2000)
+    assert part.fast_stiffness == pytest.approx(5e4)
+    assert any("growth of the dynamic stiffness" in text for text in found.sources)
+    assert any("errata CG-14" in text for text in found.sources)
+
+
+def test_what_is_stated_is_taken_and_said():
+    found = line_from_lookup(source(), linear_density=0.2, diameter=None)
+    assert found.linear_density == 0.2
+    assert found.diameter == 0.0127
+    assert "linear density: stated at the export" in found.sources
+
+
+def test_points_of_tension_over_strain_by_branch():
+    at = np.array([0.5, 1.0, 2.0])
+    curves = tuple(
+        LineCurve("tension", "strain", 0.5, 2.0, at=at, value=scale * at, branch=branch)
+        for branch, scale in (("ascending", 3.0), ("descending", 2.0))
+    )
+    found = line_from_lookup(source(curves=curves), branch="descending")
+    np.testing.assert_array_equal(found.tension, [1.0, 2.0, 4.0])
+    assert found.curve.startswith("tension over strain, descending branch")
+    with pytest.raises(SettingsError, match="differs by branch"):
+        line_from_lookup(source(curves=curves))
+
+
+def test_outside_the_box_is_refused_or_flagged():
+    levels = LEVELS | {"mean_tension": 3500.0}
+    with pytest.raises(DataError, match="outside what was tested"):
+        line_from_lookup(source(), levels=levels)
+    found = line_from_lookup(source(), levels=levels, extrapolate="flag")
+    assert any("OUTSIDE what was tested" in text for text in found.sources)
+
+
+@pytest.mark.parametrize(
+    ("curve", "message"),
+    [
+        (LineCurve("strain", "tension", 0.0, 1e4, coefficient=np.array([0, 1e-4, -1e-8])), "rise"),
+        (
+            LineCurve(
+                "tension", "strain", 0.1, 1.0, at=np.array([0.1, 1.0]), value=np.array([5.0, 4.0])
+            ),
+            "rise",
+        ),
+        (LineCurve("strain", "tension", 0.0, 1e4, coefficient=np.array([0, np.nan])), "open"),
+    ],
+)
+def test_a_curve_that_falls_or_is_open_is_refused(curve, message):
+    with pytest.raises(DataError, match=message):
+        line_from_lookup(source(curves=(curve,)))
+
+
+def test_what_was_not_measured_is_named():
+    with pytest.raises(SettingsError, match="no curve of tension and strain: the pull is lost"):
+        line_from_lookup(source(curves=(), absent={"strain": "the pull is lost"}))
+    with pytest.raises(SettingsError, match="need a mean tension"):
+        line_from_lookup(source(), levels={"frequency": 0.3})
+
+
+def test_the_last_of_a_cubic_that_turns_back_is_cut_and_told():
+    turning = LineCurve("strain", "tension", 0.0, 5200.0, coefficient=np.array([0, 1e-4, -1e-8]))
+    found = line_from_lookup(source(curves=(turning,)))
+    assert found.tension[-1] == pytest.approx(5000, rel=0.006)
+    assert found.tested[1] == found.strain[-1]
+    assert "where the polynomial turns back" in found.notes[-1]
+
+
+def test_a_constant_below_zero_costs_the_first_points():
+    low = LineCurve("strain", "tension", 0.0, 4000.0, coefficient=np.array([-0.002, 1e-4]))
+    found = line_from_lookup(source(curves=(low,)))
+    assert found.strain[0] >= 0
+    assert "has no strain up to 20 N" in found.notes[-1]
+    assert found.tested[0] == found.strain[0]
+
+
+def test_a_joint_that_stands_twice_is_one_point_and_one_branch_need_not_be_asked_for():
+    twice = LineCurve(
+        "branch_tension", "strain", 0.5, 2.0, at=np.array([0.5, 1.0, 1.0, 2.0]),
+        value=np.array([3.0, 5.0, 5.0, 9.0]), branch="ascending",
+    )  # fmt: skip
+    found = line_from_lookup(source(curves=(twice,)))
+    np.testing.assert_array_equal(found.strain, [0.5, 1.0, 2.0])
+    assert "ascending branch" in found.curve
+    with pytest.raises(SettingsError, match="differs by branch"):
+        line_from_lookup(source(curves=(twice,)), branch="descending")
