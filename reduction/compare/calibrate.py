@@ -12,6 +12,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import t as student
@@ -20,7 +21,7 @@ from reduction.compare.difference import difference_of
 from reduction.compare.fitproblem import FitProblem, FitSpread, parameter_bounds, spread_of
 from reduction.compare.identifiability import identify_directions, plausible_error
 from reduction.compare.product import Calibration, Identifiability, MeasuredCurve
-from reduction.compare.trials import design_with, known_uncertainties, number_of
+from reduction.compare.trials import cord_curve_error, design_with, known_uncertainties, number_of
 from reduction.errors import DataError, SettingsError
 from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign
@@ -31,6 +32,7 @@ __all__ = ["calibrate_hose"]
 _LEAST_NOISE = 1e-6  # of the RMS tension: points without scatter are not infinitely exact
 _AT_BOUND = 1e-4  # of the width between the bounds
 _FAR = 2.0  # standard uncertainties
+_NOTHING = 1e-3  # of the noise
 _WIDE = 0.5  # of the width between the bounds
 
 
@@ -127,6 +129,12 @@ def calibrate_hose(
     problem, sources = _pose(design, measured, names, bounds or {}, held)
     p = len(names)
     first = problem.solve(problem.start(start / problem.unit), problem.noise)
+    near = design_with(design, dict(zip(names, (first[:p] * problem.unit).tolist(), strict=True)))
+    between = cord_curve_error(near, measured.strain)[used]
+    if np.any(np.abs(between) > problem.noise * _NOTHING):
+        problem = replace(problem, shared=np.vstack([problem.shared, between]))
+        sources = (*sources, "cord curve between its points")
+        first = problem.solve(first, problem.noise)
     remainder = problem.remainder(first)
     excess = remainder @ remainder / (remainder.size - p) - np.mean(problem.noise**2)
     model_error = float(np.sqrt(np.maximum(excess, 0.0)))
