@@ -6,7 +6,7 @@ dimension                  one entry for
 ``comparison``             each comparison; text coordinate
 ``comparison_point``       each strain of the measured curve, from 1
 ``curve``                  ascending and descending branch, midline; text coordinate
-``hose_event``             slackest cords, pick-up, working load, break; text coordinate
+``hose_event``             pick-up, working load, break of the cords; text coordinate
 ``comparison_cycle``       each cycle, or row of pooled cycles, from 1
 ``parameter``              each fitted number of the hose, from 1; ``parameter_name``
 ``note``                   each note of any comparison

@@ -94,8 +94,9 @@ def calibrate_hose(
     residuals are correlated, tau, and by what is left of the reduced chi square where that
     is above 1 [3]_; the interval is Student's with n / tau - p degrees of freedom.  Shared
     errors keep their stated variance.  Not in the interval: a smooth error of the model that
-    fitted numbers can follow and that leaves no residual.  `identify_directions` says how
-    much of that one percent would do.
+    fitted numbers can follow and that leaves no residual; but where `identify_directions` finds
+    that the curve does not show a direction, what one percent of it would do is.  An interval
+    that would reach beyond all that a number was allowed is NaN.
 
     *Start.* Of five values of each number around the design, in all combinations, the best.
 
@@ -143,8 +144,6 @@ def calibrate_hose(
     value = best[:p] * problem.unit
     fitted = design_with(design, dict(zip(names, value.tolist(), strict=True)))
     spread = spread_of(problem, best, noise)
-    deviation = np.sqrt(np.diagonal(spread.covariance))
-    half = student.ppf(0.975, spread.freedom) * deviation * problem.unit
     told_apart = identify_directions(
         problem.slopes(best[: problem.n_traced])[:, :p] / problem.unit,
         tension=problem.tension_at(best[None, : problem.n_traced])[0],
@@ -154,24 +153,31 @@ def calibrate_hose(
         contribution=problem.error_slopes(best),
         misfit=float(np.sqrt(np.mean(problem.remainder(best) ** 2))),
     )
+    covariance = spread.covariance * np.outer(problem.unit, problem.unit)
+    covariance += told_apart.open_covariance
+    deviation = np.sqrt(np.diagonal(covariance))
+    width = (problem.high - problem.low) * problem.unit
+    half = student.ppf(0.975, spread.freedom) * deviation
+    is_wide = 2 * half > _WIDE * width
+    is_known = half <= width
+    half, stated_deviation = (np.where(is_known, one, np.nan) for one in (half, deviation))
     margin = _AT_BOUND * (problem.high - problem.low)
     at_bound = (best[:p] - problem.low < margin) | (problem.high - best[:p] < margin)
     predicted = [predict_hose(one, measured.strain).tension for one in (design, fitted)]
     before, after = (
         difference_of(measured.strain, one, judged, curve=measured.judged) for one in predicted
     )
-    width = (problem.high - problem.low) * problem.unit
     return Calibration(
         parameter=names,
         start=start,
         value=value,
-        standard_uncertainty=deviation * problem.unit,
+        standard_uncertainty=stated_deviation,
         low=value - half,
         high=value + half,
         lower_bound=problem.low * problem.unit,
         upper_bound=problem.high * problem.unit,
         is_at_bound=at_bound,
-        correlation=spread.covariance / np.outer(deviation, deviation),
+        correlation=covariance / np.outer(deviation, deviation),
         identifiability=told_apart,
         design=fitted,
         before=before,
@@ -181,7 +187,7 @@ def calibrate_hose(
         shared_error=sources,
         shared_error_value=best[p:],
         notes=(
-            *_notes_of_numbers(names, told_apart, at_bound, 2 * half > _WIDE * width),
+            *_notes_of_numbers(names, told_apart, at_bound, is_wide),
             *_notes_of_fit(spread, p, sources, best[p:], used & ~np.isfinite(predicted[1])),
             *_notes_of_stated(names, value - start, stated),
         ),
@@ -260,7 +266,8 @@ def _notes_of_numbers(
         notes.append(
             f"this curve cannot tell {' and '.join(names)} apart: {told_apart.words}, less than "
             f"the {100 * told_apart.needed_change:.2g} % that an error of the model may be; the "
-            "values are one choice of many, and their intervals do not hold"
+            "values are one choice of many, and their intervals are as wide as such an error makes "
+            "them"
             if len(names) > 1
             else f"this curve does not show {names[0]}: {told_apart.words}, less than the "
             f"{100 * told_apart.needed_change:.2g} % that an error of the model may be"

@@ -10,6 +10,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -59,8 +60,8 @@ def event_differences(
 
     Notes
     -----
-    A test does not show where cords pick up: at pick-up the tension is compared, and the strain
-    at which the test had that tension.  The difference of strain at the working load is what
+    At pick-up the tension is compared, and the strain at which the test had that tension; neither
+    is where the cords of the test pick up (`reduction.compare.pickup.measured_pick_up`).  The difference of strain at the working load is what
     a designer asks for: how much less or more the hose stretches under its safe load.
     Between two strains of the curve the difference is taken as straight, since both curves
     have the kink; near the break, where one of them has no prediction, the measured curve is.
@@ -80,31 +81,9 @@ def event_differences(
     """
     found = find_events(design)
     known = propagate_hose(design, np.zeros(1), standard_uncertainty or {})
-    predicted = predict_hose(design, measured.strain).tension
-    pairs = (
-        (found.pick_up, known.pick_up),
-        (found.working, known.working),
-        (found.cord_break, known.cord_break),
-    )
-    return tuple(
-        _compare(name, event, error, measured, predicted)
-        for name, (event, error) in zip(EVENTS, pairs, strict=True)
-    )
-
-
-def _compare(
-    name: str,
-    event: HoseEvent,
-    error: EventUncertainty,
-    measured: MeasuredCurve,
-    predicted: Floats,
-) -> EventDifference:
     curve = measured.tension_of(measured.judged)
     there = np.isfinite(curve)
     x, y = measured.strain[there], curve[there]
-    strain, tension = float(event.strain), float(event.tension)
-    reached = strain_at_tension(measured.strain, curve, tension)
-    slope = np.gradient(y, x) if x.size > 1 else np.full(x.size, np.nan)
     own = np.vstack(
         [
             measured.independent_uncertainty()[None, there],
@@ -112,6 +91,39 @@ def _compare(
             measured.scatter_contribution[:, there],
         ]
     )
+    if np.isfinite(measured.end_strain):
+        x, y = np.append(x, measured.end_strain), np.append(y, measured.end_tension)
+        last = own[:, -1].copy()
+        last[0] = measured.end_standard_uncertainty
+        own = np.column_stack([own, last])
+    test = _Test(x, y, predict_hose(design, x).tension, own)
+    pairs = (
+        (found.pick_up, known.pick_up),
+        (found.working, known.working),
+        (found.cord_break, known.cord_break),
+    )
+    return tuple(
+        _compare(name, event, error, test)
+        for name, (event, error) in zip(EVENTS, pairs, strict=True)
+    )
+
+
+class _Test(NamedTuple):
+    """Judged curve up to its last sample, the prediction there, and errors, (n_source, n)."""
+
+    strain: Floats
+    tension: Floats
+    predicted: Floats
+    own: Floats
+
+
+def _compare(
+    name: str, event: HoseEvent, error: EventUncertainty, test_curve: _Test
+) -> EventDifference:
+    x, y, predicted, own = test_curve
+    strain, tension = float(event.strain), float(event.tension)
+    reached = strain_at_tension(x, y, tension)
+    slope = np.gradient(y, x) if x.size > 1 else np.full(x.size, np.nan)
 
     def uncertainty(at: float) -> float:
         of_test = np.array([_at(at, x, row) for row in own])
@@ -119,7 +131,7 @@ def _compare(
         return float(np.sqrt(np.sum(of_test**2) + np.sum(of_model**2)))
 
     # between two strains the difference is straight where both curves have a kink
-    apart = _at(strain, x, predicted[there] - y)
+    apart = _at(strain, x, predicted - y)
     test = tension - apart if np.isfinite(apart) else _at(strain, x, y)
     return EventDifference(
         name=name,

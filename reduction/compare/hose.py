@@ -17,6 +17,7 @@ import numpy as np
 from reduction.compare.calibrate import calibrate_hose
 from reduction.compare.difference import cycle_differences, difference_of, energy_difference
 from reduction.compare.events import event_differences
+from reduction.compare.pickup import PickUp, measured_pick_up
 from reduction.compare.plausibility import plausibility_of_working_strain
 from reduction.compare.product import Comparison, EventDifference, MeasuredCurve
 from reduction.compare.trials import input_draws
@@ -24,7 +25,7 @@ from reduction.compare.validation import N_DRAWS, validate_curve
 from reduction.errors import SettingsError
 from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign, HosePrediction
-from reduction.record import Bools
+from reduction.record import Bools, Floats
 
 __all__ = ["compare_hose"]
 
@@ -73,7 +74,8 @@ def compare_hose(
     -----
     Every difference is predicted less measured [2]_.  The prediction is elastic; it is judged
     by the midline of the loop, since either branch is off by half of a loop that no cord
-    curve knows of.  Where one branch was measured, that one is judged, and a note says so.
+    curve knows of.  The verdict reads the prediction at the strains of the samples, as the curve
+    was, so that a kink is rounded in both.  Where one branch was measured, that one is judged, and a note says so.
 
     Strains beyond the predicted break of the cords are not in any difference; a note counts them.
 
@@ -108,6 +110,7 @@ def compare_hose(
         if calibrate
         else None
     )
+    pick_up = measured_pick_up(measured)
     return Comparison(
         measured=measured,
         prediction=prediction,
@@ -116,10 +119,29 @@ def compare_hose(
         events=events,
         energy=energy_difference(prediction.tension, measured),
         cycles=cycle_differences(prediction.tension, measured),
-        validation=validate_curve(prediction.tension, measured, input_error=inputs),
+        validation=validate_curve(
+            _as_read(design, measured, prediction), measured, input_error=inputs
+        ),
         calibration=calibration,
-        notes=_notes(design, measured, prediction, events[1]),
+        notes=(*_notes(design, measured, prediction, events[1]), *_of_pick_up(pick_up)),
+        measured_pick_up_strain=pick_up.strain,
+        measured_pick_up_strain_standard_uncertainty=pick_up.standard_uncertainty,
     )
+
+
+def _as_read(design: HoseDesign, measured: MeasuredCurve, prediction: HosePrediction) -> Floats:
+    """Prediction as the test would show it; plain where it is broken beside a strain."""
+    node = measured.reading.node
+    there = np.isfinite(measured.tension_of(measured.judged))
+    # the curve goes on just below zero, where a record that is read low has strains
+    read = measured.reading.of(np.sign(node) * predict_hose(design, np.abs(node)).tension)
+    return np.where(there & np.isfinite(read), read, prediction.tension)
+
+
+def _of_pick_up(found: PickUp) -> tuple[str, ...]:
+    if not found.reason:
+        return ()
+    return (f"where the cords of the test pick up is not shown: {found.reason}",)
 
 
 def _notes(
@@ -145,7 +167,11 @@ def _notes(
             plausibility_of_working_strain(angle, working.measured_strain, loading=measured.loading)
         )
     else:
-        notes.append("the test did not reach the predicted working load")
+        last = np.append(measured.strain[seen], measured.end_strain)
+        ended = float(np.nanmax(last))
+        notes.append(
+            f"the judged curve ends at strain {ended:.4g}, before the predicted working load"
+        )
     sides = ("predicted", "measured")
     notes += [f"{side} {text}" for side, text in zip(sides, said, strict=False) if text]
     return tuple(notes)

@@ -40,6 +40,7 @@ _ANGLE = np.radians(1.0)
 _PART = 0.1
 _DEAD_LENGTH = 0.05
 _MODEL = 0.01  # of the tension: no smooth error below this is held against a prediction
+_LEAST_SEEN = 1e-6  # of the tension: nothing
 _NAMED = 0.1  # of the largest part of a direction: less is not named
 
 
@@ -134,11 +135,13 @@ def identify_directions(
     -----
     :math:`\delta` is 1 %, or the relative misfit where that is greater: an error of the model
     is smooth, so that more strains do not average it out, and a prediction that left 3 %
-    somewhere cannot be trusted to 1 % elsewhere.  The unit of each number is what it may
-    plausibly be off by, so that a number to which the curve does not answer (the scale of cords
-    that carry little yet) is found as well as two that trade against each other.  The collinearity
-    index of [1]_, which knows only the second kind, is given beside; above 10 to 15 it is called
-    poor there.
+    somewhere cannot be trusted to 1 % elsewhere.  Along a direction of which a unit step changes
+    the curve by less, such an error moves the numbers by :math:`\delta` over that change: more
+    than one plausible error, which the noise does not say.  The unit of each number is what it
+    may plausibly be off by, so that a number to which the curve does not answer (the scale of
+    cords that carry little yet) is found as well as two that trade against each other.  The
+    collinearity index of [1]_, which knows only the second kind, is given beside; above 10 to 15
+    it is called poor there.
 
     Examples
     --------
@@ -179,6 +182,8 @@ def identify_directions(
         for k in range(len(names))
         if change[k] < needed
     ]
+    unseen = change < needed
+    reach = needed / np.maximum(change[unseen], _LEAST_SEEN) * axes[:, unseen] * unit[:, None]
     return Identifiability(
         least_change=float(change[0]),
         needed_change=needed,
@@ -186,6 +191,7 @@ def identify_directions(
         collinearity=_collinearity(s),
         is_identified=not words,
         words="; ".join(words),
+        open_covariance=reach @ reach.T,
     )
 
 

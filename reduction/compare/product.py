@@ -214,10 +214,12 @@ class Difference:
 class EventDifference:
     """Comparison error at what happens to the cords, at the judged curve.
 
-    ``tension_difference`` [N] is that at the predicted strain of the event,
-    ``strain_difference`` [1] the predicted strain less that at which the predicted tension was
-    measured.  The standard uncertainties are of the differences, both sides in them.  NaN where
-    the test did not go that far.
+    ``tension_difference`` [N] is that at the predicted strain of the event; ``measured_strain``
+    [1] is where the test had the *predicted tension* of the event, and ``strain_difference`` the
+    predicted strain less that.  It is no place of the event in the test: another prediction has
+    another one; where the cords of the test pick up is `Comparison.measured_pick_up_strain`.
+    The standard uncertainties are of the differences, both sides in them.  NaN where the test did
+    not go that far.
     """
 
     name: str
@@ -296,7 +298,9 @@ class Validation:
     agrees, is_informative : bool
         Whether the ratio is inside; whether U is small enough for that to mean anything.
     verdict : str
-        In words.
+        In words, with newtons; `reduction.compare.verdict.verdict_words` has other units.
+    ratio_difference : float
+        Comparison error, signed, where the ratio is largest. [N]
     """
 
     input_standard_uncertainty: Floats
@@ -312,6 +316,7 @@ class Validation:
     agrees: bool
     is_informative: bool
     verdict: str
+    ratio_difference: float = float("nan")
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -338,6 +343,9 @@ class Identifiability:
         Whether the least change is the greater one.
     words : str
         Which numbers trade against which; empty where they are told apart.
+    open_covariance : ndarray, shape (n_parameter, n_parameter)
+        What an error of the model that the curve cannot show may move the numbers by, along the
+        directions that are not seen; zero where all are. [SI]
     """
 
     least_change: float
@@ -346,9 +354,10 @@ class Identifiability:
     collinearity: float
     is_identified: bool
     words: str
+    open_covariance: Floats
 
     def __post_init__(self) -> None:
-        """Make the array read-only."""
+        """Make the arrays read-only."""
         freeze_arrays(self)
 
 
@@ -363,7 +372,8 @@ class Calibration:
     start, value : ndarray
         Before and after, in the unit of each. [SI]
     standard_uncertainty, low, high : ndarray
-        Of the value, and its 95 % interval (not cut at the bounds). [SI]
+        Of the value, and its 95 % interval (not cut at the bounds); NaN where it would be wider on
+        either side than all that was allowed. [SI]
     lower_bound, upper_bound : ndarray
         What the fit was kept between. [SI]
     is_at_bound : ndarray of bool
@@ -414,7 +424,9 @@ class Comparison:
     """A measured curve beside its prediction on the same axis of strain.
 
     ``differences`` has one entry a curve that was measured, by name; ``judged`` is the one
-    that events, validation and calibration are of.
+    that events, validation and calibration are of.  ``measured_pick_up_strain`` [1] is where that
+    curve bends upward by itself, with its standard uncertainty; NaN where it does not show it, and
+    a note says why.
     """
 
     measured: MeasuredCurve
@@ -427,3 +439,5 @@ class Comparison:
     validation: Validation
     calibration: Calibration | None
     notes: tuple[str, ...]
+    measured_pick_up_strain: float = float("nan")
+    measured_pick_up_strain_standard_uncertainty: float = float("nan")

@@ -13,7 +13,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
 from reduction.compare.product import MeasuredCurve, Validation
+from reduction.compare.verdict import LEAST_PROBABILITY, probability_words, verdict_words
 from reduction.errors import DataError
 from reduction.record import Floats
 
@@ -144,11 +145,11 @@ def validate_curve(
     mean that there is none [1]_.
 
     *Chi square* E' V^-1 E with the full covariance [2]_ sees a wrong shape that stays inside
-    the band, and needs the uncertainties to be right in every direction; it is given beside the
-    verdict and does not make it.  Its probability is the share of the draws that exceed it, since
-    tension is no linear function of the angle where cords pick up.  Directions in which no stated
-    error can move the curve have no inverse and are left out; if the difference lies in one of
-    them, a note says so.
+    the band, and needs the uncertainties to be right in every direction; it does not make the
+    verdict, which says so where it does not agree.  Its probability is the share of the draws
+    that exceed it, since tension is no linear function of the angle where cords pick up.
+    Directions in which no stated error can move the curve have no inverse and are left out; if
+    the difference lies in one of them, a note says so.
 
     The draws are the same every time.
 
@@ -208,17 +209,7 @@ def validate_curve(
     share = float(np.nanmedian(shares)) if np.isfinite(shares).any() else float("nan")
     agrees = bool(largest <= factor)
     is_informative = bool(share <= largest_useful_share)
-    words = _verdict(
-        agrees=agrees,
-        is_informative=is_informative,
-        error=float(error[place]),
-        strain=float(measured.strain[place]),
-        ratio=largest,
-        factor=factor,
-        share=share,
-        middle=float(np.nanmedian(factor * total)) if np.isfinite(factor) else float("nan"),
-    )
-    return Validation(
+    found = Validation(
         input_standard_uncertainty=of_model,
         measurement_standard_uncertainty=np.where(there, of_test, np.nan),
         standard_uncertainty=total,
@@ -231,34 +222,11 @@ def validate_curve(
         share=share,
         agrees=agrees,
         is_informative=is_informative,
-        verdict=words,
+        verdict="",
+        ratio_difference=float(error[place]) if np.isfinite(largest) else float("nan"),
         notes=_notes(inputs, measured, agrees, judged),
     )
-
-
-def _verdict(
-    *,
-    agrees: bool,
-    is_informative: bool,
-    error: float,
-    strain: float,
-    ratio: float,
-    factor: float,
-    share: float,
-    middle: float,
-) -> str:
-    if not np.isfinite(ratio):
-        return "not judged: neither the test nor the prediction has an uncertainty"
-    if not agrees:
-        way = "above" if error > 0 else "below"
-        return (
-            f"differs by {error:+.4g} N at strain {strain:.4g}, {ratio:.1f} times its standard "
-            f"uncertainty ({factor:.1f} expected at most): the prediction is {way} the test"
-        )
-    within = f"agrees within U, {middle:.3g} N or {100 * share:.2g} % of the tension at the median"
-    if is_informative:
-        return within
-    return f"{within}: so wide that agreement says little"
+    return replace(found, verdict=verdict_words(found))
 
 
 def _notes(
@@ -272,10 +240,10 @@ def _notes(
         )
     if not measured.contribution.any():
         notes.append("no uncertainty of the calibration is stated: the test counts as unbiased")
-    if agrees and judged.probability < 1 - _PROBABILITY:
+    if agrees and judged.probability < LEAST_PROBABILITY:
         notes.append(
             f"no strain differs by more than U, but the shape of the difference is one that the "
-            f"stated errors make in {100 * judged.probability:.2g} % of all cases alone"
+            f"stated errors make in {probability_words(judged.probability)} of all cases alone"
         )
     if judged.outside > _OUTSIDE:
         notes.append(

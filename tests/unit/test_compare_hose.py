@@ -55,7 +55,7 @@ def test_a_dynamic_test_against_a_static_cord_is_noted():
 
 def test_what_the_test_did_not_reach_and_what_the_prediction_does_not_is_noted():
     short = compare_hose(TRUTH.design(), cyclic(top=0.7))
-    assert "the test did not reach the predicted working load" in short.notes
+    assert any(text.endswith("before the predicted working load") for text in short.notes)
     strong = TRUTH.but(cord_strain_scale=1.2)
     strain = np.linspace(0, 1.5, 800)
     test = measured_curve(strain, strong.tension(strain), loading="static")
