@@ -34,6 +34,8 @@ __all__ = ["AssemblyCurve", "SeriesPart", "Tether", "assemble", "equal_tethers",
 
 # nodes of tension beside those of the curve: denser near slack, where splices stretch fastest
 _N_NODES = 400
+_APART = 1e-9
+"""Share of the range of lengths that two nodes are apart."""
 
 
 @dataclass(frozen=True)
@@ -290,6 +292,9 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
     more = np.sum([part.length_at(tension) for part in parts], axis=0) if parts else 0.0
     total = nodes + more
     kept = rises & np.isfinite(total)
+    # lengths of two tethers may differ by rounding alone: no slope stands between such nodes
+    apart = _APART * (nodes[-1] - nodes[0])
+    kept &= np.concatenate([[True], (np.diff(total) > apart) & (np.diff(nodes) > apart)])
     total, nodes, tension = total[kept], nodes[kept], tension[kept]
     # compliance in line takes its share of what the tension is wrong by at one length
     stiffness = np.gradient(tension, total) / np.gradient(tension, nodes)
