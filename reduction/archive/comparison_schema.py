@@ -100,6 +100,7 @@ COMPARISON_SCHEMA: dict[str, Variable] = {
         measured("event_tension_difference", _E),
         stated("event_measured_strain", _E, "see event_strain_difference"),
         measured("event_strain_difference", _E),
+        measured("measured_pick_up_strain", _C),
         *(
             stated(name, _C, why)
             for name, why in (

@@ -214,6 +214,8 @@ def _judgement_values(found: Sequence[Comparison]) -> Values:
         name: np.array([float(getattr(one.validation, field)) for one in found])
         for name, field in _OF_VALIDATION.items()
     }
+    for name in ("measured_pick_up_strain", "measured_pick_up_strain_standard_uncertainty"):
+        values[name] = np.array([getattr(one, name) for one in found])
     values |= {
         "agrees": np.array([int(one.validation.agrees) for one in found]),
         "is_informative": np.array([int(one.validation.is_informative) for one in found]),

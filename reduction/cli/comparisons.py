@@ -15,6 +15,7 @@ from reduction.campaign.plan import ComparisonPlan
 from reduction.cli.numbers import plain, short, table_of
 from reduction.cli.outcome import Outcome
 from reduction.compare.product import Calibration
+from reduction.compare.verdict import verdict_words
 from reduction.ingest.source import hash_source
 from reduction.provenance import Source
 from reduction.report.page import write_report
@@ -70,7 +71,7 @@ def _show(named: NamedComparison, outcome: Outcome, system: UnitSystem) -> None:
     force, factor = display_unit("N", system)
     outcome.say(
         f"{named.test} of {named.specimen} ({found.measured.loading}) against {named.hose}: "
-        f"{found.validation.verdict}"
+        f"{verdict_words(found.validation, unit=force, factor=factor)}"
     )
     table = table_of(
         f"predicted less measured [{force}]", "bias", "RMS", "RMS [%]", "worst", "at strain [%]",
@@ -84,8 +85,8 @@ def _show(named: NamedComparison, outcome: Outcome, system: UnitSystem) -> None:
         )  # fmt: skip
     outcome.show(table)
     table = table_of(
-        "event", "predicted strain [%]", "measured [%]", f"predicted tension [{force}]",
-        f"measured [{force}]", f"difference [{force}]", f"u [{force}]",
+        "event", "predicted strain [%]", "of that tension [%]", f"predicted tension [{force}]",
+        f"measured there [{force}]", f"difference [{force}]", f"u [{force}]",
     )  # fmt: skip
     for event in found.events:
         table.add_row(
@@ -96,6 +97,12 @@ def _show(named: NamedComparison, outcome: Outcome, system: UnitSystem) -> None:
             short(factor * event.tension_difference_standard_uncertainty, 2),
         )  # fmt: skip
     outcome.show(table)
+    if np.isfinite(found.measured_pick_up_strain):
+        spread = found.measured_pick_up_strain_standard_uncertainty
+        outcome.say(
+            f"the test itself bends upward at {100 * found.measured_pick_up_strain:.2f} % "
+            f"(u {100 * spread:.2g})"
+        )
     if found.calibration is not None:
         _show_calibration(found.calibration, outcome, system)
     for note in named.notes:
@@ -159,6 +166,10 @@ def document(named: NamedComparison) -> dict[str, Any]:
                 name: plain(value) for name, value in vars(event).items() if name != "name"
             }
             for event in found.events
+        },
+        "measured_pick_up": {
+            "strain": plain(found.measured_pick_up_strain),
+            "standard_uncertainty": plain(found.measured_pick_up_strain_standard_uncertainty),
         },
         "energy": {name: plain(value) for name, value in vars(found.energy).items()},
         "validation_uncertainty": plain(validation.standard_uncertainty),

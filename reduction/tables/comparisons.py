@@ -32,6 +32,7 @@ COMPARISON_TABLES = (
             "chi_square_freedom",
             "chi_square_probability",
             "uncertainty_share",
+            "measured_pick_up_strain",
             "energy_strain_low",
             "energy_strain_high",
             "measured_energy",

@@ -51,6 +51,9 @@ OF_COMPARISONS = (
     Quantity("event_tension_difference", "N", "predicted less measured tension at the event"),
     Quantity("event_measured_strain", "1", "strain at which the tension of the event was measured"),
     Quantity("event_strain_difference", "1", "predicted less measured strain at that tension"),
+    Quantity(
+        "measured_pick_up_strain", "1", "strain at which the measured curve itself bends upward"
+    ),
     Quantity("energy_strain_low", "1", "lower end of the strains of the energies"),
     Quantity("energy_strain_high", "1", "upper end of the strains of the energies"),
     Quantity("measured_energy", "J m-1", "energy under the ascending branch of the test"),
