@@ -75,7 +75,8 @@ def compare_hose(
     Every difference is predicted less measured [2]_.  The prediction is elastic; it is judged
     by the midline of the loop, since either branch is off by half of a loop that no cord
     curve knows of.  The verdict reads the prediction at the strains of the samples, as the curve
-    was, so that a kink is rounded in both.  Where one branch was measured, that one is judged, and a note says so.
+    was, so that a kink is rounded in both.  Where one branch was measured, that one is judged,
+    and a note says so.
 
     Strains beyond the predicted break of the cords are not in any difference; a note counts them.
 
