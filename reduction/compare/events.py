@@ -63,9 +63,10 @@ def event_differences(
     At pick-up the tension is compared, and the strain at which the test had that tension; neither
     is where the cords of the test pick up (`reduction.compare.pickup.measured_pick_up`).  The
     difference of strain at the working load is what a designer asks for: how much less or more
-    the hose stretches under its safe load.
-    Between two strains of the curve the difference is taken as straight, since both curves
-    have the kink; near the break, where one of them has no prediction, the measured curve is.
+    the hose stretches under its safe load.  The judged curve counts up to its last sample, which
+    lies beyond the last bin centre.  Between two strains of the curve the difference is taken as
+    straight, since both curves have the kink; near the break, where one of them has no
+    prediction, the measured curve is.
 
     Examples
     --------

@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
-from measured_hoses import Truth
+from measured_hoses import CORD_LOAD, CORD_STRAIN, Truth
+from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.stats import binom, chi2
 
 from reduction.compare import fitproblem
 from reduction.compare.calibrate import calibrate_hose
@@ -8,7 +10,7 @@ from reduction.compare.fitproblem import parameter_bounds
 from reduction.compare.identifiability import CALIBRATED, identify_directions, plausible_error
 from reduction.compare.measured import SharedUncertainty, measured_curve
 from reduction.compare.residuals import autocorrelation_length
-from reduction.compare.trials import trial_tension
+from reduction.compare.trials import cord_curve_error, trial_tension
 from reduction.errors import DataError, FitError, SettingsError
 
 TRUTH = Truth(dead_length_share=0.04)
@@ -129,6 +131,95 @@ def test_intervals_hold_the_truth_in_19_of_20_draws(names, options, n_draws):
         hits.append((found.low <= truth) & (truth <= found.high))
     share = np.mean(hits, axis=0)
     assert np.all(share >= 0.90) and np.all(share <= 1 - 0.5 / n_draws * (n_draws > 100))
+
+
+def offset_record(rng, *, pulled, noise, strain_offset, tension_offset):
+    """A record of a hose whose load cell and position are off by what is declared."""
+    n_cycles, n = (1, 400) if pulled else (3, 800)
+    phase = np.linspace(0, n_cycles, n_cycles * n, endpoint=False) / (2 if pulled else 1)
+    strain = 0.95 * (1 - np.abs(2 * (phase % 1) - 1))
+    branch, number = np.where(phase % 1 < 0.5, 1, 2), phase.astype(int) + 1
+    tension = TRUTH.tension(strain) + tension_offset * rng.standard_normal()
+    return measured_curve(
+        strain + strain_offset * rng.standard_normal(),
+        tension + rng.normal(0, noise, strain.size), loading="static",
+        cycle_number=None if pulled else number, branch=None if pulled else branch,
+        shared=SharedUncertainty(strain_offset=strain_offset, tension_offset=tension_offset),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("pulled", "noise"), [(False, 20.0), (True, 5.0)])
+def test_intervals_hold_the_truth_where_load_and_strain_are_both_off(pulled, noise):
+    rng, names, n_draws = np.random.default_rng(21), ("wrap_angle", "rubber_modulus"), 50
+    truth = np.array([getattr(TRUTH, name) for name in names])
+    hits, ratios = [], []
+    for _ in range(n_draws):
+        test = offset_record(rng, pulled=pulled, noise=noise, strain_offset=2e-3, tension_offset=60)
+        found = calibrate_hose(TRUTH.design(), test, names)
+        hits.append((found.low <= truth) & (truth <= found.high))
+        ratios.append((found.value - truth) / found.standard_uncertainty)
+    # 19 of 20; less than this in one of a thousand seeds
+    assert np.all(np.sum(hits, axis=0) >= binom.ppf(1e-3, n_draws, 0.95))
+    spread = np.std(ratios, axis=0)
+    assert np.all(spread < np.sqrt(chi2.ppf(0.999, n_draws) / n_draws))
+    assert np.all(spread > 0.5)
+
+
+@pytest.mark.parametrize("error", [-1.0, 1.0])
+def test_a_strain_that_is_off_by_its_uncertainty_is_not_taken_for_an_angle(error):
+    strain = np.linspace(0, 0.95, 4000)
+    rng = np.random.default_rng(1)
+    test = measured_curve(
+        strain + error * 2e-3, TRUTH.tension(strain) + rng.normal(0, 20, strain.size),
+        loading="static", shared=SharedUncertainty(tension_offset=60, strain_offset=2e-3),
+    )  # fmt: skip
+    found = calibrate_hose(TRUTH.design(), test, ["wrap_angle", "rubber_modulus"])
+    truth = np.array([TRUTH.wrap_angle, TRUTH.rubber_modulus])
+    assert np.all(np.abs(found.value - truth) < 1.5 * found.standard_uncertainty)
+    assert found.shared_error[0] == "strain_offset"
+
+
+def test_what_the_curve_does_not_show_has_no_narrow_interval():
+    test = pull(TRUTH, noise=5, seed=4)
+    names = ["wrap_angle", "cord_load_scale", "dead_length_share"]
+    found = calibrate_hose(TRUTH.design(), test, names)
+    assert not found.identifiability.is_identified
+    # a step of one plausible error is less than an error of the model would do
+    least = np.abs(found.identifiability.direction)
+    known = np.isfinite(found.standard_uncertainty)
+    assert np.all(found.standard_uncertainty[known] > least[known])
+    # 0.001 degrees is what the noise alone would say
+    assert not found.high[0] - found.low[0] < np.radians(0.5)
+    assert np.isfinite(found.value).all()
+    pair = calibrate_hose(TRUTH.design(), test, names[:1])
+    assert not pair.identifiability.open_covariance.any()
+
+
+def test_a_number_of_which_nothing_is_seen_has_no_interval():
+    test = pull(TRUTH, top=0.4, noise=5, seed=5)
+    found = calibrate_hose(TRUTH.design(), test, ["cord_load_scale"])
+    assert np.isnan([found.low[0], found.high[0], found.standard_uncertainty[0]]).all()
+    assert np.isfinite(found.value[0])
+    assert any("not determined" in text for text in found.notes)
+
+
+def test_what_a_table_of_a_cord_leaves_open_is_the_difference_of_two_curves_through_it():
+    design, strain = TRUTH.design(), np.linspace(0, 1.2, 121)
+    at = np.linspace(0, 0.22, 2001)
+    spline = CubicSpline(CORD_STRAIN, CORD_LOAD)(at)
+    monotone = PchipInterpolator(CORD_STRAIN, CORD_LOAD)(at)
+    error = cord_curve_error(design, strain)
+    # cords carry nothing below the pick-up; at it the load is the same, zero
+    assert not error[strain < TRUTH.pick_up_strain() - 0.01].any()
+    stretch = 1 + strain / (1 - TRUTH.dead_length_share)
+    cord = np.maximum(TRUTH.cord_stretch(stretch) - 1, 0)
+    apart = np.interp(cord, at, spline - monotone)
+    share = TRUTH.but(cord_load_scale=1.0).tension(strain) - TRUTH.but(cord_load_scale=0.0).tension(
+        strain
+    )
+    load = np.interp(cord, at, monotone)
+    taut = load > 0.1
+    assert error[taut] == pytest.approx((share * apart / np.maximum(load, 1e-9))[taut], abs=1.5)
 
 
 def test_a_model_that_is_wrong_has_wide_intervals_that_hold_the_truth():

@@ -7,6 +7,7 @@ from reduction.compare.measured import SharedUncertainty, measured_curve
 from reduction.compare.plausibility import plausibility_of_working_strain
 from reduction.compare.trials import design_with, input_draws, number_of
 from reduction.errors import DataError, SettingsError
+from reduction.predict.events import find_events
 
 TRUTH = Truth()
 
@@ -62,6 +63,37 @@ def test_what_the_test_did_not_reach_and_what_the_prediction_does_not_is_noted()
     beyond = compare_hose(TRUTH.design(), test)
     assert any("predicted broken at" in text for text in beyond.notes)
     assert beyond.judged == "ascending"
+
+
+def test_a_working_load_beyond_the_last_bin_is_reached():
+    design = TRUTH.design()
+    working = find_events(design).working
+    top = float(working.strain) // 0.01 * 0.01 + 0.0085
+    strain = np.linspace(0, top, 3000)
+    # a hose that is a little stiffer has the working load between the last bin and the turn
+    factor = float(working.tension) / TRUTH.tension(np.array([top - 0.002]))[0]
+    test = measured_curve(strain, factor * TRUTH.tension(strain), loading="static")
+    last = test.strain[np.isfinite(test.branch_tension[0])][-1]
+    assert last < top - 0.002 < test.end_strain
+    found = compare_hose(design, test)
+    assert found.events[1].measured_strain == pytest.approx(top - 0.002, abs=1e-4)
+    assert not any("before the predicted working load" in text for text in found.notes)
+
+
+def test_where_the_cords_of_a_test_pick_up_does_not_hang_on_the_prediction():
+    test = cyclic()
+    designs = [TRUTH.design(), TRUTH.but(wrap_angle=np.radians(67)).design()]
+    found = [compare_hose(design, test) for design in designs]
+    places = [one.measured_pick_up_strain for one in found]
+    assert places[0] == places[1]
+    assert abs(places[0] - TRUTH.pick_up_strain()) < 3 * (
+        found[0].measured_pick_up_strain_standard_uncertainty
+    )
+    of_events = [one.events[0].measured_strain for one in found]
+    assert abs(of_events[0] - of_events[1]) > 0.1
+    short = compare_hose(TRUTH.design(), cyclic(top=0.4))
+    assert np.isnan(short.measured_pick_up_strain)
+    assert any(text.startswith("where the cords of the test pick up is") for text in short.notes)
 
 
 def test_many_designs_are_refused():

@@ -228,6 +228,84 @@ def test_end_bins_are_not_extrapolated():
     assert np.isfinite(tension[0]).tolist() == [True, True, False]
 
 
+def test_a_kink_is_read_as_the_samples_show_it():
+    truth = Truth()
+    strain, branch, number = strokes(3, 700)
+    curve = measured_curve(
+        strain, truth.tension(strain), loading="static", cycle_number=number, branch=branch
+    )
+    node = curve.reading.node
+    read = curve.reading.of(np.sign(node) * truth.tension(np.abs(node)))
+    seen = np.isfinite(curve.midline_tension)
+    plain = np.abs(truth.tension(curve.strain) - curve.midline_tension)[seen]
+    assert np.abs(read - curve.midline_tension)[seen].max() < 0.1 < 1.0 < plain.max()
+    assert not curve.reading.weight[~seen].any()
+
+
+def test_a_strain_that_is_off_moves_what_is_read():
+    truth = Truth()
+    strain = np.linspace(0, 1, 1501)
+    curve = measured_curve(strain + 0.003, truth.tension(strain), loading="static")
+    node = curve.reading.node - 0.003
+    read = curve.reading.of(np.sign(node) * truth.tension(np.abs(node)))
+    seen = np.isfinite(curve.branch_tension[0])
+    assert read[seen] == pytest.approx(curve.branch_tension[0][seen], abs=0.3)
+
+
+def test_cycles_of_break_in_are_not_read():
+    strain, branch, number = strokes(3, 400)
+    strain = np.where(number == 1, strain + 0.002, strain)
+    kinked = 1000 * strain + 8000 * np.maximum(strain - 0.497, 0)
+    curve = measured_curve(
+        strain, kinked, loading="static", cycle_number=number, branch=branch, break_in_cycles=1
+    )
+    node = curve.reading.node
+    read = curve.reading.of(1000 * node + 8000 * np.maximum(node - 0.497, 0))
+    seen = np.isfinite(curve.midline_tension)
+    assert read[seen] == pytest.approx(curve.midline_tension[seen], abs=0.1)
+
+
+def test_the_curve_goes_on_to_its_last_sample():
+    rng = np.random.default_rng(31)
+    strain, branch, number = strokes(4, 900, high=0.9681)
+    tension = 500 + 8000 * strain**2
+    curve = measured_curve(
+        strain, tension + rng.normal(0, 10, strain.size), loading="static", cycle_number=number,
+        branch=branch,
+    )  # fmt: skip
+    last = curve.strain[np.isfinite(curve.midline_tension)][-1]
+    assert last == pytest.approx(0.96) and 0.965 < curve.end_strain < 0.9682
+    error = curve.end_tension - (500 + 8000 * curve.end_strain**2)
+    assert abs(error) < 3 * curve.end_standard_uncertainty < 30
+    whole = measured_curve(np.linspace(0, 0.9, 901), np.linspace(0, 9, 901), loading="static")
+    assert np.isnan(whole.end_strain) and np.isnan(whole.end_tension)
+
+
+def test_an_end_that_few_cycles_reached_is_no_end_of_the_curve():
+    strain, branch, number = strokes(5, 400)
+    strain = np.where(number == 5, strain * 1.0335, strain)
+    curve = measured_curve(
+        strain, 100 * strain, loading="static", cycle_number=number, branch=branch
+    )
+    assert np.isnan(curve.end_strain) or curve.end_strain < 1.01
+
+
+def test_no_tension_lies_beyond_the_samples_that_it_is_read_from():
+    # bins of half the curve: slope and bend from bin to bin are not those of the curve
+    strain = np.linspace(0, 1, 400)
+    tension = Truth().tension(strain)
+    curve = measured_curve(strain, tension, loading="static", strain_step=0.3)
+    seen = np.isfinite(curve.branch_tension[0])
+    slack = 0.05 * np.ptp(tension)
+    assert curve.branch_tension[0][seen].min() >= -slack
+    assert curve.branch_tension[0][seen].max() <= tension.max() + slack
+    cells, _ = fill_cells(
+        np.array([0.06, 0.1, 0.14, 0.2, 0.3]), np.array([0.0, 0.0, 0.0, 0.0, 1000.0]),
+        row=np.zeros(5, int), n_rows=1, step=0.1,
+    )  # fmt: skip
+    assert tension_at_centres(cells)[0, 0] >= -50  # 5 % of the range of what is beside it
+
+
 def test_bad_input_is_refused():
     with pytest.raises(SettingsError, match="loading is unknown; found quick"):
         measured_curve([0.0, 0.1], [0.0, 1.0], loading="quick")
@@ -251,6 +329,9 @@ def test_bad_input_is_refused():
         )
     with pytest.raises(DataError, match="a slow pull has no break-in"):
         measured_curve([0.0], [1.0], loading="static", break_in_cycles=2)
+    percent = np.linspace(0, 97, 400)
+    with pytest.raises(DataError, match=r"strain in per cent\?; found a strain of 97, 9700 %"):
+        measured_curve(percent, 10 * percent, loading="static")
     with pytest.raises(DataError, match="no sample of a branch has a strain"):
         measured_curve([-0.5], [1.0], loading="static")
     with pytest.raises(SettingsError, match="uncertainty of strain_offset cannot be used"):

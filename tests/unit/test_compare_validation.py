@@ -5,6 +5,7 @@ from measured_hoses import Truth
 from reduction.compare.measured import SharedUncertainty, measured_curve
 from reduction.compare.trials import input_draws
 from reduction.compare.validation import N_DRAWS, validate_curve
+from reduction.compare.verdict import probability_words, verdict_words
 from reduction.errors import DataError
 from reduction.predict.hose import predict_hose
 
@@ -96,6 +97,28 @@ def test_a_wrong_shape_inside_the_band_is_noted():
     found = validate_curve(1000 + 60 * test.strain, test, input_error=exact(test))
     assert found.agrees and found.chi_square_probability < 0.01
     assert any("shape of the difference" in text for text in found.notes)
+
+    assert found.verdict.startswith(
+        "agrees within U point by point, but its shape does not (below 0.1 %); U is "
+    )
+
+
+def test_a_reader_in_pounds_gets_pounds():
+    test = pulled(1000 + 0 * STROKE, tension_offset=10.0)
+    apart = validate_curve(1044.482 + 0 * test.strain, test, input_error=exact(test))
+    words = verdict_words(apart, unit="lbf", factor=1 / 4.4482216)
+    assert words.startswith("differs by +10 lbf at strain") and " N" not in words
+    near = validate_curve(1005 + 0 * test.strain, test, input_error=exact(test))
+    assert verdict_words(near) == near.verdict
+    # 1.96 times 10 N
+    assert verdict_words(near, unit="lbf", factor=1 / 4.4482216).startswith("agrees within U, 4.4")
+
+
+@pytest.mark.parametrize(
+    ("probability", "words"), [(0.0153, "1.5 %"), (4e-137, "below 0.1 %"), (0.0, "below 0.1 %")]
+)
+def test_probabilities_are_no_finer_than_the_draws(probability, words):
+    assert probability_words(probability) == words
 
 
 def test_a_difference_where_no_stated_error_can_be_is_noted():
