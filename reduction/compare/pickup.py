@@ -83,8 +83,8 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
     jump and its slope has one, :math:`c_1`.  Every place of the bend is tried [2]_, read as the
     samples were, in the part of the curve from its beginning that shows it best.  Its uncertainty
     is the width over which the sum of squares stays within one variance of the residuals, times
-    the length over which these err together; and the difference between a curve above the bend of
-    the second and of the third degree, since neither is that of the cords.  An error of the
+    the length over which these err together; and the difference to a curve of the second degree
+    above the bend over half as far, since neither is that of the cords.  An error of the
     strain moves the bend as it is.
 
     It is a bend that is found, not a law of a hose: it answers to a hose that was not built as
@@ -103,8 +103,7 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
     if place.size < 4 * _MARGIN:
         return _nothing(f"{place.size} strains of the judged curve are too few to show a bend")
     place = _window(measured, place)
-    fits = [_bend(measured, place, degree) for degree in (2, _ORDER)]
-    fit = fits[-1]
+    fit = _bend(measured, place, _ORDER)
     if not (fit.jump > 0 and fit.jump > _LEAST_RATIO * fit.jump_uncertainty):
         return _nothing("the judged curve has no upward bend that stands out of its scatter")
     rise = float(np.ptp(curve[place]) / np.ptp(measured.strain[place]))
@@ -112,7 +111,9 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
         return _nothing("the judged curve bends upward by less than a tenth of its slope")
     if not fit.is_inside:
         return _nothing("the judged curve bends too near to its ends")
-    of_model = fits[0].strain - fit.strain if fits[0].is_inside else 0.0
+    strain = measured.strain[place]
+    near = place[strain < (fit.strain + strain[-1]) / 2]
+    of_model = _bend(measured, near, _ORDER - 1).strain - fit.strain
     return PickUp(
         strain=fit.strain,
         standard_uncertainty=float(

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.stats import norm
 from scipy.stats import t as student
 
-from reduction.compare.cells import Cells
+from reduction.compare.cells import Cells, centre_weights
 from reduction.record import Floats
 
 __all__ = ["bin_noise", "branch_scatter", "shared_scatter"]
@@ -28,9 +28,9 @@ _ROUNDING = 1e-12
 def bin_noise(cells: Cells, tension: Floats) -> Floats:
     """Variance of the tension of each bin by noise alone.
 
-    The greater of two: the scatter of samples about the line in their bin over their number,
-    and what third differences from bin to bin leave, which sees noise that is slower than
-    the samples.
+    The greater of two: the scatter of samples about the line in their bin, as means are moved
+    to the centre (half a bin at the end of a branch is moved by a slope of its own), and what
+    third differences from bin to bin leave, which sees noise that is slower than the samples.
 
     Parameters
     ----------
@@ -69,7 +69,10 @@ def bin_noise(cells: Cells, tension: Floats) -> Floats:
     third = np.diff(tension, n=3, axis=1)
     found = np.abs(third[np.isfinite(third)])
     between = (np.median(found) / 0.6745) ** 2 / 20 if found.size else 0.0
-    by_bin = np.maximum(inside / np.where(cells.count > 0, cells.count, np.nan), between)
+    per_sample = np.pad(1 / np.where(cells.count > 0, cells.count, np.inf), ((0, 0), (1, 1)))
+    below, own, above = centre_weights(cells) ** 2
+    leverage = below * per_sample[:, :-2] + own * per_sample[:, 1:-1] + above * per_sample[:, 2:]
+    by_bin = np.maximum(inside * leverage, between)
     return np.where(np.isfinite(tension), by_bin, np.nan)
 
 
