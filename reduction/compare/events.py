@@ -134,7 +134,7 @@ def _compare(
 
     # between two strains the difference is straight where both curves have a kink
     apart = _at(strain, x, predicted - y)
-    test = tension - apart if np.isfinite(apart) else _at(strain, x, y)
+    test = _between(tension - apart, strain, x, y) if np.isfinite(apart) else _at(strain, x, y)
     return EventDifference(
         name=name,
         strain=strain,
@@ -146,6 +146,15 @@ def _compare(
         strain_difference=strain - reached,
         strain_difference_standard_uncertainty=uncertainty(reached) / _at(reached, x, slope),
     )
+
+
+def _between(tension: float, strain: float, x: Floats, y: Floats) -> float:
+    """A tension that is not beyond those of the two strains beside it.
+
+    A test without the kink of the prediction would get the bow of it the other way round.
+    """
+    k = int(np.clip(np.searchsorted(x, strain), 1, max(x.size - 1, 1)))
+    return float(np.clip(tension, y[k - 1 : k + 1].min(), y[k - 1 : k + 1].max()))
 
 
 def _at(strain: float, x: Floats, y: Floats) -> float:

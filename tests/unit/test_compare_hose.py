@@ -80,6 +80,13 @@ def test_a_working_load_beyond_the_last_bin_is_reached():
     assert not any("before the predicted working load" in text for text in found.notes)
 
 
+def test_no_tension_is_made_up_where_the_prediction_has_its_kink():
+    strain = np.linspace(0, 1, 2001)
+    test = measured_curve(strain, 1e-9 * strain, loading="static")
+    pick_up = compare_hose(TRUTH.design(), test).events[0]
+    assert 0 <= pick_up.measured_tension <= 1e-9
+
+
 def test_where_the_cords_of_a_test_pick_up_does_not_hang_on_the_prediction():
     test = cyclic()
     designs = [TRUTH.design(), TRUTH.but(wrap_angle=np.radians(67)).design()]
