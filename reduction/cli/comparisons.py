@@ -117,7 +117,11 @@ def _show_calibration(fit: Calibration, outcome: Outcome, system: UnitSystem) ->
             name, unit,
             short(factor * fit.start[place]), short(factor * fit.value[place], 6),
             short(factor * fit.standard_uncertainty[place], 2),
-            f"{factor * fit.low[place]:.6g} to {factor * fit.high[place]:.6g}"
+            (
+                f"{factor * fit.low[place]:.6g} to {factor * fit.high[place]:.6g}"
+                if np.isfinite(fit.high[place] - fit.low[place])
+                else "wider than all that is allowed"
+            )
             + (" (at its bound)" if fit.is_at_bound[place] else ""),
         )  # fmt: skip
     outcome.show(table)
