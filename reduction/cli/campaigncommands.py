@@ -1,0 +1,111 @@
+"""Commands of a campaign of tests: from a folder of logs to archive, tables and report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reduction.cli.options import CampaignPath, Json, Quiet, Units
+from reduction.cli.outcome import Outcome, guarded
+from reduction.cli.usage import here
+
+__all__ = ["check", "init", "report", "run", "schema", "sniff"]
+
+
+def init(
+    folder: Annotated[
+        Path, typer.Argument(help="Folder of logs.", show_default=False, callback=here)
+    ],
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a starter campaign into a folder of logs, for a person to complete."""
+    with guarded(Outcome(json=json, quiet=quiet)) as outcome:
+        from reduction.cli.starter import start_campaign
+
+        start_campaign(folder, outcome)
+
+
+def sniff(
+    file: Annotated[
+        Path, typer.Argument(help="An unknown log.", show_default=False, callback=here)
+    ],
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Look at an unknown log and print a starter layout in TOML, to be confirmed."""
+    with guarded(Outcome(json=json, quiet=quiet)) as outcome:
+        from reduction.cli.starter import print_layout
+
+        print_layout(file, outcome)
+
+
+def check(
+    campaign: CampaignPath,
+    test: Annotated[list[str] | None, typer.Option("--test", help="Only this test.")] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Read and validate everything, print what was found, write nothing."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.runs import check_campaign
+
+        check_campaign(campaign, tests=tuple(test or ()), outcome=outcome)
+
+
+def run(
+    campaign: CampaignPath,
+    processed: Annotated[Path, typer.Option(help="Where products go.")] = Path("processed"),
+    reports: Annotated[Path, typer.Option(help="Where the report goes.")] = Path("reports"),
+    jobs: Annotated[int, typer.Option(min=1, help="Accepted; tests run one by one.")] = 1,
+    test: Annotated[list[str] | None, typer.Option("--test", help="Only this test.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Redo unchanged tests too.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Reduce a campaign: archive, tables and report."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.runs import run_campaign
+
+        run_campaign(
+            campaign,
+            processed=processed,
+            reports=reports,
+            tests=tuple(test or ()),
+            force=force,
+            outcome=outcome,
+        )
+
+
+def report(
+    processed_dir: Annotated[
+        Path,
+        typer.Argument(
+            help="processed/CAMPAIGN, or processed/ for all.", show_default=False, callback=here
+        ),
+    ],
+    reports: Annotated[Path, typer.Option(help="Where the report goes.")] = Path("reports"),
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Make the HTML report again, from the archives alone."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.runs import report_again
+
+        report_again(processed_dir, reports=reports, outcome=outcome)
+
+
+def schema(
+    json: Annotated[bool, typer.Option("--json", help="As it is in any case.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Print the JSON Schema of campaign.toml."""
+    with guarded(Outcome(json=not quiet or json, quiet=quiet)) as outcome:
+        from reduction.campaign.model import CampaignFile
+
+        outcome.answer(CampaignFile.model_json_schema())

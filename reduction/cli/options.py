@@ -1,0 +1,20 @@
+"""Options and arguments that several commands share, each with its words in ``--help``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reduction.cli.usage import here
+
+__all__ = ["CampaignPath", "Json", "Quiet", "SpecPath", "Units"]
+
+Json = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, SI.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Nothing but errors.")]
+Units = Annotated[str, typer.Option("--units", help="What is shown: si or us (psi, lbf, ft).")]
+SpecPath = Annotated[Path, typer.Argument(metavar="SPEC.toml", show_default=False, callback=here)]
+CampaignPath = Annotated[
+    Path, typer.Argument(metavar="CAMPAIGN.toml", show_default=False, callback=here)
+]

@@ -1,0 +1,64 @@
+"""Commands of predictions: from construction alone, and against a test."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reduction.cli.options import Json, Quiet, SpecPath, Units
+from reduction.cli.outcome import Outcome, guarded
+from reduction.cli.usage import here
+
+__all__ = ["compare", "predict"]
+
+
+class PredictionName(StrEnum):
+    """Predictions that the command line knows."""
+
+    HOSE = "hose"
+    ARMOUR = "armour"
+    WAVE_LOAD = "wave-load"
+
+
+def predict(
+    kind: Annotated[PredictionName, typer.Argument(help="Of what.", show_default=False)],
+    spec: SpecPath,
+    out: Annotated[
+        Path | None, typer.Option(help="Write archive, tables and figures to this folder.")
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Predict a stretch hose, a helical armour or a wave load from construction alone."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        if kind is PredictionName.HOSE:
+            from reduction.cli.predictions import predict_hose as predict_it
+        elif kind is PredictionName.ARMOUR:
+            from reduction.cli.armour import predict_cable as predict_it
+        else:
+            from reduction.cli.waveload import predict_wave as predict_it
+
+        predict_it(spec, out=out, outcome=outcome)
+
+
+def compare(
+    measured: Annotated[
+        Path, typer.Argument(metavar="MEASURED.nc", show_default=False, callback=here)
+    ],
+    spec: SpecPath,
+    out: Annotated[
+        Path | None, typer.Option(help="Write archive, tables and figures to this folder.")
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Hold the archive of a test against the predicted hose of SPEC.toml."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.comparisons import compare_test
+
+        compare_test(measured, spec, out=out, outcome=outcome)

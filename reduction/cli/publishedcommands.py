@@ -1,0 +1,163 @@
+"""Commands of numbers that stand already: look up, export, hold against the reports."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reduction.cli.options import Json, Quiet, Units
+from reduction.cli.outcome import Outcome, guarded
+
+__all__ = ["export", "lookup", "reproduce"]
+
+
+class BranchName(StrEnum):
+    """Branches of a cycle."""
+
+    ASCENDING = "ascending"
+    DESCENDING = "descending"
+
+
+class Extrapolation(StrEnum):
+    """What is done outside the tested range."""
+
+    REFUSE = "refuse"
+    FLAG = "flag"
+
+
+def export(
+    source: Annotated[
+        str,
+        typer.Argument(
+            help="A published line, or an archive of a test or of hoses.", show_default=False
+        ),
+    ],
+    to: Annotated[
+        str,
+        typer.Option(
+            "--to",
+            help="csv, json, latex, markdown, netcdf, moordyn, moorpy, openfast, orcaflex, "
+            "whoi-cable or abaqus.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[Path, typer.Option("--out", help="The file.", show_default=False)],
+    form: Annotated[
+        str | None, typer.Option(help="Where a format has several, such as table.")
+    ] = None,
+    curve: Annotated[
+        str | None, typer.Option(help="mean (unless said), ascending or descending.")
+    ] = None,
+    specimen: Annotated[str | None, typer.Option(help="Which one, or which hose.")] = None,
+    diameter: Annotated[str | None, typer.Option(help='With a unit, "26 mm".')] = None,
+    linear_density: Annotated[str | None, typer.Option(help='In air, "0.6 kg/m".')] = None,
+    wet_linear_density: Annotated[
+        str | None, typer.Option(help="Less the water it displaces.")
+    ] = None,
+    rated_break_strength: Annotated[str | None, typer.Option(help='"28 kN".')] = None,
+    frequency: Annotated[str | None, typer.Option(help='Of the stiffness, "0.3 Hz".')] = None,
+    mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
+    tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
+    extrapolate: Annotated[
+        str, typer.Option(help="Outside the levels: refuse or flag.")
+    ] = "refuse",
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Write a curve for a mooring code, or as a table."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.export import export_source
+
+        export_source(
+            source,
+            to=to,
+            out=out,
+            form=form,
+            curve=curve,
+            specimen=specimen,
+            stated={
+                "diameter": diameter,
+                "linear_density": linear_density,
+                "wet_linear_density": wet_linear_density,
+                "rated_break_strength": rated_break_strength,
+            },
+            levels={
+                "frequency": frequency,
+                "mean_tension": mean_tension,
+                "tension_amplitude": tension_amplitude,
+            },
+            extrapolate=extrapolate,
+            outcome=outcome,
+        )
+
+
+def lookup(
+    source: Annotated[
+        str,
+        typer.Argument(
+            help="A published line, `published`, an archive, or a processed campaign.",
+            show_default=False,
+        ),
+    ],
+    quantity: Annotated[str | None, typer.Option(help="What is wanted.")] = None,
+    frequency: Annotated[str | None, typer.Option(help='"0.3 Hz".')] = None,
+    mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
+    tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
+    tension: Annotated[str | None, typer.Option(help="Of a load-strain curve.")] = None,
+    strain: Annotated[str | None, typer.Option(help='"100 %".')] = None,
+    branch: Annotated[BranchName | None, typer.Option(help="Of a cycle.")] = None,
+    line: Annotated[str | None, typer.Option(help="Which line of SOURCE.")] = None,
+    extrapolate: Annotated[
+        Extrapolation, typer.Option(help="Outside what was tested.")
+    ] = Extrapolation.REFUSE,
+    table: Annotated[
+        bool, typer.Option("--table", help="A grid; values of a level parted by commas.")
+    ] = False,
+    what_there_is: Annotated[bool, typer.Option("--list", help="What SOURCE holds.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """One design value with its interval, range check and source, or a table of them."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.lookup import list_sources, look_up_values
+
+        if what_there_is or quantity is None:
+            list_sources(source, outcome=outcome)
+            return
+        levels = {
+            "frequency": frequency,
+            "mean_tension": mean_tension,
+            "tension_amplitude": tension_amplitude,
+            "tension": tension,
+            "strain": strain,
+        }
+        look_up_values(
+            source,
+            quantity,
+            {name: text for name, text in levels.items() if text is not None},
+            name=line,
+            branch=None if branch is None else branch.value,
+            extrapolate=extrapolate.value,
+            grid=table,
+            outcome=outcome,
+        )
+
+
+def reproduce(
+    report: Annotated[
+        str | None, typer.Argument(metavar="[REPORT]", help="All unless said.", show_default=False)
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Write page and table to this folder.")] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Recompute every printed number of the published reports: counts, errata, open cells."""
+    with guarded(Outcome(json=json, quiet=quiet)) as outcome:
+        from reduction.cli.reproduce import reproduce_reports
+
+        reproduce_reports(report, out=out, outcome=outcome)
