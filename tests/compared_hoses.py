@@ -9,7 +9,7 @@ from measured_hoses import Truth
 from reduction.archive.comparisons import NamedComparison, comparisons_to_dataset
 from reduction.compare.hose import compare_hose
 from reduction.compare.measured import SharedUncertainty, measured_curve
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin, Source, Step
 
 PSI = 6894.757293168
 TRUTH = Truth()
@@ -82,8 +82,9 @@ def judged_as(named, **changes):
 
 def dataset(*named, synthetic="yes"):
     return comparisons_to_dataset(
-        named or (agreeing(), differing(), trading()), campaign_id="c",
-        attributes={"title": "Hoses", "synthetic": synthetic},
-        sources=(SOURCE,), steps=(Step("compare", "3 comparisons"),), settings_json="{}",
-        version="1", command="reduction run campaign.toml",
+        named or (agreeing(), differing(), trading()), origin=Origin(
+            campaign_id="c", attributes={"title": "Hoses", "synthetic": synthetic},
+            sources=(SOURCE,), steps=(Step("compare", "3 comparisons"),), settings_json="{}",
+            version="1", command="reduction run campaign.toml",
+        ),
     )  # fmt: skip

@@ -15,7 +15,7 @@ CODED = box_behnken(3).coded
 
 def view_of(*results, index=0, units="si", **attributes):
     """Return one of some experiments, as the page has it."""
-    data = surfaces_to_dataset(results, **ABOUT)
+    data = surfaces_to_dataset(results, origin=ABOUT)
     return ExperimentView("experiment-0", data.assign_attrs(attributes), index, units)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from reduction.experiment import ExperimentResult, RunTable
 from reduction.line.single import check_single_time
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin, Source, Step
 from reduction.surface.cautions import Caution
 from reduction.surface.designs import box_behnken, plackett_burman
 from reduction.surface.screening import screening_effects
@@ -21,15 +21,15 @@ FACTORS = ("frequency", "mean_tension", "tension_amplitude")
 UNITS = ("Hz", "N", "N")
 LOW, HIGH = np.array([0.1, 3400.0, 850.0]), np.array([0.5, 8500.0, 3400.0])
 STRENGTH = 28470.0
-ABOUT = {
-    "campaign_id": "nylon",
-    "attributes": {"title": "Nylon line", "synthetic": "yes"},
-    "sources": (Source("R01.nc", "ab" * 32, 7), Source("R02.nc", "cd" * 32, 8)),
-    "steps": (Step("surface", "fitted 4 responses over 15 runs"),),
-    "settings_json": "{}",
-    "version": "1.2.3",
-    "command": "reduction run",
-}
+ABOUT = Origin(
+    campaign_id="nylon",
+    attributes={"title": "Nylon line", "synthetic": "yes"},
+    sources=(Source("R01.nc", "ab" * 32, 7), Source("R02.nc", "cd" * 32, 8)),
+    steps=(Step("surface", "fitted 4 responses over 15 runs"),),
+    settings_json="{}",
+    version="1.2.3",
+    command="reduction run",
+)
 
 
 def run_table(coded, level, responses, *, specimens=None, missing=(), prefix="R"):

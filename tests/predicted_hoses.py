@@ -14,7 +14,7 @@ from reduction.pipeline.prediction import predict_from_plan
 from reduction.predict.cordcurve import CordCurve
 from reduction.predict.product import HoseDesign
 from reduction.prediction import HelicalLayer, HosePlan
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin, Source, Step
 
 INCH, POUND, PSI = 0.0254, 4.4482216152605, 6894.757293168
 CORD_STRAIN = np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22])
@@ -66,7 +66,7 @@ def dataset(*hoses, synthetic="", **changed):
         "version": "1",
         "command": "reduction predict hose hose.toml",
     }
-    return predictions_to_dataset(hoses, **(about | changed))
+    return predictions_to_dataset(hoses, origin=Origin(**(about | changed)))
 
 
 def pick_up_strain(degrees):

@@ -9,28 +9,42 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 from reduction.archive.schema import SCHEMA_VERSION
 from reduction.errors import ArchiveError
 from reduction.product import ReducedTest
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin, Source, Step
 
-__all__ = [
-    "CONVENTIONS",
-    "comparison_attributes",
-    "experiment_attributes",
-    "global_attributes",
-    "outcome_attributes",
-    "prediction_attributes",
-]
+__all__ = ["CONVENTIONS", "PartName", "global_attributes", "part_attributes"]
+
+PartName = Literal["surfaces", "outcomes", "predictions", "comparisons", "change_in_length"]
 
 CONVENTIONS = "CF-1.11 ACDD-1.3"
 _SOFTWARE = "mooring-reduction"
 _KEYWORDS = "mooring, tension test, elastic modulus, hysteresis"
-_KEYWORDS_OF_EXPERIMENTS = "mooring, designed experiment, response surface, spring constant"
-_KEYWORDS_OF_OUTCOMES = "mooring, tensile strength, fatigue, abrasion, exposure"
-_KEYWORDS_OF_PREDICTIONS = "mooring, stretch hose, tire cord, load elongation, prediction"
-_KEYWORDS_OF_COMPARISONS = "mooring, stretch hose, validation, measured against predicted"
+_OF_PART: dict[PartName, tuple[str, str]] = {
+    "surfaces": (
+        "Response surfaces and effects of experiment {names}.",
+        "mooring, designed experiment, response surface, spring constant",
+    ),
+    "outcomes": (
+        "Strength, strain at failure and life of lines, without logs.",
+        "mooring, tensile strength, fatigue, abrasion, exposure",
+    ),
+    "predictions": (
+        "Load and fill pressure of {names}, from construction alone.",
+        "mooring, stretch hose, tire cord, load elongation, prediction",
+    ),
+    "comparisons": (
+        "Measured curves against their predictions: {names}.",
+        "mooring, stretch hose, validation, measured against predicted",
+    ),
+    "change_in_length": (
+        "Change-in-length properties of {names}.",
+        "mooring, rope, stiffness, change in length, creep",
+    ),
+}
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -60,114 +74,42 @@ def global_attributes(test: ReducedTest, *, version: str, command: str) -> dict[
     )
 
 
-def experiment_attributes(
-    names: Sequence[str],
-    *,
-    campaign_id: str,
-    attributes: Mapping[str, str],
-    sources: Sequence[Source],
-    steps: Sequence[Step],
-    settings_json: str,
-    version: str,
-    command: str,
-) -> dict[str, str]:
-    """Return the global attributes of an archive of experiments, in the same order."""
+def part_attributes(part: PartName, names: Sequence[str] = (), *, origin: Origin) -> dict[str, str]:
+    """Return the global attributes of an archive of a part of a campaign, in the same order.
+
+    Parameters
+    ----------
+    part : {"surfaces", "outcomes", "predictions", "comparisons", "change_in_length"}
+        Which archive, as its file is called.
+    names : sequence of str
+        What it holds; not said of outcomes.
+    origin : Origin
+        Where it came from.
+
+    Returns
+    -------
+    attributes : dict
+        Texts; empty ones are left out.
+
+    Raises
+    ------
+    ArchiveError
+        If the laboratory gave an attribute a name that the archive keeps, or that CF refuses.
+    """
+    summary, keywords = _OF_PART[part]
     return _complete(
-        attributes,
+        origin.attributes,
         {
-            "summary": f"Response surfaces and effects of experiment {' and '.join(names)}.",
-            "keywords": _KEYWORDS_OF_EXPERIMENTS,
-            "id": f"{campaign_id}/surfaces",
-            "campaign": campaign_id,
-            **_raw_files(sources),
-            "settings": settings_json,
+            "summary": summary.format(names=" and ".join(names)),
+            "keywords": keywords,
+            "id": f"{origin.campaign_id}/{part}",
+            "campaign": origin.campaign_id,
+            **_raw_files(origin.sources),
+            "settings": origin.settings_json,
         },
-        steps=steps,
-        version=version,
-        command=command,
-    )
-
-
-def outcome_attributes(
-    *,
-    campaign_id: str,
-    attributes: Mapping[str, str],
-    source: Source,
-    steps: Sequence[Step],
-    settings_json: str,
-    version: str,
-    command: str,
-) -> dict[str, str]:
-    """Return the global attributes of an archive of outcomes, in the same order."""
-    return _complete(
-        attributes,
-        {
-            "summary": "Strength, strain at failure and life of lines, without logs.",
-            "keywords": _KEYWORDS_OF_OUTCOMES,
-            "id": f"{campaign_id}/outcomes",
-            "campaign": campaign_id,
-            **_raw_files([source]),
-            "settings": settings_json,
-        },
-        steps=steps,
-        version=version,
-        command=command,
-    )
-
-
-def prediction_attributes(
-    names: Sequence[str],
-    *,
-    campaign_id: str,
-    attributes: Mapping[str, str],
-    sources: Sequence[Source],
-    steps: Sequence[Step],
-    settings_json: str,
-    version: str,
-    command: str,
-) -> dict[str, str]:
-    """Return the global attributes of an archive of predictions, in the same order."""
-    return _complete(
-        attributes,
-        {
-            "summary": f"Load and fill pressure of {' and '.join(names)}, from construction alone.",
-            "keywords": _KEYWORDS_OF_PREDICTIONS,
-            "id": f"{campaign_id}/predictions",
-            "campaign": campaign_id,
-            **_raw_files(sources),
-            "settings": settings_json,
-        },
-        steps=steps,
-        version=version,
-        command=command,
-    )
-
-
-def comparison_attributes(
-    names: Sequence[str],
-    *,
-    campaign_id: str,
-    attributes: Mapping[str, str],
-    sources: Sequence[Source],
-    steps: Sequence[Step],
-    settings_json: str,
-    version: str,
-    command: str,
-) -> dict[str, str]:
-    """Return the global attributes of an archive of comparisons, in the same order."""
-    return _complete(
-        attributes,
-        {
-            "summary": f"Measured curves against their predictions: {' and '.join(names)}.",
-            "keywords": _KEYWORDS_OF_COMPARISONS,
-            "id": f"{campaign_id}/comparisons",
-            "campaign": campaign_id,
-            **_raw_files(sources),
-            "settings": settings_json,
-        },
-        steps=steps,
-        version=version,
-        command=command,
+        steps=origin.steps,
+        version=origin.version,
+        command=origin.command,
     )
 
 

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from reduction.archive.attributes import comparison_attributes
+from reduction.archive.attributes import part_attributes
 from reduction.archive.build import build_dataset
 from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.values import Values, pad, texts
 from reduction.compare.product import Calibration, Comparison, CurveName
 from reduction.errors import ArchiveError
 from reduction.predict.hose import predict_hose
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin
 from reduction.record import Floats
 from reduction.vocabulary import quantity
 
@@ -88,37 +88,15 @@ class NamedComparison:
         return tuple(dict.fromkeys((*found.notes, *found.validation.notes, *own)))
 
 
-def comparisons_to_dataset(
-    named: Sequence[NamedComparison],
-    *,
-    campaign_id: str,
-    attributes: Mapping[str, str],
-    sources: Sequence[Source],
-    steps: Sequence[Step],
-    settings_json: str,
-    version: str,
-    command: str,
-) -> xr.Dataset:
+def comparisons_to_dataset(named: Sequence[NamedComparison], *, origin: Origin) -> xr.Dataset:
     """Bring comparisons into the form of the archive; no file is touched.
 
     Parameters
     ----------
     named : sequence of NamedComparison
         One or more, each with a name of its own.
-    campaign_id : str
-        Of the campaign.
-    attributes : mapping of str to str
-        What the laboratory said of the campaign.
-    sources : sequence of Source
-        Archives of the tests, and the file that says how the hoses are made.
-    steps : sequence of Step
-        History lines.
-    settings_json : str
-        Every number that was given.
-    version : str
-        Version of this software.
-    command : str
-        What the user asked for, without paths, jobs and scheduler.
+    origin : Origin
+        The campaign, the archives of the tests, and the file that says how the hoses are made.
 
     Returns
     -------
@@ -162,16 +140,7 @@ def comparisons_to_dataset(
     return build_dataset(
         values,
         COMPARISON_SCHEMA,
-        attributes=comparison_attributes(
-            names,
-            campaign_id=campaign_id,
-            attributes=attributes,
-            sources=sources,
-            steps=steps,
-            settings_json=settings_json,
-            version=version,
-            command=command,
-        ),
+        attributes=part_attributes("comparisons", names, origin=origin),
     )
 
 

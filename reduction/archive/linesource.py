@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -15,14 +18,27 @@ from reduction.surface.product import ResponseSurfaces
 from reduction.surface.terms import model_matrix
 from reduction.vocabulary import RESPONSES, quantity
 
-__all__ = ["line_of_experiment", "line_of_test"]
+__all__ = ["Facts", "facts_of_specimens", "line_of_experiment", "line_of_test", "specimens_of"]
 
 _SCALES = ("log_", "box_cox_", "")
 """A surface on a scale that was asked for stands before the one of the quantity itself."""
 _OVER_STRAIN = ("tangent_modulus", "branch_tension")
+_TEXTS = {
+    "kind": "specimen_kind",
+    "material": "specimen_material",
+    "construction": "specimen_construction",
+    "condition": "specimen_condition",
+}
+_NUMBERS = ("diameter", "linear_density", "wet_linear_density")
 
 
-def line_of_experiment(dataset: xr.Dataset, experiment: str) -> LineSource:
+Facts = Mapping[str, str | float]
+"""Fields of `LineSource` that a specimen states, by name."""
+
+
+def line_of_experiment(
+    dataset: xr.Dataset, experiment: str, *, specimens: Mapping[str, Facts] | None = None
+) -> LineSource:
     """Surfaces of an experiment as a source of design values.
 
     Parameters
@@ -31,6 +47,9 @@ def line_of_experiment(dataset: xr.Dataset, experiment: str) -> LineSource:
         An archive of experiments.
     experiment : str
         Name of one.
+    specimens : mapping of str to mapping, optional
+        What is known of its specimens, by name: `facts_of_specimens` of the archives of its
+        tests.  The line has what all of them agree on.
 
     Returns
     -------
@@ -65,15 +84,46 @@ def line_of_experiment(dataset: xr.Dataset, experiment: str) -> LineSource:
     return LineSource(
         name=experiment,
         source=f"{dataset.attrs.get('id', 'surfaces')}, experiment {experiment}",
-        material="",
-        construction="",
-        condition="",
-        diameter=float("nan"),
         rated_break_strength=strength,
         factor_names=factors,
         surfaces=surfaces,
         notes=_synthetic(dataset),
+        **_agreed([(specimens or {}).get(one, {}) for one in specimens_of(dataset, experiment)]),
     )
+
+
+def specimens_of(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
+    """Names of the specimens whose runs an experiment is of."""
+    row = dataset["experiment"].values.astype(str).tolist().index(experiment)
+    return tuple(sorted({str(name) for name in dataset["run_specimen"].values[row] if str(name)}))
+
+
+def facts_of_specimens(dataset: xr.Dataset) -> dict[str, Facts]:
+    """What the archive of a reduced test states of each of its specimens, by name."""
+    if "specimen" not in dataset:
+        return {}
+    names = dataset["specimen"].values.astype(str).tolist()
+    return {name: _facts(dataset, place) for place, name in enumerate(names)}
+
+
+def _facts(dataset: xr.Dataset, place: int) -> dict[str, Any]:
+    return {
+        name: str(dataset[stored].values[place]) if stored in dataset else ""
+        for name, stored in _TEXTS.items()
+    } | {
+        name: float(dataset[name].values[place]) if name in dataset else float("nan")
+        for name in _NUMBERS
+    }
+
+
+def _agreed(facts: Sequence[Facts]) -> dict[str, Any]:
+    """What all specimens have alike; nothing is said of what they differ in."""
+    agreed: dict[str, Any] = dict.fromkeys(_TEXTS, "") | dict.fromkeys(_NUMBERS, float("nan"))
+    for name, nothing in agreed.items():
+        found = {one.get(name, nothing) for one in facts}
+        if len(found) == 1:
+            agreed[name] = found.pop()
+    return agreed
 
 
 def _surface(
@@ -154,6 +204,7 @@ def line_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
             "the archive has no such specimen", found=specimen, needed=", ".join(known) or "none"
         )
     place = known.index(specimen)
+    strength = "rated_break_strength"
     curves = tuple(
         curve
         for name in _OVER_STRAIN
@@ -166,22 +217,15 @@ def line_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
             needed="a cyclic test",
         )
 
-    def number(name: str) -> float:
-        return float(dataset[name].values[place]) if name in dataset else float("nan")
-
-    def text(name: str) -> str:
-        return str(dataset[name].values[place]) if name in dataset else ""
-
     return LineSource(
         name=specimen,
         source=f"{dataset.attrs.get('id', '')}, specimen {specimen}",
-        material=text("specimen_material"),
-        construction=text("specimen_construction"),
-        condition=text("specimen_condition"),
-        diameter=number("diameter"),
-        rated_break_strength=number("rated_break_strength"),
+        rated_break_strength=float(dataset[strength].values[place])
+        if strength in dataset
+        else float("nan"),
         curves=curves,
         notes=_synthetic(dataset),
+        **_facts(dataset, place),
     )
 
 

@@ -8,20 +8,20 @@ was stopped are lower bounds.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import chain
 from typing import Any, get_args
 
 import numpy as np
 import xarray as xr
 
-from reduction.archive.attributes import outcome_attributes
+from reduction.archive.attributes import part_attributes
 from reduction.archive.build import build_dataset
 from reduction.archive.values import Values, numbers, texts
 from reduction.archive.variable import Variable, count, flag, label, stated
 from reduction.errors import ArchiveError
 from reduction.outcomes.product import Outcome, OutcomeQuantity, Place
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin
 
 __all__ = ["OUTCOME_SCHEMA", "outcomes_of_dataset", "outcomes_to_dataset"]
 
@@ -56,37 +56,15 @@ OUTCOME_SCHEMA: dict[str, Variable] = {
 """Every variable that an archive of outcomes may have."""
 
 
-def outcomes_to_dataset(
-    outcomes: Sequence[Outcome],
-    *,
-    campaign_id: str,
-    attributes: Mapping[str, str],
-    source: Source,
-    steps: Sequence[Step],
-    settings_json: str,
-    version: str,
-    command: str,
-) -> xr.Dataset:
+def outcomes_to_dataset(outcomes: Sequence[Outcome], *, origin: Origin) -> xr.Dataset:
     """Bring outcomes into the form of the archive; no file is touched.
 
     Parameters
     ----------
     outcomes : sequence of Outcome
         One or more, in the order of the table of results.
-    campaign_id : str
-        Of the campaign.
-    attributes : mapping of str to str
-        What the laboratory said of the campaign.
-    source : Source
-        The table of results.
-    steps : sequence of Step
-        History lines.
-    settings_json : str
-        Every setting that was in force.
-    version : str
-        Version of this software.
-    command : str
-        What the user asked for, without paths, jobs and scheduler.
+    origin : Origin
+        The campaign, and the table of results as the only source.
 
     Returns
     -------
@@ -119,15 +97,7 @@ def outcomes_to_dataset(
     return build_dataset(
         {name: array for name, array in values.items() if _says_something(array)},
         OUTCOME_SCHEMA,
-        attributes=outcome_attributes(
-            campaign_id=campaign_id,
-            attributes=attributes,
-            source=source,
-            steps=steps,
-            settings_json=settings_json,
-            version=version,
-            command=command,
-        ),
+        attributes=part_attributes("outcomes", origin=origin),
     )
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
-from reduction.archive.attributes import prediction_attributes
+from reduction.archive.attributes import part_attributes
 from reduction.archive.build import build_dataset
 from reduction.archive.prediction_schema import HOSE_STATES, PREDICTION_SCHEMA
 from reduction.archive.values import Values, pad, texts
@@ -15,7 +15,7 @@ from reduction.errors import ArchiveError
 from reduction.predict.product import HOSE_PARAMETERS, HoseEvents
 from reduction.predict.uncertainty import EventUncertainty
 from reduction.prediction import PredictedHose
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin
 from reduction.record import Floats
 
 __all__ = ["EVENTS", "predictions_to_dataset"]
@@ -41,37 +41,15 @@ _DESIGN = (
 _OF_LAYER = ("least_strain", "greatest_strain", "break_strain", "least_angle", "greatest_angle")
 
 
-def predictions_to_dataset(
-    hoses: Sequence[PredictedHose],
-    *,
-    campaign_id: str,
-    attributes: Mapping[str, str],
-    sources: Sequence[Source],
-    steps: Sequence[Step],
-    settings_json: str,
-    version: str,
-    command: str,
-) -> xr.Dataset:
+def predictions_to_dataset(hoses: Sequence[PredictedHose], *, origin: Origin) -> xr.Dataset:
     """Bring predictions into the form of the archive; no file is touched.
 
     Parameters
     ----------
     hoses : sequence of PredictedHose
         One or more, each with a name of its own.
-    campaign_id : str
-        Of the campaign.
-    attributes : mapping of str to str
-        What the laboratory said of the campaign.
-    sources : sequence of Source
-        The file that says how the hoses are made.
-    steps : sequence of Step
-        History lines.
-    settings_json : str
-        Every number that was given.
-    version : str
-        Version of this software.
-    command : str
-        What the user asked for, without paths, jobs and scheduler.
+    origin : Origin
+        The campaign, and the file that says how the hoses are made.
 
     Returns
     -------
@@ -105,16 +83,7 @@ def predictions_to_dataset(
     return build_dataset(
         values,
         PREDICTION_SCHEMA,
-        attributes=prediction_attributes(
-            names,
-            campaign_id=campaign_id,
-            attributes=attributes,
-            sources=sources,
-            steps=steps,
-            settings_json=settings_json,
-            version=version,
-            command=command,
-        ),
+        attributes=part_attributes("predictions", names, origin=origin),
     )
 
 

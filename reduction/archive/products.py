@@ -6,7 +6,7 @@ from pathlib import Path
 
 __all__ = ["OF_CAMPAIGN", "archives_of_tests"]
 
-OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes")
+OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_length")
 """Archives of a whole campaign, by their file names; no test may be called so."""
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from reduction.archive.attributes import experiment_attributes
+from reduction.archive.attributes import part_attributes
 from reduction.archive.build import build_dataset
 from reduction.archive.stiffness import stiffness_values
 from reduction.archive.surface_schema import SURFACE_SCHEMA
@@ -17,42 +17,20 @@ from reduction.archive.surface_values import experiment_values
 from reduction.archive.values import Values, texts
 from reduction.errors import ArchiveError
 from reduction.experiment import ExperimentResult
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin
 
 __all__ = ["surfaces_to_dataset"]
 
 
-def surfaces_to_dataset(
-    results: Sequence[ExperimentResult],
-    *,
-    campaign_id: str,
-    attributes: Mapping[str, str],
-    sources: Sequence[Source],
-    steps: Sequence[Step],
-    settings_json: str,
-    version: str,
-    command: str,
-) -> xr.Dataset:
+def surfaces_to_dataset(results: Sequence[ExperimentResult], *, origin: Origin) -> xr.Dataset:
     """Bring experiments into the form of the archive; no file is touched.
 
     Parameters
     ----------
     results : sequence of ExperimentResult
         One or more, of one campaign.
-    campaign_id : str
-        Of the campaign.
-    attributes : mapping of str to str
-        What the laboratory said of the campaign.
-    sources : sequence of Source
-        The files that the experiments were made from.
-    steps : sequence of Step
-        History lines.
-    settings_json : str
-        Every setting that was in force.
-    version : str
-        Version of this software.
-    command : str
-        What the user asked for, without paths, jobs and scheduler.
+    origin : Origin
+        The campaign, the files that the experiments were made from, and how they were made.
 
     Returns
     -------
@@ -79,16 +57,7 @@ def surfaces_to_dataset(
             if array.dtype.kind != "U" or any(array.flat)
         },
         SURFACE_SCHEMA,
-        attributes=experiment_attributes(
-            names,
-            campaign_id=campaign_id,
-            attributes=attributes,
-            sources=sources,
-            steps=steps,
-            settings_json=settings_json,
-            version=version,
-            command=command,
-        ),
+        attributes=part_attributes("surfaces", names, origin=origin),
     )
 
 

@@ -23,7 +23,7 @@ from reduction.errors import DataError, ReductionError
 from reduction.ingest.source import hash_source
 from reduction.pipeline.hosecomparison import compare_record, loading_of
 from reduction.prediction import HosePlan
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin, Source, Step
 
 __all__ = ["compare_archive", "write_comparisons", "write_named"]
 
@@ -268,12 +268,16 @@ def write_named(
     }
     dataset = comparisons_to_dataset(
         done,
-        campaign_id=campaign_id,
-        attributes=attributes,
-        sources=sources,
-        steps=[Step("compare", f"{one.name}: {one.comparison.validation.verdict}") for one in done],
-        settings_json=json.dumps(settings, sort_keys=True, ensure_ascii=False),
-        version=__version__,
-        command=command,
+        origin=Origin(
+            campaign_id=campaign_id,
+            attributes=attributes,
+            sources=sources,
+            steps=[
+                Step("compare", f"{one.name}: {one.comparison.validation.verdict}") for one in done
+            ],
+            settings_json=json.dumps(settings, sort_keys=True, ensure_ascii=False),
+            version=__version__,
+            command=command,
+        ),
     )
     write_archive(dataset, path)

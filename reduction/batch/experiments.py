@@ -22,7 +22,7 @@ from reduction.experiment import ExperimentResult, RunTable
 from reduction.notes import by_severity
 from reduction.pipeline.experiment import fit_experiment
 from reduction.pipeline.runline import LineOfRuns
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin, Source, Step
 from reduction.record import Floats
 from reduction.surface.levels import FactorLevels
 from reduction.vocabulary import quantity
@@ -91,15 +91,17 @@ def write_experiments(
     )
     dataset = surfaces_to_dataset(
         results,
-        campaign_id=campaign.id,
-        attributes=campaign.attributes,
-        sources=sources,
-        steps=[Step("surfaces", _in_one_line(result)) for result in results],
-        settings_json=json.dumps(
-            {name: asdict(plan) for name, plan in ready.items()}, sort_keys=True
+        origin=Origin(
+            campaign_id=campaign.id,
+            attributes=campaign.attributes,
+            sources=sources,
+            steps=[Step("surfaces", _in_one_line(result)) for result in results],
+            settings_json=json.dumps(
+                {name: asdict(plan) for name, plan in ready.items()}, sort_keys=True
+            ),
+            version=__version__,
+            command=command,
         ),
-        version=__version__,
-        command=command,
     )
     write_archive(dataset, path)
     statuses |= {result.name: _status(result) for result in results}

@@ -19,7 +19,7 @@ from reduction.errors import ReductionError
 from reduction.ingest.source import hash_source
 from reduction.pipeline.prediction import predict_from_plan
 from reduction.prediction import HosePlan, PredictedHose
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin, Source, Step
 
 __all__ = ["settings_of_hose", "write_hoses", "write_predictions"]
 
@@ -104,13 +104,15 @@ def write_hoses(
     settings = {hose.plan.name: settings_of_hose(hose.plan) for hose in hoses}
     dataset = predictions_to_dataset(
         hoses,
-        campaign_id=campaign_id,
-        attributes=attributes,
-        sources=[source],
-        steps=[Step("predict", _in_one_line(hose)) for hose in hoses],
-        settings_json=json.dumps(settings, sort_keys=True, ensure_ascii=False),
-        version=__version__,
-        command=command,
+        origin=Origin(
+            campaign_id=campaign_id,
+            attributes=attributes,
+            sources=[source],
+            steps=[Step("predict", _in_one_line(hose)) for hose in hoses],
+            settings_json=json.dumps(settings, sort_keys=True, ensure_ascii=False),
+            version=__version__,
+            command=command,
+        ),
     )
     write_archive(dataset, path)
 

@@ -12,7 +12,7 @@ from reduction import __version__
 from reduction.archive.outcomes import outcomes_to_dataset
 from reduction.archive.write import write_archive
 from reduction.campaign.plan import Campaign
-from reduction.provenance import Step
+from reduction.provenance import Origin, Step
 
 __all__ = ["results_found", "write_outcomes"]
 
@@ -76,13 +76,15 @@ def write_outcomes(campaign: Campaign, folder: Path, *, command: str) -> Path | 
     settings = {"results": campaign.results.name, "specimens": sheets}
     dataset = outcomes_to_dataset(
         campaign.outcomes,
-        campaign_id=campaign.id,
-        attributes=campaign.attributes,
-        source=campaign.results,
-        steps=(Step("outcomes", _in_one_line(campaign)),),
-        settings_json=json.dumps(settings, sort_keys=True, ensure_ascii=False, allow_nan=False),
-        version=__version__,
-        command=command,
+        origin=Origin(
+            campaign_id=campaign.id,
+            attributes=campaign.attributes,
+            sources=(campaign.results,),
+            steps=(Step("outcomes", _in_one_line(campaign)),),
+            settings_json=json.dumps(settings, sort_keys=True, ensure_ascii=False, allow_nan=False),
+            version=__version__,
+            command=command,
+        ),
     )
     write_archive(dataset, path)
     return path

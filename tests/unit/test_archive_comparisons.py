@@ -17,6 +17,7 @@ from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive
 from reduction.compare.product import EventDifference
 from reduction.errors import ArchiveError
+from reduction.provenance import Origin
 
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 CURVES = ("ascending", "descending", "midline")
@@ -257,6 +258,9 @@ def empty_or_twice(named):
     from reduction.archive.comparisons import comparisons_to_dataset
 
     return comparisons_to_dataset(
-        named, campaign_id="c", attributes={}, sources=(), steps=(), settings_json="{}",
-        version="1", command="reduction run campaign.toml",
+        named,
+        origin=Origin(
+            campaign_id="c", attributes={}, sources=(), steps=(), settings_json="{}",
+            version="1", command="reduction run campaign.toml",
+        ),
     )  # fmt: skip

@@ -17,7 +17,7 @@ BROKEN = screening_experiment("broken", missing=(4,))
 
 @pytest.fixture(scope="module")
 def dataset():
-    return surfaces_to_dataset([SCREENING, BROKEN], **ABOUT)
+    return surfaces_to_dataset([SCREENING, BROKEN], origin=ABOUT)
 
 
 def test_an_interaction_stands_in_every_other_column_with_a_third(dataset):

@@ -15,7 +15,7 @@ from reduction.archive.outcomes import outcomes_of_dataset, outcomes_to_dataset
 from reduction.archive.write import write_archive
 from reduction.errors import ArchiveError
 from reduction.outcomes.product import Outcome
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin, Source, Step
 
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 OUTCOMES = (
@@ -33,10 +33,10 @@ OUTCOMES = (
 def dataset(outcomes=OUTCOMES, **changed):
     about = {
         "campaign_id": "c", "attributes": {"title": "Breaks", "synthetic": "yes"},
-        "source": Source("results.csv", "ab" * 32, 123), "steps": (Step("outcomes", "5 rows"),),
+        "sources": (Source("results.csv", "ab" * 32, 123),), "steps": (Step("outcomes", "5 rows"),),
         "settings_json": "{}", "version": "1", "command": "reduction run campaign.toml",
     }  # fmt: skip
-    return outcomes_to_dataset(outcomes, **(about | changed))
+    return outcomes_to_dataset(outcomes, origin=Origin(**(about | changed)))
 
 
 @pytest.fixture

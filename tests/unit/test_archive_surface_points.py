@@ -26,7 +26,7 @@ RANDOM = surface_experiment(
 
 @pytest.fixture(scope="module")
 def dataset():
-    return surfaces_to_dataset([ONE, SHORT, RANDOM], **ABOUT)
+    return surfaces_to_dataset([ONE, SHORT, RANDOM], origin=ABOUT)
 
 
 def at_points(dataset, name, row=0):
@@ -245,7 +245,7 @@ def test_a_response_without_a_surface_has_neither_points_nor_a_ridge():
         low=LOW, high=HIGH, run_names=runs.names,
     )  # fmt: skip
     bare = replace(ONE, runs=runs, surfaces=surfaces, reduced=None)
-    dataset = surfaces_to_dataset([bare], **ABOUT)
+    dataset = surfaces_to_dataset([bare], origin=ABOUT)
     for what in ("point_value", "point_simultaneous_high", "ridge_value", "ridge_coded_level"):
         assert np.isnan(dataset[f"hysteresis_energy_{what}"].values).all()
         assert np.isfinite(dataset[f"apparent_spring_constant_{what}"].values).all()

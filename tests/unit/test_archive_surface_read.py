@@ -29,7 +29,7 @@ SURFACES = [result for result in RESULTS if result.surfaces is not None]
 @pytest.fixture(scope="module")
 def archive(tmp_path_factory):
     path = tmp_path_factory.mktemp("surfaces") / "surfaces.nc"
-    write_archive(surfaces_to_dataset(RESULTS, **ABOUT), path)
+    write_archive(surfaces_to_dataset(RESULTS, origin=ABOUT), path)
     with open_archive(path) as dataset:
         yield dataset
 
@@ -141,7 +141,7 @@ def test_a_response_that_cannot_be_fitted_comes_back_with_its_reason():
     )  # fmt: skip
     assert surfaces.reason.tolist()[:3] == [0, 1, 4]
     about = replace(result, runs=runs, surfaces=surfaces)
-    found = surfaces_of(surfaces_to_dataset([about], **ABOUT), result.name)
+    found = surfaces_of(surfaces_to_dataset([about], origin=ABOUT), result.name)
     np.testing.assert_array_equal(found.reason, surfaces.reason)
     np.testing.assert_array_equal(found.is_used, surfaces.is_used[surfaces.pattern])
     np.testing.assert_array_equal(found.coefficient, surfaces.coefficient)

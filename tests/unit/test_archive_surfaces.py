@@ -23,7 +23,7 @@ SCREENING = screening_experiment()
 
 
 def build(*results):
-    return surfaces_to_dataset(results, **ABOUT)
+    return surfaces_to_dataset(results, origin=ABOUT)
 
 
 @pytest.fixture(scope="module")

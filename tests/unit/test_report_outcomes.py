@@ -8,7 +8,7 @@ from reduction.archive.outcomes import outcomes_to_dataset
 from reduction.archive.write import write_archive
 from reduction.outcomes.groups import Group
 from reduction.outcomes.product import Outcome
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin, Source, Step
 from reduction.report.figures.outcomes import draw_exposure, draw_lives
 from reduction.report.htmltable import NOT_GIVEN
 from reduction.report.outcomesection import make_outcome_section
@@ -167,10 +167,12 @@ def test_parts_without_data_are_left_out():
 @pytest.fixture
 def page(tmp_path):
     dataset = outcomes_to_dataset(
-        [*BREAKS, SPLICE, *CYCLES, *SURVIVED], campaign_id="lines",
-        attributes={"title": "Lines <b>&", "synthetic": "yes"},
-        source=Source("results.csv", "ab" * 32, 1), steps=(Step("outcomes", "rows"),),
-        settings_json='{"results": "results.csv"}', version="1", command="",
+        [*BREAKS, SPLICE, *CYCLES, *SURVIVED],
+        origin=Origin(
+            campaign_id="lines", attributes={"title": "Lines <b>&", "synthetic": "yes"},
+            sources=(Source("results.csv", "ab" * 32, 1),), steps=(Step("outcomes", "rows"),),
+            settings_json='{"results": "results.csv"}', version="1", command="",
+        ),
     )  # fmt: skip
     write_archive(dataset, tmp_path / "lines" / "outcomes.nc")
     return lambda: write_report(tmp_path / "lines", tmp_path / "out", units="us")

@@ -143,7 +143,7 @@ def test_what_is_no_tests_fault_stands_among_those_as_serious():
 @pytest.fixture
 def page(tmp_path):
     def make(*results, **attributes):
-        data = surfaces_to_dataset(results, **ABOUT | attributes)
+        data = surfaces_to_dataset(results, origin=replace(ABOUT, **attributes))
         write_archive(data, tmp_path / "surfaces.nc")
         return write_report(tmp_path, tmp_path / "out").read_text(encoding="utf-8")
 

@@ -22,7 +22,7 @@ BY_NAME = {table.name: table for table in EXPERIMENT_TABLES}
 
 @pytest.fixture(scope="module")
 def dataset():
-    return by_response(surfaces_to_dataset([ONE, TWO, SCREENING, BROKEN], **ABOUT))
+    return by_response(surfaces_to_dataset([ONE, TWO, SCREENING, BROKEN], origin=ABOUT))
 
 
 def rows_of(dataset, name):
@@ -233,7 +233,7 @@ def test_a_check_of_a_single_time_is_one_row(dataset):
 
 
 def test_an_archive_without_surfaces_fills_only_what_it_has():
-    dataset = by_response(surfaces_to_dataset([SCREENING], **ABOUT))
+    dataset = by_response(surfaces_to_dataset([SCREENING], origin=ABOUT))
     filled = {table.name for table in EXPERIMENT_TABLES if table_rows(dataset, table)}
     assert filled == {
         "experiments", "factors", "runs", "run_levels", "run_responses", "screening", "aliases",

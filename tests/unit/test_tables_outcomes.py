@@ -7,7 +7,7 @@ import pytest
 from reduction.archive.outcomes import outcomes_to_dataset
 from reduction.archive.write import write_archive
 from reduction.outcomes.product import Outcome
-from reduction.provenance import Source, Step
+from reduction.provenance import Origin, Source, Step
 from reduction.tables.outcomes import OUTCOME_TABLES
 from reduction.tables.write import write_tables
 
@@ -28,9 +28,12 @@ CYCLES = [
 def tables(tmp_path):
     def written(outcomes, synthetic="yes"):
         dataset = outcomes_to_dataset(
-            outcomes, campaign_id="c", attributes={"synthetic": synthetic},
-            source=Source("results.csv", "ab" * 32, 1), steps=(Step("outcomes", "rows"),), settings_json="{}",
-            version="1", command="",
+            outcomes,
+            origin=Origin(
+                campaign_id="c", attributes={"synthetic": synthetic},
+                sources=(Source("results.csv", "ab" * 32, 1),),
+                steps=(Step("outcomes", "rows"),), settings_json="{}", version="1", command="",
+            ),
         )  # fmt: skip
         write_archive(dataset, tmp_path / "outcomes.nc")
         return write_tables((), tmp_path / "tables", outcomes=tmp_path / "outcomes.nc")

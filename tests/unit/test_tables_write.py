@@ -34,7 +34,7 @@ def surfaces(tmp_path_factory):
         surface_experiment("two lines", names=RESPONSES[:2], specimens=("a", "b"), missing=(3,)),
         screening_experiment(),
     ]
-    write_archive(surfaces_to_dataset(results, **ABOUT), path)
+    write_archive(surfaces_to_dataset(results, origin=ABOUT), path)
     return path
 
 
