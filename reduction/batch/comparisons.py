@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
@@ -20,7 +19,7 @@ from reduction.batch.part import PartStatus
 from reduction.batch.predictions import settings_of_hose
 from reduction.campaign.plan import Campaign, ComparisonPlan
 from reduction.errors import DataError, ReductionError
-from reduction.ingest.source import hash_source
+from reduction.ingest.source import hash_source, source_of
 from reduction.pipeline.hosecomparison import compare_record, loading_of
 from reduction.prediction import HosePlan
 from reduction.provenance import Origin, Source, Step
@@ -99,7 +98,7 @@ def write_comparisons(
             attributes=campaign.attributes,
             sources=[
                 hash_source(campaign.path, campaign.path.name),
-                *(_source_of(path) for path in paths.values()),
+                *(source_of(path.read_bytes(), path.name) for path in paths.values()),
             ],
             command=command,
         )
@@ -210,11 +209,6 @@ def _of_strain(archive: xr.Dataset, index: int) -> tuple[float, float]:
 def _break_in(archive: xr.Dataset) -> int:
     settings = json.loads(archive.attrs.get("settings", "{}"))
     return int(settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0))
-
-
-def _source_of(path: Path) -> Source:
-    content = path.read_bytes()
-    return Source(path.name, hashlib.sha256(content).hexdigest(), len(content))
 
 
 def write_named(

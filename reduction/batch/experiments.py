@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import asdict, replace
@@ -19,6 +18,7 @@ from reduction.batch.runrows import LINE, MEASURED, Row, rows_of_run
 from reduction.batch.waiting import waiting_in_words
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.experiment import ExperimentResult, RunTable
+from reduction.ingest.source import source_of
 from reduction.notes import by_severity
 from reduction.pipeline.experiment import fit_experiment
 from reduction.pipeline.runline import LineOfRuns
@@ -159,9 +159,7 @@ def fit_experiments(
         for run in plan.runs:
             path = archive_of(run)
             if path is not None and path.exists():
-                content = path.read_bytes()
-                digest = hashlib.sha256(content).hexdigest()
-                sources[path.name] = Source(path.name, digest, len(content))
+                sources[path.name] = source_of(path.read_bytes(), path.name)
         result = _fit(plan, rows)
         results.append(replace(result, notes=(*result.notes, *same_logs(plan, raw_sha256))))
     return results, tuple(sources.values())

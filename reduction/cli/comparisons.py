@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 from typing import Any, cast
 
@@ -16,8 +15,7 @@ from reduction.cli.numbers import plain, short, table_of
 from reduction.cli.outcome import Outcome
 from reduction.compare.product import Calibration
 from reduction.compare.verdict import verdict_words
-from reduction.ingest.source import hash_source
-from reduction.provenance import Source
+from reduction.ingest.source import hash_source, source_of
 from reduction.report.page import write_report
 from reduction.tables.write import write_tables
 from reduction.units import UnitSystem, display_unit
@@ -43,8 +41,6 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, outcome: Outco
     units = cast("UnitSystem", outcome.units)
     _show(named, outcome, units)
     if out is not None:
-        content = measured.read_bytes()
-        digest = hashlib.sha256(content).hexdigest()
         path = out / "comparisons.nc"
         write_named(
             [named],
@@ -54,7 +50,7 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, outcome: Outco
             attributes={"title": f"Test {named.test} against hose {hose.name}"},
             sources=[
                 hash_source(spec, spec.name),
-                Source(measured.name, digest, len(content)),
+                source_of(measured.read_bytes(), measured.name),
             ],
             command=f"reduction compare {measured.name} {spec.name}",
         )
