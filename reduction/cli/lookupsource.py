@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from reduction.archive.linesource import line_of_experiment, line_of_test
+from reduction.archive.linesource import (
+    Facts,
+    facts_of_specimens,
+    line_of_experiment,
+    line_of_test,
+    specimens_of,
+)
 from reduction.archive.open import open_archive
 from reduction.archive.products import archives_of_tests
 from reduction.errors import SettingsError
@@ -76,8 +82,9 @@ def lines_of_archive(path: Path) -> list[LineSource]:
         if "experiment" in archive.sizes:
             names = archive["experiment"].values.astype(str).tolist()
             kinds = archive["experiment_kind"].values.astype(str).tolist()
+            known = _specimens(path, {one for name in names for one in specimens_of(archive, name)})
             return [
-                line_of_experiment(archive, name)
+                line_of_experiment(archive, name, specimens=known)
                 for name, kind in zip(names, kinds, strict=True)
                 if kind == "box-behnken"
             ]
@@ -85,3 +92,14 @@ def lines_of_archive(path: Path) -> list[LineSource]:
             return []
         names = archive["specimen"].values.astype(str).tolist()
         return [line_of_test(archive, name) for name in names]
+
+
+def _specimens(path: Path, names: set[str]) -> dict[str, Facts]:
+    """What the archives of tests beside an archive of experiments state of its specimens."""
+    known: dict[str, Facts] = {}
+    for one in archives_of_tests(path.parent):
+        if names <= known.keys():
+            break
+        with open_archive(one) as archive:
+            known |= facts_of_specimens(archive)
+    return known

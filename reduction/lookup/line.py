@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.curve import evaluate_curve
-from reduction.lookup.loads import CycleLoads, cycle_loads
+from reduction.lookup.loads import CycleLoads, loads_of_line
 from reduction.lookup.product import DesignValues, LineCurve, LineSource, LineSurface
 from reduction.lookup.surface import evaluate_surface
 from reduction.record import Bools, Floats
@@ -66,8 +66,8 @@ def look_up(
     SettingsError
         If the line has no such quantity, or a level is missing or not of it.
     DataError
-        If a point is outside the tested range and ``extrapolate`` is "refuse", or the line goes
-        slack.
+        If a point is outside the tested range and ``extrapolate`` is "refuse", an amplitude is
+        above its mean tension, or a tether goes slack.
 
     Notes
     -----
@@ -194,7 +194,7 @@ def _of_surface(
     return _values(
         line,
         surface,
-        loads=_loads(line, given, shape),
+        loads=loads_of_line(line, given, shape),
         inside=inside,
         untested=inside & untested,
         value=points.value.reshape(shape),
@@ -223,7 +223,7 @@ def _of_curve(
     return _values(
         line,
         curve,
-        loads=_loads(line, given, at.shape),
+        loads=loads_of_line(line, given, at.shape, branch=curve.branch),
         inside=inside,
         untested=np.zeros(at.shape, dtype=bool),
         value=value,
@@ -252,16 +252,6 @@ def _refuse_outside(
     )
 
 
-def _loads(line: LineSource, given: dict[str, Floats], shape: tuple[int, ...]) -> CycleLoads:
-    """Ends of the cycle; NaN where mean tension and amplitude are not both given."""
-    if {"mean_tension", "tension_amplitude"} <= set(given):
-        mean = np.broadcast_to(given["mean_tension"], shape)
-        amplitude = np.broadcast_to(given["tension_amplitude"], shape)
-        return cycle_loads(mean, amplitude, rated_break_strength=line.rated_break_strength)
-    none, no = np.full(shape, np.nan), np.zeros(shape, dtype=bool)
-    return CycleLoads(none, none, none, none, no, no)
-
-
 def _values(
     line: LineSource,
     of: LineSurface | LineCurve,
@@ -273,10 +263,7 @@ def _values(
 ) -> DesignValues:
     notes = [*line.notes, *of.notes]
     if loads.is_above_rule.any():
-        notes.append(
-            "the peak tension is above what the source allows: 60 % of the break strength where "
-            "a line is always loaded, 30 % where it goes slack"
-        )
+        notes.append(f"the peak tension is above what the source allows: {line.rule}")
     below = int(np.sum(numbers["value"] < 0))
     if below:
         notes.append(
@@ -294,6 +281,7 @@ def _values(
         peak_share=loads.peak_share,
         minimum_share=loads.minimum_share,
         is_above_rule=loads.is_above_rule,
+        rule=line.rule,
         source=line.source,
         errata=of.errata,
         notes=tuple(dict.fromkeys(notes)),

@@ -1,22 +1,28 @@
-"""Peak and minimum tension of a cycle, and the rule of the source for how high it may go.
+"""Peak and minimum tension of a cycle, and the rule of the source for how high or low it may go.
 
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
-   R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 6.
+   R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 3.4.
+.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of
+   Rubber Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst.,
+   Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
+from reduction.lookup.curve import evaluate_curve
+from reduction.lookup.product import LineSource
 from reduction.record import Bools, Floats, freeze_arrays
 
-__all__ = ["LOADED_SHARE", "SLACK_SHARE", "CycleLoads", "cycle_loads"]
+__all__ = ["LOADED_SHARE", "SLACK_SHARE", "CycleLoads", "cycle_loads", "loads_of_line"]
 
 LOADED_SHARE = 0.6
 """Greatest share of the break strength for a line that is always loaded. [1]"""
@@ -108,3 +114,100 @@ def cycle_loads(
         is_slack=np.asarray(is_slack),
         is_above_rule=np.asarray(above),
     )
+
+
+def loads_of_line(
+    line: LineSource, given: Mapping[str, Floats], shape: tuple[int, ...], *, branch: str = ""
+) -> CycleLoads:
+    """Ends of the tension at the points of a look-up.
+
+    Parameters
+    ----------
+    line : LineSource
+        Whose rule and break strength count.
+    given : mapping of str to ndarray, shape (...)
+        Levels that broadcast to ``shape``. [SI]
+    shape : tuple of int
+        Of the points.
+    branch : {"", "ascending", "descending"}
+        Of the value that is looked up, where it differs by branch.
+
+    Returns
+    -------
+    loads : CycleLoads
+        Of mean and amplitude; where one tension is given, or follows from the strain on the same
+        branch, peak and minimum are that one; else NaN.
+
+    Raises
+    ------
+    DataError
+        If an amplitude is above its mean, a tension is negative, or a tether goes slack.
+
+    Notes
+    -----
+    The rule of [1]_ is of nylon and polyester, where zero tension lowers what a line stands; a
+    tether of rubber must not go slack at all, since it tangles and is cut ([2]_).  Beyond a
+    curve that is given by points the tension is not known, and no rule can be checked.
+
+    Examples
+    --------
+    >>> rope = LineSource("a", "", "nylon", "braid", "new", 0.0127, 1e4)
+    >>> loads = loads_of_line(rope, {"mean_tension": np.array(3000.0)}, ())
+    >>> print(loads.peak_share, loads.minimum_share)
+    0.3 0.3
+    """
+    if {"mean_tension", "tension_amplitude"} <= set(given):
+        mean, amplitude = given["mean_tension"], given["tension_amplitude"]
+    else:
+        mean, amplitude = _one_tension(line, given, branch), np.zeros(())
+    known = np.where(np.isfinite(mean), mean, 0.0) if np.isnan(mean).any() else mean
+    loads = cycle_loads(
+        np.broadcast_to(known, shape),
+        np.broadcast_to(amplitude, shape),
+        rated_break_strength=line.rated_break_strength,
+    )
+    if known is not mean:
+        unknown = np.broadcast_to(np.isnan(mean), shape)
+        loads = _unknown_at(loads, unknown)
+    if line.is_tether:
+        _refuse_slack(line, loads)
+        # the shares of the rule are of fibres
+        loads = replace(loads, is_above_rule=np.zeros(shape, dtype=bool))
+    return loads
+
+
+def _one_tension(line: LineSource, given: Mapping[str, Floats], branch: str) -> Floats:
+    """Tension at points without a cycle; NaN where it is not known."""
+    for name in ("tension", "mean_tension"):
+        if name in given:
+            if np.any(given[name] < 0):
+                raise DataError(f"{name} is negative", found=f"{given[name].min():.4g} N")
+            return given[name]
+    if "strain" in given:
+        for curve in line.curves:
+            if curve.quantity == "branch_tension" and curve.branch == branch:
+                # noise about zero is zero
+                return np.maximum(evaluate_curve(curve, given["strain"])[0], 0.0)
+    return np.asarray(np.nan)
+
+
+def _unknown_at(loads: CycleLoads, unknown: Bools) -> CycleLoads:
+    numbers = ("peak_tension", "minimum_tension", "peak_share", "minimum_share")
+    return replace(
+        loads,
+        **{name: np.where(unknown, np.nan, getattr(loads, name)) for name in numbers},
+        is_slack=loads.is_slack & ~unknown,
+        is_above_rule=loads.is_above_rule & ~unknown,
+    )
+
+
+def _refuse_slack(line: LineSource, loads: CycleLoads) -> None:
+    if loads.is_slack.any():
+        peak = loads.peak_tension[loads.is_slack].ravel()[0]
+        raise DataError(
+            f"{line.name} goes slack at {int(loads.is_slack.sum())} of {loads.is_slack.size} "
+            "points, and a tether must not",
+            found=f"a minimum tension of zero, peak {peak:.4g} N",
+            needed="a minimum above zero",
+            hint="A slack tether tangles and is cut: more stretch, or less amplitude.",
+        )

@@ -3,7 +3,10 @@
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
-   R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4 ("range of usefulness"), 6.3.
+   R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4 ("range of usefulness"), 3.4.
+.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of
+   Rubber Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst.,
+   Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
 """
 
 from __future__ import annotations
@@ -17,6 +20,12 @@ from reduction.errors import DataError
 from reduction.record import Bools, Floats, Integers, freeze_arrays
 
 __all__ = ["DesignValues", "LineCurve", "LineSource", "LineSurface"]
+
+_ROPE_RULE = (
+    "peak at most 60 % of the break strength where the line is always loaded, 30 % where it goes "
+    "slack (CG-D-39-80, sec. 3.4)"
+)
+_TETHER_RULE = "a rubber tether must not go slack (WHOI-2005-10, sec. 2.3.2)"
 
 
 @dataclass(frozen=True)
@@ -153,6 +162,9 @@ class LineSource:
         NaN where not stated. [kg m-1]
     absent : dict of str to str
         Quantities that were not measured, or are lost, with the reason.
+    kind : str
+        Of the specimen, as a campaign names it: ``rubber tether``, ``rope`` ...; empty where
+        not stated.
     notes : tuple of str
         What holds of all of it.
     """
@@ -170,7 +182,18 @@ class LineSource:
     linear_density: float = float("nan")
     wet_linear_density: float = float("nan")
     absent: dict[str, str] = field(default_factory=dict)
+    kind: str = ""
     notes: tuple[str, ...] = ()
+
+    @property
+    def is_tether(self) -> bool:
+        """Of rubber, that must not go slack: by its kind, else by its material."""
+        return self.kind == "rubber tether" if self.kind else "rubber" in self.material.lower()
+
+    @property
+    def rule(self) -> str:
+        """How high the line may be loaded, or how low."""
+        return _TETHER_RULE if self.is_tether else _ROPE_RULE
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -204,11 +227,14 @@ class DesignValues:
     is_untested : ndarray of bool
         Inside, but farther from the runs than any run is.
     peak_tension, minimum_tension : ndarray
-        Mean tension and amplitude together; NaN where neither was given. [N]
+        Mean tension and amplitude together; the one tension where there is no cycle, as it is
+        on the curve at a strain; NaN where none is known. [N]
     peak_share, minimum_share : ndarray
         Of the rated break strength; NaN where that is not known. [1]
     is_above_rule : ndarray of bool
         The peak is above 60 % of the break strength, or above 30 % where the line goes slack.
+    rule : str
+        How high, or how low, the source lets the line be loaded.
     source : str
         Where the numbers are from.
     errata, notes : tuple of str
@@ -229,6 +255,7 @@ class DesignValues:
     peak_share: Floats
     minimum_share: Floats
     is_above_rule: Bools
+    rule: str
     source: str
     errata: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()

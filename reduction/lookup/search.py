@@ -1,4 +1,10 @@
-"""Search of lines by what they are made of, how, how thick, and in which condition."""
+"""Search of lines by what they are made of, how, how thick, and in which condition.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
+   R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, Table 2.
+"""
 
 from __future__ import annotations
 
@@ -51,8 +57,8 @@ def find_lines(
 
     Notes
     -----
-    Source: sizes of line are nominal; next sizes in inches are 1/16 in or more apart, so that the
-    default joins names of one size in two systems and parts two sizes up to 2 in.
+    Sizes are nominal ([1]_).  Sizes in inches are 1/16 in or more apart: the default joins names
+    of one size in two systems, and parts two sizes up to 2 in.
 
     Examples
     --------

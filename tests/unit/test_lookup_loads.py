@@ -1,0 +1,129 @@
+"""Ends of a cycle with every look-up, the rule of ropes, and the tether that must not go slack."""
+
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.lookup.line import look_up
+from reduction.lookup.loads import loads_of_line
+from reduction.lookup.product import LineCurve, LineSource, LineSurface
+from reduction.published.linesource import published_sources
+
+LBF = 4.4482216152605
+POINTS = np.array([0.2, 1.0, 2.0])
+
+
+def curve(quantity, value, branch):
+    return LineCurve(quantity, "strain", 0.2, 2.0, at=POINTS, value=np.array(value), branch=branch)
+
+
+SURFACE = LineSurface(
+    "apparent_spring_constant", np.array([1e3]), np.array([[0, 0, 0]]), np.array([0.1, 10.0, 5.0]),
+    np.array([0.5, 100.0, 100.0]), np.eye(1) / 15, 0.1, 14.0, 1.0,
+)  # fmt: skip
+TETHER = LineSource(
+    "made tether", "synthetic", "Natsyn rubber (synthetic)", "", "new", 0.026, 1000.0,
+    factor_names=("frequency", "mean_tension", "tension_amplitude"),
+    surfaces={"apparent_spring_constant": SURFACE},
+    curves=(
+        curve("tangent_modulus", [1e6, 1e6, 3e6], "ascending"),
+        curve("branch_tension", [100.0, 500.0, 800.0], "ascending"),
+        curve("tangent_modulus", [1e6, 1e6, 3e6], "descending"),
+        curve("branch_tension", [0.0, 300.0, 800.0], "descending"),
+    ),
+    kind="rubber tether",
+)  # fmt: skip
+ROPE = LineSource(
+    "made rope", "synthetic", "nylon", "", "new", 0.026, 1000.0, curves=TETHER.curves[2:],
+    kind="rope",
+)  # fmt: skip
+
+
+def test_a_modulus_comes_with_the_tension_of_its_own_branch():
+    found = look_up(TETHER, "tangent_modulus", strain=[1.0, 1.5], branch="ascending")
+    assert found.peak_tension.tolist() == [500.0, 650.0]
+    assert found.minimum_share.tolist() == [0.5, 0.65]
+    other = look_up(TETHER, "tangent_modulus", strain=1.0, branch="descending")
+    assert other.peak_share == 0.3
+
+
+def test_one_tension_alone_is_both_ends():
+    line = published_sources()["nylon-double-braid-0.5in-new"]
+    found = look_up(line, "quasi_static_spring_constant", mean_tension=0.21 * 6400 * LBF)
+    assert found.peak_share == pytest.approx(0.21)
+    assert found.minimum_share == pytest.approx(0.21)
+    assert look_up(line, "strain", tension=640 * LBF).peak_share == pytest.approx(0.1)
+
+
+def test_a_tether_that_reaches_zero_tension_is_refused():
+    with pytest.raises(DataError, match="made tether goes slack at 1 of 2 points"):
+        look_up(TETHER, "tangent_modulus", strain=[0.2, 1.0], branch="descending")
+    cycle = {"frequency": 0.3, "mean_tension": 50.0}
+    assert look_up(TETHER, "apparent_spring_constant", tension_amplitude=49.0, **cycle).value == 1e3
+    with pytest.raises(DataError, match="minimum tension of zero, peak 100 N"):
+        look_up(TETHER, "apparent_spring_constant", tension_amplitude=50.0, **cycle)
+    with pytest.raises(DataError, match="above their mean tension"):
+        look_up(TETHER, "apparent_spring_constant", tension_amplitude=51.0, **cycle)
+
+
+def test_a_rope_may_go_slack_and_has_the_rule_for_it():
+    found = look_up(ROPE, "tangent_modulus", strain=0.2, branch="descending")
+    assert found.peak_tension == 0
+    loads = loads_of_line(
+        ROPE, {"mean_tension": np.array([150.0, 160.0]), "tension_amplitude": np.array(150.0)}, (2,)
+    )
+    # 300 N of 1,000 N from zero is allowed; 310 N from 10 N is always loaded
+    assert loads.is_slack.tolist() == [True, False]
+    assert not loads.is_above_rule.any()
+    above = {"mean_tension": np.array(151.0), "tension_amplitude": np.array(151.0)}
+    assert loads_of_line(ROPE, above, ()).is_above_rule
+
+
+def test_the_rule_of_fibres_is_not_that_of_rubber():
+    assert "60 %" in ROPE.rule
+    assert TETHER.rule == "a rubber tether must not go slack (WHOI-2005-10, sec. 2.3.2)"
+    # 80 % of the break strength
+    found = look_up(TETHER, "branch_tension", strain=2.0, branch="ascending")
+    assert found.peak_share == 0.8
+    assert not found.is_above_rule
+
+
+def test_what_is_a_tether_is_said_by_its_kind_else_by_its_material():
+    def line(material, kind):
+        return LineSource("a", "s", material, "", "", 0.02, 1.0, kind=kind)
+
+    assert line("Natsyn Rubber", "").is_tether
+    assert line("", "rubber tether").is_tether
+    assert not line("nylon", "").is_tether
+    # the cords of a hose carry when it is stretched, and a hose lies slack on the water
+    assert not line("rubber", "stretch hose").is_tether
+
+
+def test_noise_below_zero_is_zero_and_beyond_the_points_nothing_is_known():
+    noisy = LineSource(
+        "made rope", "synthetic", "nylon", "", "", 0.02, 1000.0,
+        curves=(curve("branch_tension", [-2.0, 300.0, 800.0], "ascending"),),
+    )  # fmt: skip
+    found = look_up(
+        noisy, "branch_tension", strain=[0.2, 1.0, 3.0], branch="ascending", extrapolate="flag"
+    )
+    assert found.value[0] == -2
+    assert found.peak_tension[:2].tolist() == [0.0, 300.0]
+    assert np.isnan(found.peak_tension[2])
+    assert np.isnan(found.peak_share[2])
+    assert not found.is_above_rule[2]
+
+
+def test_a_negative_tension_is_refused():
+    line = published_sources()["nylon-double-braid-0.5in-new"]
+    with pytest.raises(DataError, match="mean_tension is negative; found -5 N"):
+        look_up(line, "quasi_static_spring_constant", mean_tension=-5.0, extrapolate="flag")
+
+
+def test_published_tethers_have_their_share_of_the_break_strength():
+    # WHOI-2005-10, Table 6, T-2 new: 62 lb at 60 % and 127 lb at 120 %, of 800 lb
+    found = look_up(
+        published_sources()["rubber-tether-new-T-2"], "tangent_modulus", strain=[0.6, 0.9],
+        branch="ascending",
+    )  # fmt: skip
+    assert found.peak_share == pytest.approx([62 / 800, (62 + 127) / 2 / 800])
