@@ -1,0 +1,186 @@
+"""Two lines at the same points, against the tables and sentences of CG-D-39-80 and against truth."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from reduction.errors import DataError, SettingsError
+from reduction.lookup.against import compare_values
+from reduction.lookup.line import look_up
+from reduction.published.linesource import published_sources
+
+LBF = 4.4482216152605
+BRAID, PLAIT = "double-braid-0.5in", "8-strand-plaited-0.5in"
+CENTRE = (0.3, 0.21, 0.085)
+
+
+@pytest.fixture(scope="module")
+def lines():
+    return published_sources()
+
+
+def at_centre(line, quantity):
+    """At the centre of the design: levels are shares of the line's own break strength."""
+    frequency, mean, amplitude = CENTRE
+    strength = line.rated_break_strength
+    return look_up(
+        line, quantity, frequency=frequency, mean_tension=mean * strength,
+        tension_amplitude=amplitude * strength,
+    )  # fmt: skip
+
+
+def pair(lines, kind, years, quantity):
+    return compare_values(
+        at_centre(lines[f"{kind}-new"], quantity),
+        at_centre(lines[f"{kind}-{years}-years"], quantity),
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "years", "ratio"),
+    [
+        # B1 of Tables 4 and 5
+        (f"polyester-{PLAIT}", 4, 8.252 / 6.317),
+        (f"polyester-{BRAID}", 4, 11.55 / 9.457),
+        (f"polyester-{BRAID}", 5, 10.317 / 9.457),
+    ],
+)
+def test_ratios_of_old_to_new_are_those_of_the_tables(lines, kind, years, ratio):
+    found = pair(lines, kind, years, "apparent_spring_constant")
+    assert found.ratio == pytest.approx(ratio, rel=1e-3)
+    assert found.difference == pytest.approx(found.second.value - found.first.value)
+    assert found.is_inside
+
+
+def test_the_sentences_on_exposed_polyester_come_back(lines):
+    # sec. 4.4.1: 30 % in four years; braid 17 %, of four lines of four years and two of five
+    plait = pair(lines, f"polyester-{PLAIT}", 4, "apparent_spring_constant")
+    assert round(100 * float(plait.ratio) - 100, -1) == 30
+    four, five = (
+        pair(lines, f"polyester-{BRAID}", years, "apparent_spring_constant") for years in (4, 5)
+    )
+    pooled = (4 * four.ratio + 2 * five.ratio) / 6
+    assert 100 * pooled - 100 == pytest.approx(17, abs=1)
+
+
+def test_nylon_braid_of_five_years_is_lost_and_says_so(lines):
+    with pytest.raises(SettingsError, match="about twice the new line"):
+        pair(lines, f"nylon-{BRAID}", 5, "apparent_spring_constant")
+
+
+@pytest.mark.parametrize("kind", [f"nylon-{BRAID}", f"nylon-{PLAIT}", f"polyester-{BRAID}"])
+def test_an_exposed_line_stretches_more_at_one_load(lines, kind):
+    # sec. 4.4.3: "at all loads, the strain is greater than in new line at the same load"
+    tension = np.array([400.0, 800.0, 1200.0, 1700.0]) * LBF
+    new, old = (
+        look_up(lines[f"{kind}-{age}"], "strain", tension=tension) for age in ("new", "5-years")
+    )
+    found = compare_values(new, old)
+    assert (found.difference > 0).all()
+    # a cubic has no scatter in print: nothing can be said of it
+    assert not found.is_known.any()
+    assert not found.is_different.any()
+
+
+def test_a_point_outside_one_box_is_refused_and_flagged(lines):
+    new, old = lines[f"polyester-{BRAID}-new"], lines[f"polyester-{BRAID}-4-years"]
+    # 800 lb is above 12 % of 6,400 lb and below 12 % of 7,000 lb (Tables 3 and 5)
+    at = {"frequency": 0.3, "mean_tension": 800 * LBF, "tension_amplitude": 400 * LBF}
+    first = look_up(new, "apparent_spring_constant", **at)
+    with pytest.raises(DataError, match="outside what was tested of .* of polyester.*4-years"):
+        look_up(old, "apparent_spring_constant", **at)
+    flagged = look_up(old, "apparent_spring_constant", extrapolate="flag", **at)
+    found = compare_values(first, flagged)
+    assert found.first.is_inside
+    assert not found.second.is_inside
+    assert not found.is_inside
+
+
+def test_limits_are_students_where_both_have_the_same_freedom(lines):
+    found = pair(lines, f"polyester-{PLAIT}", 4, "apparent_spring_constant")
+    # at the centre of the design a third of the variance of a run, 5 degrees of freedom; the
+    # open B4 moves r2 alone there, by which the interval of the new line is a little wider
+    t = stats.t.ppf(0.975, 5)
+    sigma = [
+        lines[f"polyester-{PLAIT}-{age}"].surfaces["apparent_spring_constant"].sigma
+        for age in ("new", "4-years")
+    ]
+    half = t * np.hypot(*sigma) / np.sqrt(3)
+    assert found.surface_high - found.difference == pytest.approx(half, rel=0.01)
+    assert found.difference - found.surface_low == pytest.approx(half, rel=0.01)
+
+
+def made(value, low, high, surface_low, surface_high, like):
+    flat = np.shape(value)
+    return replace(
+        like,
+        **{
+            name: np.asarray(values, dtype=np.float64)
+            for name, values in (
+                ("value", value), ("low", low), ("high", high), ("surface_low", surface_low),
+                ("surface_high", surface_high),
+            )
+        },
+        is_inside=np.ones(flat, dtype=bool),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def like(lines):
+    return at_centre(lines[f"nylon-{BRAID}-new"], "apparent_spring_constant")
+
+
+def test_each_side_has_its_own_limit(like):
+    # 10 (8 to 13) and 20 (16 to 21): 10 - hypot(4, 3), 10 + hypot(1, 2)
+    first = made([10.0], [0.0], [30.0], [8.0], [13.0], like)
+    second = made([20.0], [10.0], [30.0], [16.0], [21.0], like)
+    found = compare_values(first, second)
+    assert found.surface_low == pytest.approx([5.0])
+    assert found.surface_high == pytest.approx([10 + np.sqrt(5)])
+    assert found.is_different.all()
+    # one more test of each: 10 - hypot(10, 20)
+    assert found.low == pytest.approx([10 - np.sqrt(500)])
+    assert not found.is_test_different.any()
+    assert found.is_test_known.all()
+
+
+def test_where_one_has_no_interval_nothing_is_told_apart(like):
+    first = made([10.0, 0.0], [9.0, np.nan], [11.0, np.nan], [9.5, -1.0], [10.5, 1.0], like)
+    second = made([20.0, 5.0], [np.nan] * 2, [np.nan] * 2, [19.0, 4.0], [21.0, 6.0], like)
+    found = compare_values(first, second)
+    assert found.is_known.all()
+    assert not found.is_test_known.any()
+    assert not found.is_test_different.any()
+    assert np.isnan(found.ratio[1])
+
+
+def test_lines_that_are_one_are_told_apart_in_at_most_one_of_twenty(like):
+    """Drawn: two surfaces of one truth, 5 and 5, or 5 and 20 degrees of freedom."""
+    rng = np.random.default_rng(11)
+    size = 40_000
+    for freedom in ((5, 5), (5, 20)):
+        for spread in ((1.0, 1.0), (1.0, 4.0), (4.0, 1.0)):
+            sides = []
+            for degrees, sigma in zip(freedom, spread, strict=True):
+                value = rng.normal(0.0, sigma, size)
+                estimate = sigma * np.sqrt(rng.chisquare(degrees, size) / degrees)
+                half = stats.t.ppf(0.975, degrees) * estimate
+                sides.append(made(value, value - half, value + half, value - half, value + half,
+                                  like))  # fmt: skip
+            share = compare_values(*sides).is_different.mean()
+            # three standard errors of a share of 5 %
+            assert share < 0.05 + 3 * np.sqrt(0.05 * 0.95 / size)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"quantity": "relaxation_time"}, "two quantities cannot be compared; found apparent_"),
+        ({"value": np.zeros(3)}, "not looked up at the same points; found "),
+    ],
+)
+def test_what_does_not_belong_together_is_refused(like, change, message):
+    with pytest.raises(SettingsError, match=message):
+        compare_values(like, replace(like, **change))
