@@ -88,7 +88,8 @@ def _line(line: PublishedLine) -> LineSource:
         surfaces=surfaces,
         curves=tuple(curves),
         absent=absent,
-        notes=_strengths(line),
+        kind="rope",
+        notes=(*_strengths(line), *_exposed(line)),
     )
 
 
@@ -102,6 +103,24 @@ def _strengths(line: PublishedLine) -> tuple[str, ...]:
         f"the break strength is printed as {listed}; the tested levels are shares of "
         f"{line.rated_break_strength:.0f} N",
     )
+
+
+def _exposed(line: PublishedLine) -> tuple[str, ...]:
+    """What years in the sea did to the strength, and to how alike the lines are."""
+    if line.condition == "new":
+        return ()
+    notes = [
+        "exposed lines differ among each other by about half, new ones by a tenth (sec. 4.4.1); "
+        "no interval has that in it"
+    ]
+    found = line.strength
+    if found is not None and np.isfinite(found.tensile_strength):
+        share = 100 * found.tensile_strength / line.rated_break_strength
+        notes.append(
+            f"lines in this condition break at {found.tensile_strength:.0f} N (Table "
+            f"{found.table}), {share:.0f} % of the strength that shares and rule refer to"
+        )
+    return tuple(notes)
 
 
 def _surface(found: PublishedSurface) -> LineSurface:
@@ -238,6 +257,7 @@ def _of_segments(
         absent={
             "loss_factor": "no descending modulus is tabulated",
         },
+        kind=specimen.kind,
         notes=(
             "moduli are chords of straight pieces of the ascending branch, with strain by a "
             "constant fraction of the position",

@@ -142,3 +142,24 @@ def test_every_line_gives_something_or_says_why_not(lines):
             assert np.isfinite(found.value)
             assert found.is_inside
             assert not found.is_untested
+
+
+@pytest.mark.parametrize(
+    ("name", "pounds"),
+    # Table 10: breaks after exposure, lb
+    [("nylon-double-braid-0.5in-5-years", 2783), ("polyester-double-braid-0.5in-5-years", 3241)],
+)
+def test_an_exposed_line_says_at_what_it_breaks(lines, name, pounds):
+    line = lines[name]
+    (told,) = [note for note in line.notes if "break at" in note]
+    share = 100 * pounds * LBF / line.rated_break_strength
+    assert f"{pounds * LBF:.0f} N (Table 10), {share:.0f} %" in told
+    assert any("differ among each other by about half" in note for note in line.notes)
+    new = lines[name.replace("5-years", "new")]
+    assert not any("break at" in note for note in new.notes)
+
+
+def test_no_report_prints_a_linear_density(lines):
+    for line in lines.values():
+        assert np.isnan(line.linear_density)
+        assert np.isnan(line.wet_linear_density)
