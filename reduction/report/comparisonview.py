@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 import xarray as xr
 
-from reduction.notes import Severity, severity_of
+from reduction.notes import Severity
 from reduction.record import Floats
 from reduction.report.hoseview import DEGREES, EVENT_WORDS
+from reduction.report.rowview import RowView
 from reduction.report.style import Shown, shown
 from reduction.units import UnitSystem
 
@@ -20,12 +22,6 @@ __all__ = [
 ]  # fmt: skip
 
 Outcome = Literal["agrees", "says little", "differs", "not judged"]
-_ENDS_AT = {
-    "comparison_point": "strain",
-    "comparison_cycle": "comparison_cycle_number",
-    "parameter": "parameter_name",
-    "parameter_other": "parameter_name",
-}
 _EVENT_WORDS = {**EVENT_WORDS, "break": EVENT_WORDS["cord_break"]}
 _NUMBER_WORDS = {
     "cord_load_scale": "scale of the cords' load",
@@ -84,25 +80,15 @@ class FittedNumber:
 
 
 @dataclass(frozen=True)
-class ComparisonView:
-    """One comparison on the page.
+class ComparisonView(RowView):
+    """One comparison on the page: a row of the archive of comparisons."""
 
-    Parameters
-    ----------
-    key : str
-        Prefix of every anchor; made by the page, not from a name.
-    data : xarray.Dataset
-        The archive of comparisons, in memory, strings decoded.
-    index : int
-        Which comparison of it.
-    units : UnitSystem
-        What a reader is shown.
-    """
-
-    key: str
-    data: xr.Dataset
-    index: int
-    units: UnitSystem = "si"
+    ENDS_AT: ClassVar[Mapping[str, str]] = {
+        "comparison_point": "strain",
+        "comparison_cycle": "comparison_cycle_number",
+        "parameter": "parameter_name",
+        "parameter_other": "parameter_name",
+    }
 
     @property
     def name(self) -> str:
@@ -140,11 +126,6 @@ class ComparisonView:
         return self.text("verdict")
 
     @property
-    def is_synthetic(self) -> bool:
-        """True where the campaign says that its numbers are made up."""
-        return self.attribute("synthetic").lower() == "yes"
-
-    @property
     def outcome(self) -> Outcome:
         """The verdict in a word: agreement within a wide band says little."""
         if not np.isfinite(self.scalar("largest_ratio")):
@@ -160,43 +141,10 @@ class ComparisonView:
             return None
         return _IDENTIFIED.get(int(self.data["is_identified"].values[self.index]))
 
-    def attribute(self, name: str) -> str:
-        """Global attribute as text; empty where there is none."""
-        return str(self.data.attrs.get(name, ""))
-
-    @cached_property
-    def sizes(self) -> dict[str, int]:
-        """Own length of the dimensions that comparisons share."""
-        found = {}
-        for dim, name in _ENDS_AT.items():
-            if name in self.data:
-                values = self.data[name].values[self.index]
-                is_own = np.isfinite(values) if values.dtype.kind == "f" else values.astype(bool)
-                found[dim] = int(np.count_nonzero(is_own))
-        return found
-
-    def array(self, name: str) -> Floats:
-        """Values of a variable of this comparison; of no length where there is none."""
-        if name not in self.data:
-            return np.full(0, np.nan)
-        variable = self.data[name]
-        cut = tuple(slice(self.sizes.get(str(dim))) for dim in variable.dims[1:])
-        return np.asarray(variable.values[self.index], dtype=np.float64)[cut]
-
-    def array_like(self, name: str, other: Floats) -> Floats:
-        """Values of a variable, or NaN in the shape of another."""
-        found = self.array(name)
-        return found if found.shape == other.shape else np.full(other.shape, np.nan)
-
     def of_curve(self, name: str, curve: str) -> Floats:
         """Values of a variable for one curve of the test: a number, or along the strains."""
         names = self.data["curve"].values.astype(str).tolist()
         return np.asarray(self.array(name)[names.index(curve)])
-
-    def scalar(self, name: str) -> float:
-        """A number of this comparison; NaN where there is none."""
-        found = self.array(name)
-        return float(found) if found.ndim == 0 else float("nan")
 
     def judged_scalar(self, name: str) -> float:
         """A number of the judged curve."""
@@ -205,10 +153,6 @@ class ComparisonView:
     def is_flag(self, name: str) -> bool:
         """Return whether a flag of no and yes says yes."""
         return self.scalar(name) == 1
-
-    def text(self, name: str) -> str:
-        """Value of a text variable without further dimensions; "" where there is none."""
-        return str(self.data[name].values[self.index]) if name in self.data else ""
 
     @property
     def curves(self) -> tuple[str, ...]:
@@ -273,14 +217,7 @@ class ComparisonView:
     @cached_property
     def notes(self) -> dict[str, Severity]:
         """What is to be said of the comparison, with how serious it is."""
-        if "note" not in self.data:
-            return {}
-        pairs = zip(
-            self.data["note_comparison"].values.astype(str),
-            self.data["note"].values.astype(str),
-            strict=True,
-        )
-        return {str(note): severity_of("compare", note) for own, note in pairs if own == self.name}
+        return self.notes_of("note_comparison", self.name, stage="compare")
 
 
 def view_comparisons(archive: xr.Dataset, units: UnitSystem) -> list[ComparisonView]:

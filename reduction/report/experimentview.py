@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.archive.surface_read import surface_names, surfaces_of
 from reduction.record import Floats
+from reduction.report.rowview import RowView
 from reduction.report.style import Shown, shown
 from reduction.surface.product import ResponseSurfaces
 from reduction.units import UnitSystem, combined_unit, display_unit
@@ -18,30 +20,18 @@ from reduction.vocabulary import QUANTITIES, RESPONSES
 
 __all__ = ["ExperimentView", "in_words", "response_unit"]
 
-_LABELS = {"run": "run_name", "factor": "factor_name", "plan_column": "plan_column_name"}
 _STRAINS = ("mean_strain", "strain_amplitude")
 
 
 @dataclass(frozen=True)
-class ExperimentView:
-    """One experiment on the page.
+class ExperimentView(RowView):
+    """One experiment on the page: a row of the archive of experiments."""
 
-    Parameters
-    ----------
-    key : str
-        Prefix of every anchor; made by the page, not from a name.
-    data : xarray.Dataset
-        The archive of experiments, strings decoded.
-    index : int
-        Which experiment of it.
-    units : UnitSystem
-        What a reader is shown.
-    """
-
-    key: str
-    data: xr.Dataset
-    index: int
-    units: UnitSystem = "si"
+    ENDS_AT: ClassVar[Mapping[str, str]] = {
+        "run": "run_name",
+        "factor": "factor_name",
+        "plan_column": "plan_column_name",
+    }
 
     @property
     def name(self) -> str:
@@ -52,24 +42,6 @@ class ExperimentView:
     def is_screening(self) -> bool:
         """True where effects of many factors were asked for, not a surface."""
         return self.text("experiment_kind") == "plackett-burman"
-
-    @property
-    def is_synthetic(self) -> bool:
-        """True where no specimen was ever pulled."""
-        return self.attribute("synthetic").lower() == "yes"
-
-    def attribute(self, name: str) -> str:
-        """Global attribute as text; empty where there is none."""
-        return str(self.data.attrs.get(name, ""))
-
-    @cached_property
-    def sizes(self) -> dict[str, int]:
-        """Own length of the dimensions that experiments share."""
-        return {
-            dim: int(np.count_nonzero(self.data[label].values[self.index].astype(str)))
-            for dim, label in _LABELS.items()
-            if label in self.data
-        }
 
     @property
     def factors(self) -> tuple[str, ...]:
@@ -123,23 +95,10 @@ class ExperimentView:
         factor = self.factor_units[place].factor
         return float(low * factor), float((low + high) / 2 * factor), float(high * factor)
 
-    def array(self, name: str) -> Floats:
-        """Values of a variable of this experiment; NaN of no length where there is none."""
-        if name not in self.data:
-            return np.full(0, np.nan)
-        variable = self.data[name]
-        cut = tuple(slice(self.sizes.get(str(dim))) for dim in variable.dims[1:])
-        return np.asarray(variable.values[self.index], dtype=np.float64)[cut]
-
     def per_run(self, name: str) -> Floats:
         """Values of a variable, or NaN, one a run."""
         found = self.array(name)
         return found if found.shape == (len(self.runs),) else np.full(len(self.runs), np.nan)
-
-    def scalar(self, name: str) -> float:
-        """A number of this experiment; NaN where there is none."""
-        found = self.array(name)
-        return float(found) if found.ndim == 0 else float("nan")
 
     def texts(self, name: str) -> tuple[str, ...]:
         """Values of a text variable, one an entry of its dimension; as many "" where none."""
@@ -154,10 +113,6 @@ class ExperimentView:
         if name not in self.data:
             return np.full((0, 0), "")
         return np.asarray(self.data[name].values[self.index], dtype=np.str_)
-
-    def text(self, name: str) -> str:
-        """Value of a text variable without further dimensions; "" where there is none."""
-        return str(self.data[name].values[self.index]) if name in self.data else ""
 
     def own_rows(self, name: str) -> list[dict[str, str]]:
         """Rows of the notes or of the cautions that are of this experiment."""

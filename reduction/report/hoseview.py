@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 import xarray as xr
 
-from reduction.notes import Severity, severity_of
+from reduction.notes import Severity
 from reduction.predict.cord import NEUTRAL_ANGLE
 from reduction.record import Bools, Floats
+from reduction.report.rowview import RowView
 from reduction.report.style import Shown, shown
 from reduction.units import UnitSystem
 
@@ -30,11 +33,6 @@ SOURCE_WORDS = {
     "dead_length_share": "share of dead length",
 }
 """What a number of a design is called where its name does not say it."""
-_ENDS_AT = {
-    "hose_point": "strain",
-    "cord_point": "cord_curve_strain",
-    "hose_layer": "hose_layer_name",
-}
 
 
 @dataclass(frozen=True)
@@ -58,35 +56,19 @@ class OneEvent:
 
 
 @dataclass(frozen=True)
-class HoseView:
-    """One hose on the page.
+class HoseView(RowView):
+    """One hose on the page: a row of the archive of predictions."""
 
-    Parameters
-    ----------
-    key : str
-        Prefix of every anchor; made by the page, not from a name.
-    data : xarray.Dataset
-        The archive of predictions, in memory, strings decoded.
-    index : int
-        Which hose of it.
-    units : UnitSystem
-        What a reader is shown.
-    """
-
-    key: str
-    data: xr.Dataset
-    index: int
-    units: UnitSystem = "si"
+    ENDS_AT: ClassVar[Mapping[str, str]] = {
+        "hose_point": "strain",
+        "cord_point": "cord_curve_strain",
+        "hose_layer": "hose_layer_name",
+    }
 
     @property
     def name(self) -> str:
         """Name of the hose."""
         return self.text("hose")
-
-    @property
-    def is_synthetic(self) -> bool:
-        """True where the campaign says that its numbers are made up."""
-        return self.attribute("synthetic").lower() == "yes"
 
     @property
     def wrap_angle(self) -> float:
@@ -97,43 +79,6 @@ class HoseView:
     def is_slack_at_first(self) -> bool:
         """True where the cords have to be stretched to length before they carry."""
         return self.wrap_angle > NEUTRAL_ANGLE
-
-    def attribute(self, name: str) -> str:
-        """Global attribute as text; empty where there is none."""
-        return str(self.data.attrs.get(name, ""))
-
-    @cached_property
-    def sizes(self) -> dict[str, int]:
-        """Own length of the dimensions that hoses share."""
-        found = {}
-        for dim, name in _ENDS_AT.items():
-            if name in self.data:
-                values = self.data[name].values[self.index]
-                is_own = np.isfinite(values) if values.dtype.kind == "f" else values.astype(bool)
-                found[dim] = int(np.count_nonzero(is_own))
-        return found
-
-    def array(self, name: str) -> Floats:
-        """Values of a variable of this hose; of no length where there is none."""
-        if name not in self.data:
-            return np.full(0, np.nan)
-        variable = self.data[name]
-        cut = tuple(slice(self.sizes.get(str(dim))) for dim in variable.dims[1:])
-        return np.asarray(variable.values[self.index], dtype=np.float64)[cut]
-
-    def array_like(self, name: str, other: Floats) -> Floats:
-        """Values of a variable, or NaN in the shape of another."""
-        found = self.array(name)
-        return found if found.shape == other.shape else np.full(other.shape, np.nan)
-
-    def scalar(self, name: str) -> float:
-        """A number of this hose; NaN where there is none."""
-        found = self.array(name)
-        return float(found) if found.ndim == 0 else float("nan")
-
-    def text(self, name: str) -> str:
-        """Value of a text variable without further dimensions; "" where there is none."""
-        return str(self.data[name].values[self.index]) if name in self.data else ""
 
     def texts(self, name: str) -> tuple[str, ...]:
         """Values of a text variable of this hose, without those of longer hoses."""
@@ -182,16 +127,7 @@ class HoseView:
     @cached_property
     def notes(self) -> dict[str, Severity]:
         """What is to be said of the hose, with how serious it is."""
-        if "note" not in self.data:
-            return {}
-        pairs = zip(
-            self.data["note_hose"].values.astype(str),
-            self.data["note"].values.astype(str),
-            strict=True,
-        )
-        return {
-            str(note): severity_of("predict", note) for hose, note in pairs if hose == self.name
-        }
+        return self.notes_of("note_hose", self.name, stage="predict")
 
     @property
     def per_length(self) -> Shown:
