@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,7 +11,7 @@ import xarray as xr
 from reduction.archive.attributes import part_attributes
 from reduction.archive.build import build_dataset
 from reduction.archive.comparison_schema import COMPARISON_SCHEMA
-from reduction.archive.values import Values, pad, texts
+from reduction.archive.values import Values, pad, pad_texts, texts
 from reduction.compare.product import Calibration, Comparison, CurveName
 from reduction.errors import ArchiveError
 from reduction.predict.hose import predict_hose
@@ -215,11 +214,9 @@ def _calibration_values(found: Sequence[Comparison]) -> Values:
         return {}
     named = [() if fit is None else fit.parameter for fit in fits]
     values: Values = {
-        "parameter_name": _text_rows(named, most),
-        "parameter_unit": _text_rows(
-            [[quantity(name).unit for name in names] for names in named], most
-        ),
-        "parameter_is_at_bound": _rows(fits, "is_at_bound", most, fill=0.0).astype(np.int8),
+        "parameter_name": pad_texts(named),
+        "parameter_unit": pad_texts([[quantity(name).unit for name in names] for names in named]),
+        "parameter_is_at_bound": (_rows(fits, "is_at_bound") == 1).astype(np.int8),
         "calibrated_tension": pad(
             [
                 one.measured.strain * np.nan
@@ -235,7 +232,7 @@ def _calibration_values(found: Sequence[Comparison]) -> Values:
             ["" if fit is None else fit.identifiability.words for fit in fits]
         ),
     }
-    values |= {name: _rows(fits, field, most) for name, field in _OF_PARAMETER.items()}
+    values |= {name: _rows(fits, field) for name, field in _OF_PARAMETER.items()}
     correlation = np.full((len(fits), most, most), np.nan)
     for table, fit in zip(correlation, fits, strict=True):
         if fit is not None:
@@ -255,15 +252,5 @@ def _calibration_values(found: Sequence[Comparison]) -> Values:
     return values
 
 
-def _rows(
-    fits: Sequence[Calibration | None], field: str, length: int, *, fill: float = np.nan
-) -> Floats:
-    table = np.full((len(fits), length), fill)
-    for row, fit in zip(table, fits, strict=True):
-        if fit is not None:
-            row[: len(fit.parameter)] = getattr(fit, field)
-    return table
-
-
-def _text_rows(rows: Sequence[Sequence[str]], length: int) -> np.ndarray[Any, np.dtype[np.str_]]:
-    return np.array([[*row, *[""] * (length - len(row))] for row in rows], dtype=np.str_)
+def _rows(fits: Sequence[Calibration | None], field: str) -> Floats:
+    return pad([() if fit is None else getattr(fit, field) for fit in fits])

@@ -10,7 +10,7 @@ import xarray as xr
 from reduction.archive.attributes import part_attributes
 from reduction.archive.build import build_dataset
 from reduction.archive.prediction_schema import HOSE_STATES, PREDICTION_SCHEMA
-from reduction.archive.values import Values, pad, texts
+from reduction.archive.values import Values, pad, pad_texts, texts
 from reduction.errors import ArchiveError
 from reduction.predict.product import HOSE_PARAMETERS, HoseEvents
 from reduction.predict.uncertainty import EventUncertainty
@@ -173,21 +173,16 @@ def _layer_values(hoses: Sequence[PredictedHose]) -> Values:
     most = max(len(hose.layers) for hose in hoses)
     if not most:
         return {}
-    names = np.full((len(hoses), most), "", dtype=object)
-    for row, hose in zip(names, hoses, strict=True):
-        row[: len(hose.layers)] = [one.layer.name for one in hose.layers]
     values: Values = {
         "hose_layer": np.arange(1, most + 1),
-        "hose_layer_name": names.astype(np.str_),
+        "hose_layer_name": pad_texts([[one.layer.name for one in hose.layers] for hose in hoses]),
     }
     for name in ("wrap_angle", "strain_limit", "compression_limit"):
-        rows = [[getattr(one.layer, name) for one in hose.layers] for hose in hoses]
-        values[f"hose_layer_{name}"] = _to_length(rows, most)
+        values[f"hose_layer_{name}"] = pad(
+            [[getattr(one.layer, name) for one in hose.layers] for hose in hoses]
+        )
     for name in _OF_LAYER:
-        rows = [[getattr(one, name) for one in hose.layers] for hose in hoses]
-        values[f"hose_layer_{name}"] = _to_length(rows, most)
+        values[f"hose_layer_{name}"] = pad(
+            [[getattr(one, name) for one in hose.layers] for hose in hoses]
+        )
     return values
-
-
-def _to_length(rows: Sequence[Sequence[float]], length: int) -> Floats:
-    return np.array([[*row, *[np.nan] * (length - len(row))] for row in rows], dtype=np.float64)

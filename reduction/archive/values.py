@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction.record import Floats
 
-__all__ = ["Values", "numbers", "pad", "texts"]
+__all__ = ["Values", "numbers", "pad", "pad_texts", "texts"]
 
 Values = dict[str, NDArray[Any]]
 """Name of the schema to array; dimensions and attributes are the schema's business."""
@@ -38,3 +38,13 @@ def pad(rows: Sequence[ArrayLike]) -> Floats:
     for line, row in zip(table, arrays, strict=True):
         line[: row.size] = row
     return table
+
+
+def pad_texts(rows: Sequence[Sequence[str]]) -> NDArray[np.str_]:
+    """Put ragged rows of labels under each other, "" where a row is shorter.
+
+    >>> pad_texts([["a"], ["b", "c"]]).tolist()
+    [['a', ''], ['b', 'c']]
+    """
+    length = max((len(row) for row in rows), default=0)
+    return np.array([[*row, *[""] * (length - len(row))] for row in rows], dtype=np.str_)
