@@ -30,6 +30,7 @@ __all__ = ["published_sources"]
 
 _FACTORS = ("frequency", "mean_tension", "tension_amplitude")
 _FREEDOM = 5.0
+_FIRST = "ten cycles"
 _OF_CUBIC = {"quasi_static_strain": "strain"}
 _DESIGN = box_behnken(3).coded
 _EXPONENTS = quadratic_exponents(3)
@@ -42,14 +43,17 @@ def published_sources() -> dict[str, LineSource]:
     Returns
     -------
     sources : dict of str to LineSource
-        Lines of CG-D-39-80, then tethers of WHOI-2005-10, one a test.
+        Lines of CG-D-39-80, then tethers of WHOI-2005-10, one a test and after 3,000 cycles.
     """
     sources = [_line(one) for one in published_lines()]
     sources += [
         one
         for tether in published_tethers()
-        for test in dict.fromkeys(segment.name.test for segment in tether.segments)
-        if (one := _tether(tether, test)) is not None
+        for condition, test in sorted(
+            {(segment.name.condition, segment.name.test) for segment in tether.segments},
+            key=lambda named: (named[0] != _FIRST, named[1]),
+        )
+        if (one := _tether(tether, test, condition)) is not None
     ]
     return {one.name: one for one in sources}
 
@@ -197,21 +201,20 @@ def _slope(strain: LineCurve) -> LineCurve:
     )
 
 
-def _tether(tether: PublishedTether, test: str) -> LineSource | None:
+def _tether(tether: PublishedTether, test: str, condition: str) -> LineSource | None:
     """Moduli of one test, of which a raw row stands for a consolidated one that is open."""
-    segments = [one for one in tether.segments if one.name.test == test]
-    for condition in ("ten cycles", "after 3000 cycles"):
-        for data in ("consolidated", "raw"):
-            found = [
-                one
-                for one in segments
-                if one.name.data == data
-                and one.name.condition == condition
-                and not one.is_open
-                and np.isfinite(one.modulus)
-            ]
-            if found:
-                return _of_segments(tether, test, condition, data, found)
+    for data in ("consolidated", "raw"):
+        found = [
+            one
+            for one in tether.segments
+            if one.name.test == test
+            and one.name.data == data
+            and one.name.condition == condition
+            and not one.is_open
+            and np.isfinite(one.modulus)
+        ]
+        if found:
+            return _of_segments(tether, test, condition, data, found)
     return None
 
 
@@ -246,11 +249,12 @@ def _of_segments(
         )  # fmt: skip
     specimen = tether.specimen
     return LineSource(
-        name=f"rubber-tether-{specimen.name}-{test}",
+        name=f"rubber-tether-{specimen.name}-{test}"
+        + ("" if condition == _FIRST else f"-{condition.replace(' ', '-')}"),
         source=f"WHOI-2005-10, Table {table}, {test}, {condition}",
         material="rubber",
         construction="tether",
-        condition=specimen.name,
+        condition=specimen.name if condition == _FIRST else f"{specimen.name}, {condition}",
         diameter=float(np.mean(specimen.diameter)),
         rated_break_strength=specimen.rated_break_strength or float("nan"),
         curves=tuple(curves),

@@ -36,8 +36,11 @@ def test_published_lines_by_one_of_them_alone():
         *(f"nylon-double-braid-{size}in-new" for size in ("0.5", "0.75", "1", "1.25")),
         "nylon-double-braid-0.5in-5-years",
     ]
-    # six tests of the used tether of WHOI-2005-10, 0.94 in
-    assert len(find_lines(lines, material="rubber", condition="used")) == 6
+    # six tests of the used tether of WHOI-2005-10, and T-4 again after 3,000 cycles
+    assert len(find_lines(lines, material="rubber", condition="used")) == 7
+    assert names(find_lines(lines, condition="new 3000")) == [
+        "rubber-tether-new-T-4-after-3000-cycles"
+    ]
     assert {one.condition for one in find_lines(lines, condition="years")} == {"4 years", "5 years"}
 
 
