@@ -17,6 +17,7 @@ from reduction.archive.attributes import CONVENTIONS
 from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.outcomes import OUTCOME_SCHEMA
 from reduction.archive.prediction_schema import PREDICTION_SCHEMA
+from reduction.archive.properties import PROPERTY_SCHEMA
 from reduction.archive.schema import SCHEMA_VERSION, schema_of
 from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.variable import Variable
@@ -89,6 +90,8 @@ def _schema_of_file(dimensions: Container[str]) -> Mapping[str, Variable]:
         return COMPARISON_SCHEMA
     if "hose" in dimensions:
         return PREDICTION_SCHEMA
+    if "property" in dimensions:
+        return PROPERTY_SCHEMA
     return schema_of(is_stepwise="step" in dimensions)
 
 

@@ -60,6 +60,7 @@ def hold_values(holds: Sequence[HoldResult]) -> Values:
     }
     for name in _PLAIN:
         values[name] = numbers([getattr(one, name) for one in holds])
+    values["hold_ramp_centre_time"] = numbers([one.ramp_centre_time for one in holds])
     for kind in ("relaxation", "creep"):
         # share of tension and gain of strain are two quantities, so two names
         chosen = [one.kind == kind for one in holds]

@@ -326,6 +326,7 @@ _ROWS = chain(
     label("hold_kind", ("hold",)),
     stated("hold_start_time", ("hold",), CLOCK),
     stated("hold_duration", ("hold",), CLOCK),
+    stated("hold_ramp_centre_time", ("hold",), CLOCK),
     stated("hold_strain", ("hold",), MEAN_READING),
     stated("hold_initial_tension", ("hold",), MEAN_READING),
     stated("hold_final_tension", ("hold",), MEAN_READING),

@@ -19,6 +19,7 @@ from reduction.batch.models import fit_strain_models
 from reduction.batch.outcome import note_message, status_row
 from reduction.batch.part import PartStatus
 from reduction.batch.predictions import write_predictions
+from reduction.batch.properties import tests_of_ropes, write_change_in_length
 from reduction.batch.pulls import fit_pulls, pull_conditions
 from reduction.batch.results import write_outcomes
 from reduction.batch.standing import standing_product
@@ -283,9 +284,8 @@ def run_campaign(
     runs = {run for plan in campaign.experiments.values() for run in plan.runs}
     compared = {plan.measured for plan in campaign.comparisons.values()}
     asked = {survey.plan.id for survey in chosen}
-    left_out = [
-        entry for entry in surveys if entry.plan.id in (runs | compared) - asked - now_failed
-    ]
+    needed = runs | compared | tests_of_ropes(campaign, surveys)
+    left_out = [entry for entry in surveys if entry.plan.id in needed - asked - now_failed]
     waiting = waiting_runs(folder, left_out, basis)
     experiments = write_experiments(
         campaign,
@@ -300,6 +300,9 @@ def run_campaign(
         command=command,
     )
     write_outcomes(campaign, folder, command=command)
+    lengths = write_change_in_length(
+        campaign, folder, surveys, failed=now_failed, waiting=waiting, command=command
+    )
     hoses = write_predictions(campaign, folder, command=command)
     comparisons = write_comparisons(
         campaign, folder, failed=now_failed, waiting=waiting, command=command
@@ -312,7 +315,7 @@ def run_campaign(
     rows = _all_rows(folder / "status.csv", surveys, statuses)
     if statuses:
         write_whole(folder / "status.csv", status_csv(rows))
-    products = _products_of_campaign(campaign, folder)
+    products = _products_of_campaign(campaign, folder, has_lengths=lengths is not None)
     if archives or products:
         tables = write_tables(archives, folder / "tables", **products)
         if progress is not None:
@@ -336,13 +339,16 @@ def run_campaign(
     )
 
 
-def _products_of_campaign(campaign: Campaign, folder: Path) -> dict[str, Path]:
+def _products_of_campaign(
+    campaign: Campaign, folder: Path, *, has_lengths: bool
+) -> dict[str, Path]:
     """Archives of the whole campaign that it asks for and that are there, by their names."""
     asked = {
         "surfaces": bool(campaign.experiments),
         "predictions": bool(campaign.hoses),
         "comparisons": bool(campaign.comparisons),
         "outcomes": campaign.results is not None,
+        "change_in_length": has_lengths,
     }
     paths = {name: folder / f"{name}.nc" for name, is_asked in asked.items() if is_asked}
     return {name: path for name, path in paths.items() if path.exists()}

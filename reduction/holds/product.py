@@ -48,6 +48,9 @@ class HoldResult:
         Numbers that are missing, each with its reason.
     notes : tuple of str
         How the finite ramp was treated, and other remarks.
+    ramp_centre_time : float
+        When the ramp acts as a step: zero of the time of the rate per decade; NaN where the
+        record does not show the ramp. [s]
     """
 
     specimen: str
@@ -73,6 +76,7 @@ class HoldResult:
     criterion: str = ""
     refusals: tuple[str, ...] = field(default=())
     notes: tuple[str, ...] = field(default=())
+    ramp_centre_time: float = float("nan")
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

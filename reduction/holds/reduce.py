@@ -194,6 +194,7 @@ def _result(
         criterion="" if prony is None else prony.criterion,
         refusals=tuple(hold.refusals),
         notes=tuple(hold.notes),
+        ramp_centre_time=np.nan if hold.ramp is None else hold.ramp.centre_time,
     )
 
 

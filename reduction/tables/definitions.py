@@ -134,6 +134,7 @@ TABLES = (
             "hold_kind",
             "hold_start_time",
             "hold_duration",
+            "hold_ramp_centre_time",
             "hold_strain",
             "hold_initial_tension",
             "hold_final_tension",

@@ -137,6 +137,7 @@ ROPE_TABLES = (
             "specimen=hold_specimen",
             "hold_number",
             "hold_duration",
+            "hold_ramp_centre_time",
             "hold_initial_tension",
             "hold_final_tension",
             *_CREEP,

@@ -10,6 +10,7 @@ import xarray as xr
 
 from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.prediction_schema import PREDICTION_SCHEMA
+from reduction.archive.properties import PROPERTY_SCHEMA
 from reduction.archive.schema import schema_of
 from reduction.archive.surface_schema import SURFACE_SCHEMA, rows_of_response
 from reduction.archive.variable import Variable, count, label, measured, stated
@@ -17,7 +18,9 @@ from reduction.tables.column import Column, uncertainty_of
 
 __all__ = ["SYNTHETIC", "TEST", "Product", "Table"]
 
-Product = Literal["test", "stepwise test", "experiments", "predictions", "comparisons"]
+Product = Literal[
+    "test", "stepwise test", "experiments", "predictions", "comparisons", "properties"
+]
 
 TEST = Column("test", label("test")[0])
 SYNTHETIC = Column("synthetic", label("synthetic")[0])
@@ -47,6 +50,7 @@ _SCHEMAS: dict[Product, dict[str, Variable]] = {
     "experiments": SURFACE_SCHEMA | _OF_RESPONSES,
     "predictions": PREDICTION_SCHEMA,
     "comparisons": COMPARISON_SCHEMA,
+    "properties": PROPERTY_SCHEMA,
 }
 
 

@@ -17,6 +17,7 @@ from reduction.tables.envelope import ENVELOPE_COLUMNS, Curve, curves_of, envelo
 from reduction.tables.experiments import EXPERIMENT_TABLES
 from reduction.tables.outcomes import OUTCOME_TABLES, GroupColumn, outcome_table_rows
 from reduction.tables.predictions import PREDICTION_TABLES
+from reduction.tables.properties import PROPERTY_TABLES
 from reduction.tables.responses import by_response
 from reduction.tables.rows import table_rows
 from reduction.tables.static_dynamic import (
@@ -30,7 +31,9 @@ from reduction.tables.table import Table
 __all__ = ["write_tables"]
 
 _Place = tuple[float, list[tuple[int, str]]]
-_ALL = (*TABLES, *EXPERIMENT_TABLES, *PREDICTION_TABLES, *COMPARISON_TABLES)
+_ALL = (
+    *TABLES, *PROPERTY_TABLES, *EXPERIMENT_TABLES, *PREDICTION_TABLES, *COMPARISON_TABLES,
+)  # fmt: skip
 _ABOUT = tuple(
     Column(name, label(name)[0])
     for name in ("table", "column", "unit", "meaning", "no_uncertainty")
@@ -45,6 +48,7 @@ def write_tables(
     outcomes: Path | None = None,
     predictions: Path | None = None,
     comparisons: Path | None = None,
+    change_in_length: Path | None = None,
 ) -> list[Path]:
     """Write every table that the archives fill, and columns.csv, which explains them.
 
@@ -63,6 +67,8 @@ def write_tables(
         Archive of the campaign's predicted hoses, where it has any.
     comparisons : pathlib.Path, optional
         Archive of the campaign's comparisons, where it has any.
+    change_in_length : pathlib.Path, optional
+        Archive of the properties of the campaign's ropes, where it has any.
 
     Returns
     -------
@@ -83,6 +89,7 @@ def write_tables(
     rows = _all_rows(archives) | _experiment_rows(surfaces) | _outcome_rows(outcomes)
     rows |= _rows_as_they_are(predictions, PREDICTION_TABLES)
     rows |= _rows_as_they_are(comparisons, COMPARISON_TABLES)
+    rows |= _rows_as_they_are(change_in_length, PROPERTY_TABLES)
     filled = [name for name in columns if rows[name]]
     rows["columns"] = [
         [f"{name}.csv", *column.description]

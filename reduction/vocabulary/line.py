@@ -144,6 +144,24 @@ OF_LINE = (
         "strain gained per decade of time, over the held tension as a share of the rated break "
         "strength",
     ),
+    # change-in-length properties of a rope, over the steps of its programme
+    Quantity("property", "1", "number of a change-in-length property, in the campaign"),
+    Quantity("property_specimen", "", "rope that has the property"),
+    Quantity("property_name", "", "which of the six change-in-length properties"),
+    Quantity("property_test", "", "test or step that the property is from"),
+    Quantity("property_low_tension", "N", "tension from which the property is; that of a hold"),
+    Quantity("property_high_tension", "N", "tension up to which the property is; that of a hold"),
+    Quantity(
+        "property_reference_time", "s", "time after loading at, or from, which the property counts"
+    ),
+    Quantity("property_stiffness", "N", "force over strain: original, static, dynamic stiffness"),
+    Quantity(
+        "property_stiffness_over_strength",
+        "1",
+        "original, static or dynamic stiffness over the rated break strength",
+    ),
+    Quantity("property_strain", "1", "construction, polymer or working strain"),
+    Quantity("property_remark", "", "why the property has no number, or what is not in it"),
     Quantity("cycles_are_run_out", "1", "whether the specimen had not failed after the cycles"),
     Quantity("failure_peak_tension", "N", "greatest tension of a cycle, mean until failure"),
     Quantity("failure_valley_tension", "N", "least tension of a cycle, mean until failure"),

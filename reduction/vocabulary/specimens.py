@@ -87,6 +87,11 @@ OF_SPECIMENS = (
     Quantity("prony_term", "1", "number of the Prony term"),
     Quantity("hold_start_time", "s", "elapsed time at the start of the hold"),
     Quantity("hold_duration", "s", "length of the hold"),
+    Quantity(
+        "hold_ramp_centre_time",
+        "s",
+        "when the ramp to the hold acts as a step: zero of the time of its rate per decade",
+    ),
     Quantity("hold_strain", "1", "mean strain in the hold"),
     Quantity("hold_initial_tension", "N", "tension at the start of the hold"),
     Quantity("hold_final_tension", "N", "tension at the end of the hold"),

@@ -160,12 +160,74 @@ def test_a_level_that_has_not_settled_is_named(whole):
 
 def test_the_compliance_checker_finds_nothing(whole):
     products = sorted(whole.processed.glob("*.nc"))
-    assert len(products) == 8
+    assert len(products) == 9  # each step, the pull, and change_in_length.nc
     done = subprocess.run(
         [sys.executable, str(COMPLIANCE), *map(str, products)],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout
+
+
+def properties(result, name):
+    frame = table(result, "change_in_length").set_index("property_name").loc[[name]]
+    return [one for _, one in frame.iterrows()]
+
+
+def test_every_property_of_the_rope_is_a_row_with_a_number_or_a_reason(whole):
+    found = table(whole, "change_in_length")
+    # a pull to the end alone is no programme: R-2 has no row
+    assert set(found["specimen"]) == {"R-1"}
+    assert found["property_name"].value_counts().to_dict() == {
+        "original stiffness": 1,
+        "static stiffness": 1,
+        "dynamic stiffness": 3,
+        "construction strain": 1,
+        "polymer strain": 3,
+        "working strain": 1,
+    }
+    value = found["property_stiffness"].fillna(found["property_strain"])
+    assert value.notna().all()
+    assert (found["synthetic"] == "yes").all()
+
+
+def test_properties_are_those_of_the_law_that_made_the_log(whole):
+    (original,) = properties(whole, "original stiffness")
+    near(original, "property_stiffness", made.bedding_stiffness(1))
+    assert "of the first cycle" in original["property_remark"]
+    (static,), (working,) = (
+        properties(whole, "static stiffness"),
+        properties(whole, "working strain"),
+    )
+    near(static, "property_stiffness", 5e5)
+    near(static, "property_stiffness_over_strength", 5.0)
+    near(working, "property_strain", 2e4 / 5e5)
+    for level, one in enumerate(properties(whole, "dynamic stiffness")):
+        last = np.arange(made.N_LEVEL - made.LAST, made.N_LEVEL) + 1
+        near(one, "property_stiffness", made.level_stiffness(level, last).mean())
+    (construction,) = properties(whole, "construction strain")
+    near(construction, "property_strain", made.bedding_foot(made.N_BEDDING) - made.bedding_foot(1))
+    *_, polymer = properties(whole, "polymer strain")
+    near(polymer, "property_strain", made.CREEP * np.log10(7210 / made.REFERENCE_TIME))
+    assert polymer["property_low_tension"] == polymer["property_high_tension"]
+    assert polymer["property_reference_time"] == made.REFERENCE_TIME
+
+
+def test_the_table_of_properties_is_explained(whole):
+    about = pd.read_csv(whole.processed / "tables" / "columns.csv").set_index(["table", "column"])
+    about = about.loc["change_in_length.csv"]
+    header = (whole.processed / "tables" / "change_in_length.csv").read_text().splitlines()[0]
+    assert about.index.tolist() == header.split(",")
+    assert about.loc["property_stiffness [N]", "unit"] == "N"
+    assert about.loc["property_reference_time [s]", "no_uncertainty"] == "setting"
+
+
+def test_the_archive_of_properties_says_what_it_was_made_from(whole):
+    with open_archive(whole.processed / "change_in_length.nc") as archive:
+        assert archive.attrs["raw_file"].splitlines()[0] == "P-7.bedding-in.nc"
+        assert "R-1: 10 of 10 properties have a number" in archive.attrs["history"]
+        stiffness = archive["property_stiffness"]
+        assert stiffness.attrs["units"] == "N"
+        assert stiffness.attrs["ancillary_variables"] == "property_stiffness_standard_uncertainty"
 
 
 @pytest.fixture(scope="module")
@@ -254,3 +316,45 @@ def test_without_a_break_strength_nothing_is_divided_by_it(log, tmp_path):
     assert any("nothing is divided by it" in note for note in notes(result, "P-7.dynamic-2"))
     with open_archive(result.processed / "P-7.creep.nc") as archive:
         assert not [name for name in archive.variables if "over_strength" in str(name)]
+
+
+def test_properties_of_logs_without_an_order_are_those_that_need_none(apart):
+    found = table(apart, "change_in_length").set_index("property_name")
+    of_new = found.loc[["original stiffness", "construction strain", "working strain"]]
+    assert of_new[["property_stiffness", "property_strain"]].isna().all(axis=None)
+    assert of_new["property_remark"].str.contains("order of the tests is not stated").all()
+    assert found.loc["dynamic stiffness", "property_stiffness"].notna().all()
+
+
+def test_a_rope_that_was_loaded_before_has_no_original_stiffness(log, tmp_path):
+    made.write(log, tmp_path / "P-7.csv")
+    path = made.write_campaign(tmp_path, made.ONE_LOG, made.steps_of(log))
+    text = path.read_text().replace("[specimens.R-2]", "earlier_cycles = 3\n[specimens.R-2]")
+    path.write_text(text)
+    result = run_campaign(
+        load_campaign(path), processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0,
+        tests=["P-7.dynamic-1"],
+    )  # fmt: skip
+    found = table(result, "change_in_length").set_index("property_name")
+    assert "it had carried 3 cycles" in found.loc["original stiffness", "property_remark"]
+    assert found.loc["dynamic stiffness", "property_stiffness"] > 0
+    # what the run left out is told where a property may be in it
+    assert "P-7.creep not reduced yet" in found.loc["polymer strain", "property_remark"]
+
+
+def test_with_a_diameter_the_original_stiffness_is_the_chord_of_the_first_rise(log, tmp_path):
+    made.write(log, tmp_path / "P-7.csv")
+    path = made.write_campaign(tmp_path, made.ONE_LOG, made.steps_of(log))
+    text = path.read_text().replace("[specimens.R-2]", 'diameter = ["20 mm"]\n[specimens.R-2]')
+    path.write_text(text)
+    result = run_campaign(
+        load_campaign(path), processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0,
+        tests=["P-7.bedding-in"],
+    )  # fmt: skip
+    (one,) = properties(result, "original stiffness")
+    assert pd.isna(one["property_remark"])
+    low, high = one["property_low_tension"], one["property_high_tension"]
+    valley, at_valley = 0.05 * made.STRENGTH, 0.01
+    assert low < valley < high
+    strain = at_valley + (high - valley) / made.bedding_stiffness(1) - at_valley * low / valley
+    near(one, "property_stiffness", (high - low) / strain)

@@ -1,0 +1,193 @@
+"""Change-in-length properties of the ropes of a campaign as the product ``change_in_length.nc``."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from reduction import __version__
+from reduction.archive.open import open_archive
+from reduction.archive.properties import properties_to_dataset
+from reduction.archive.rope_steps import CHANGES_LENGTH, step_of_archive
+from reduction.archive.write import write_archive
+from reduction.batch.survey import Survey
+from reduction.campaign.plan import Campaign
+from reduction.errors import ArchiveError
+from reduction.ingest.source import source_of
+from reduction.line.properties import change_in_length
+from reduction.line.propertyproduct import ChangeInLength, StepOfProgramme
+from reduction.provenance import Origin, Source, Step
+from reduction.record import Specimen
+
+__all__ = ["tests_of_ropes", "write_change_in_length"]
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What the archives of the tests of one rope give; ``is_programme`` where one is a step."""
+
+    steps: tuple[StepOfProgramme, ...]
+    sources: tuple[Source, ...]
+    missing: tuple[str, ...]
+    is_programme: bool
+
+
+def tests_of_ropes(campaign: Campaign, surveys: Sequence[Survey]) -> set[str]:
+    """Tests that may be steps of the programme of a rope.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    surveys : sequence of Survey
+        All its tests.
+
+    Returns
+    -------
+    tests : set of str
+        Those with a rope; a part of another test is that test once more.
+    """
+    return {
+        entry.plan.id
+        for entry in surveys
+        if entry.plan.part_of is None
+        and any(campaign.specimens[name].is_rope for name in entry.plan.specimens)
+    }
+
+
+def write_change_in_length(
+    campaign: Campaign,
+    folder: Path,
+    surveys: Sequence[Survey],
+    *,
+    failed: Collection[str],
+    waiting: Mapping[str, str],
+    command: str,
+) -> Path | None:
+    """Write the change-in-length properties of the ropes of a campaign.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    folder : pathlib.Path
+        Of its products, the archives of the tests among them.
+    surveys : sequence of Survey
+        All its tests.
+    failed : collection of str
+        Tests that failed; their older archives do not count.
+    waiting : mapping of str to str
+        Tests whose archives are not what they would be now, and why.
+    command : str
+        For the product's ``command`` attribute, without paths.
+
+    Returns
+    -------
+    path : pathlib.Path or None
+        ``change_in_length.nc``; None where no rope has a step that a property can come from.
+
+    Raises
+    ------
+    ArchiveError
+        If it cannot be written.
+    """
+    found: dict[str, tuple[ChangeInLength, ...]] = {}
+    sources: dict[str, Source] = {}
+    used: dict[str, list[str]] = {}
+    for name, specimen in campaign.specimens.items():
+        if not specimen.is_rope:
+            continue
+        own, is_ordered = _in_order(surveys, name)
+        given = _read(folder, own, name, failed=failed, waiting=waiting)
+        if not given.is_programme:
+            continue
+        found[name] = change_in_length(
+            given.steps,
+            loaded_before=_loaded_before(specimen, own, given.steps),
+            is_ordered=is_ordered,
+            missing="; ".join(given.missing),
+            rated_break_strength=specimen.rated_break_strength or float("nan"),
+        )
+        sources |= {source.name: source for source in given.sources}
+        used[name] = [one.name for one in given.steps]
+    if not found:
+        return None
+    settings = {
+        "tests": used,
+        "specimens": {name: asdict(campaign.specimens[name]) for name in found},
+    }
+    origin = Origin(
+        campaign_id=campaign.id,
+        attributes=campaign.attributes,
+        sources=tuple(sources.values()),
+        steps=[Step("change in length", _in_one_line(name, own)) for name, own in found.items()],
+        settings_json=json.dumps(settings, sort_keys=True, ensure_ascii=False, allow_nan=False),
+        version=__version__,
+        command=command,
+    )
+    path = folder / "change_in_length.nc"
+    write_archive(properties_to_dataset(found, origin=origin), path)
+    return path
+
+
+def _in_order(surveys: Sequence[Survey], name: str) -> tuple[list[Survey], bool]:
+    """Tests of a specimen, oldest first, and whether that order is known."""
+    own = [
+        entry for entry in surveys if name in entry.plan.specimens and entry.plan.part_of is None
+    ]
+    is_ordered = (
+        len({entry.plan.log for entry in own}) < 2
+        or not any(entry.plan.order is None for entry in own)
+    )  # fmt: skip
+    if is_ordered:
+        own.sort(key=lambda entry: (entry.plan.order or 0, entry.plan.step_place))
+    return own, is_ordered
+
+
+def _loaded_before(
+    specimen: Specimen, own: Sequence[Survey], steps: Sequence[StepOfProgramme]
+) -> str:
+    """What a rope carried before the first step of which there are numbers; empty of a new one."""
+    first = own[0].plan
+    count = (specimen.earlier_cycles or 0) + (first.unlogged_cycles or 0)
+    if count:
+        return f"it had carried {count} cycles before the first test"
+    if not steps or steps[0].name != first.id:
+        return f"{first.id} came first, and gave no product"
+    return ""
+
+
+def _read(
+    folder: Path,
+    own: Sequence[Survey],
+    specimen: str,
+    *,
+    failed: Collection[str],
+    waiting: Mapping[str, str],
+) -> _Found:
+    steps, sources, missing, is_programme = [], [], [], False
+    for entry in own:
+        test = entry.plan.id
+        if test in failed or test in waiting:
+            missing.append(f"{test} {'failed' if test in failed else waiting[test]}")
+            continue
+        path = folder / f"{test}.nc"
+        try:
+            with open_archive(path) as archive:
+                steps.append(step_of_archive(archive, specimen))
+                kind = str(archive["programme_step"].values) if "programme_step" in archive else ""
+                is_programme |= kind in CHANGES_LENGTH
+        except ArchiveError as error:
+            missing.append(f"{test}: {error}")
+            continue
+        sources.append(source_of(path.read_bytes(), path.name))
+    return _Found(tuple(steps), tuple(sources), tuple(missing), is_programme)
+
+
+def _in_one_line(name: str, own: Sequence[ChangeInLength]) -> str:
+    known = sum(bool(np.isfinite(one.value)) for one in own)
+    return f"{name}: {known} of {len(own)} properties have a number"

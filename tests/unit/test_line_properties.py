@@ -1,0 +1,192 @@
+"""Reasons, and the arithmetic that is this module's own; numbers of a log are in the oracle."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from reduction.errors import SettingsError
+from reduction.line.properties import change_in_length
+from reduction.line.propertyproduct import (
+    PROPERTY_NAMES,
+    BeddingCycles,
+    CyclicLevel,
+    FirstRise,
+    HeldTension,
+    PairOfHolds,
+    StepOfProgramme,
+)
+
+CYCLES = BeddingCycles(
+    first_stiffness=1000.0,
+    first_stiffness_standard_uncertainty=2.0,
+    permanent_strain=0.03,
+    permanent_strain_standard_uncertainty=0.002,
+    foot_strain=0.05,
+    foot_strain_standard_uncertainty=0.001,
+    valley_tension=40.0,
+    first_peak_tension=75.0,
+    peak_tension=80.0,
+)
+PAIR = PairOfHolds(10.0, 30.0, 500.0, 5.0, 600.0)
+HOLD = HeldTension(20.0, 6000.0, 1e-3, 1e-5)
+
+
+def rise(*tension):
+    """On strains of 0.01; NaN is a gap."""
+    load = np.array(tension)
+    known = np.isfinite(load)
+    return FirstRise(
+        0.01 * (1 + np.flatnonzero(known)), load[known], np.full(known.sum(), 0.5), 0.01
+    )
+
+
+def step(name="S", **parts):
+    return StepOfProgramme(name, 600.0, **parts)
+
+
+def bedding(**parts):
+    return step("B", **({"bedding": CYCLES} | parts))
+
+
+def named(steps, name, **given):
+    return [one for one in change_in_length(steps, **given) if one.name == name]
+
+
+@pytest.mark.parametrize("name", PROPERTY_NAMES)
+def test_without_steps_every_property_is_absent_with_a_reason(name):
+    (one,) = named([], name)
+    assert math.isnan(one.value)
+    assert math.isnan(one.standard_uncertainty)
+    assert one.reason
+    assert one.is_stiffness == ("stiffness" in name)
+
+
+@pytest.mark.parametrize("name", PROPERTY_NAMES[1:])
+def test_tests_without_a_product_are_told_where_a_property_is_absent(name):
+    (one,) = named([step()], name, missing="C failed")
+    assert one.reason.endswith("; C failed")
+
+
+def test_a_property_of_a_step_says_nothing_of_missing_tests():
+    (one,) = named([step(pairs=(PAIR,))], "static stiffness", missing="C failed")
+    assert one.reason == ""
+
+
+def test_construction_strain_holds_the_first_rise():
+    # the rise has 40 N at 0.02; the first foot is 0.03 further, and the cycles left 0.03
+    (one,) = named([bedding(first_rise=rise(20, 40, 60, 80))], "construction strain")
+    assert one.value == pytest.approx(0.06)
+    assert one.reason == ""
+    assert (one.low_tension, one.high_tension) == (40.0, 80.0)
+    # 0.5 N on a slope of 2000 N
+    spread = math.sqrt(0.002**2 + 0.001**2 + (0.5 / 2000) ** 2)
+    assert one.standard_uncertainty == pytest.approx(spread)
+
+
+def test_construction_strain_of_the_cycles_alone_is_told():
+    (one,) = named([bedding()], "construction strain")
+    assert (one.value, one.standard_uncertainty) == (0.03, 0.002)
+    assert "of the cycles alone" in one.reason
+    (above,) = named([bedding(first_rise=rise(50, 80))], "construction strain")
+    assert "does not pass the tension" in above.reason
+    with_gap = bedding(first_rise=rise(20, 30, np.nan, np.nan, 60, 80))
+    (held,) = named([with_gap], "construction strain")
+    assert held.value == 0.03
+    assert "held there" in held.reason
+
+
+def test_cycles_without_a_permanent_strain_give_no_construction_strain():
+    cycles = dataclasses.replace(CYCLES, permanent_strain=math.nan)
+    (one,) = named([bedding(bedding=cycles)], "construction strain")
+    assert "no permanent strain" in one.reason
+    assert one.step == "B"
+
+
+@pytest.mark.parametrize("name", ["original stiffness", "construction strain"])
+def test_what_is_of_a_new_rope_is_absent_of_one_loaded_before(name):
+    whole = bedding(first_rise=rise(20, 40, 60, 80))
+    (one,) = named([whole], name, loaded_before="it had carried 7 cycles")
+    assert math.isnan(one.value)
+    assert "7 cycles" in one.reason
+    (lost,) = named([whole], name, is_ordered=False)
+    assert math.isnan(lost.value)
+    assert "order of the tests is not stated" in lost.reason
+
+
+def test_a_rope_loaded_in_an_earlier_step_has_no_construction_strain():
+    (late,) = named([step("C"), bedding()], "construction strain")
+    assert "it had been loaded in C" in late.reason
+
+
+def test_original_stiffness_is_the_chord_of_the_first_rise_end_to_end():
+    (one,) = named([bedding(first_rise=rise(20, 35, 60, 80))], "original stiffness",
+                   rated_break_strength=500.0)  # fmt: skip
+    assert (one.value, one.over_strength) == pytest.approx((2000.0, 4.0))
+    assert one.standard_uncertainty == pytest.approx(0.5 * math.sqrt(2) / 0.03)
+    assert one.over_strength_standard_uncertainty == pytest.approx(one.standard_uncertainty / 500)
+    assert (one.low_tension, one.high_tension) == (20.0, 80.0)
+
+
+def test_original_stiffness_falls_back_to_the_first_cycle():
+    (cycle,) = named([bedding()], "original stiffness")
+    assert (cycle.value, cycle.standard_uncertainty) == (1000.0, 2.0)
+    assert "of the first cycle" in cycle.reason
+    assert (cycle.low_tension, cycle.high_tension) == (40.0, 75.0)
+    (none,) = named([step("C", holds=(HOLD,))], "original stiffness")
+    assert none.reason == "the first step has no first rise"
+    (empty,) = named([], "original stiffness")
+    assert empty.reason == "there is no step"
+
+
+def test_dynamic_stiffness_is_that_of_each_level():
+    steps = [bedding(), step("D", level=CyclicLevel(800.0, 1.0, 50.0, 20.0))]
+    (one,) = named(steps, "dynamic stiffness", rated_break_strength=400.0)
+    assert (one.value, one.over_strength, one.step) == (800.0, 2.0, "D")
+    assert (one.low_tension, one.high_tension) == (30.0, 70.0)
+    (none,) = named(steps[:1], "dynamic stiffness")
+    assert "settled" in none.reason
+    bare = step("D", level=CyclicLevel(math.nan, math.nan, 50.0, 20.0))
+    (without,) = named([bare], "dynamic stiffness")
+    assert without.reason == "no cycle of it has a stiffness"
+
+
+def test_working_strain_is_the_rise_over_the_static_stiffness_after_bedding_in():
+    steps = [bedding(), step("Q", pairs=(PAIR,))]
+    (one,) = named(steps, "working strain")
+    assert (one.value, one.standard_uncertainty) == pytest.approx((0.04, 0.0004))
+    assert (one.low_tension, one.high_tension, one.reference_time) == (10.0, 30.0, 600.0)
+    assert math.isnan(one.over_strength)
+    (early,) = named(steps[::-1], "working strain")
+    assert early.reason == "no step holds one tension after a lower one"
+    (never,) = named(steps[1:], "working strain")
+    assert "no step beds the rope in" in never.reason
+    (unknown,) = named(steps, "working strain", is_ordered=False)
+    assert "not bedded in" in unknown.reason
+
+
+def test_refusals_of_the_stages_before_are_handed_on():
+    refused = PairOfHolds(10.0, 20.0, math.nan, math.nan, math.nan, "the lower hold has no strain")
+    short = HeldTension(20.0, 90.0, math.nan, math.nan, "too short")
+    steps = [bedding(), step("Q", pairs=(refused,), holds=(short,))]
+    (static,), (polymer,) = named(steps, "static stiffness"), named(steps, "polymer strain")
+    (working,) = named(steps, "working strain")
+    assert static.reason == working.reason == "the lower hold has no strain"
+    assert polymer.reason == "too short"
+    assert all(math.isnan(one.value) and one.step == "Q" for one in (static, working, polymer))
+
+
+def test_polymer_strain_counts_from_the_reference_time_to_the_end_of_the_hold():
+    (one,) = named([step(holds=(HOLD,))], "polymer strain")
+    assert (one.value, one.standard_uncertainty) == pytest.approx((1e-3, 1e-5))
+    assert one.low_tension == one.high_tension == 20.0
+    at_once = dataclasses.replace(HOLD, end_time=600.0)
+    (short,) = named([step(holds=(at_once,))], "polymer strain")
+    assert math.isnan(short.value)
+    assert "before the reference time" in short.reason
+
+
+def test_a_reference_time_is_positive():
+    with pytest.raises(SettingsError, match="S: the reference time is not positive; found 0 s"):
+        change_in_length([StepOfProgramme("S", 0.0)])
