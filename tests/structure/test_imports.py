@@ -28,6 +28,7 @@ LAYER = {
     "surface": 2,
     "outcomes": 2,
     "predict": 2,
+    "uncertainty": 2,
     "product": 3,
     "experiment": 3,
     "compare": 3,
@@ -47,7 +48,17 @@ LAYER = {
     "__main__": 8,
 }
 # data flow, left to right
-STAGES = ["phases", "strain", "cycles", "moduli", "holds", "line", "surface", "outcomes"]
+STAGES = [
+    "phases",
+    "strain",
+    "cycles",
+    "moduli",
+    "holds",
+    "line",
+    "surface",
+    "outcomes",
+    "uncertainty",
+]
 EDGES = {
     "ingest",
     "archive",

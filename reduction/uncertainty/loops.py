@@ -1,0 +1,162 @@
+r"""What shared errors do to the quantities of a loop.
+
+Amplitudes and means follow from the two ends of the loop, its area from how fast a small area of
+the plane grows:
+
+.. math::
+
+    \delta K_{ap} / K_{ap} &= \delta T_a / T_a - \delta\varepsilon_a / \varepsilon_a \\
+    \delta H / H &= \frac{\partial\,\delta T}{\partial T}
+        + \frac{\partial\,\delta\varepsilon}{\partial\varepsilon}
+        - \frac{\Delta t}{H} \oint \dot T \, d\varepsilon
+
+(the theorem of Gauss for the field of errors, at the centre of the loop).
+
+References
+----------
+.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.1.3.
+.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from reduction.record import Floats
+from reduction.strain.model import StrainModel
+from reduction.uncertainty.field import error_field
+from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
+
+__all__ = ["loop_contributions"]
+
+_LAG_SHAPE = {"sinusoidal": 2 * np.pi**2, "triangular": 16.0, "other": 16.0}
+"""Integral of tension rate over strain, by f T_a eps_a: of a sine, and of straight ramps."""
+
+
+def loop_contributions(
+    errors: InstrumentErrors,
+    model: StrainModel,
+    *,
+    frequency: Floats,
+    mean_tension: Floats,
+    tension_amplitude: Floats,
+    mean_strain: Floats,
+    strain_amplitude: Floats,
+    apparent_spring_constant: Floats,
+    hysteresis_energy: Floats,
+    storage_spring_constant: Floats,
+    loss_spring_constant: Floats,
+    waveform: Literal["triangular", "sinusoidal", "other"],
+    speed_ratio: Floats | float = 1.0,
+) -> Contributions:
+    """Contributions to the quantities of loops of one specimen.
+
+    Parameters
+    ----------
+    errors : InstrumentErrors
+        Standard uncertainties.
+    model : StrainModel
+        How position became strain.
+    frequency : ndarray, shape (...)
+        Of each loop. [Hz]
+    mean_tension, tension_amplitude : ndarray, shape (...)
+        [N]
+    mean_strain, strain_amplitude : ndarray, shape (...)
+        [1]
+    apparent_spring_constant, storage_spring_constant, loss_spring_constant : ndarray, shape (...)
+        [N]
+    hysteresis_energy : ndarray, shape (...)
+        [J m-1]
+    waveform : {"triangular", "sinusoidal", "other"}
+        How the control channel moves.
+    speed_ratio : ndarray, shape (...), or float
+        Speed of a ramp over that of one without a stop at its ends; a sine has none. [1]
+
+    Returns
+    -------
+    contributions : Contributions
+        To ``mean_tension``, ``tension_amplitude``, ``mean_strain``, ``strain_amplitude``,
+        ``peak_tension``, ``valley_tension``, ``apparent_spring_constant``,
+        ``hysteresis_energy``, ``storage_spring_constant``, ``loss_spring_constant`` and
+        ``loss_factor``. [SI]
+
+    Raises
+    ------
+    DataError
+        If shapes differ.
+
+    Notes
+    -----
+    First order ([1]_).  The ends of the loop are where strain and tension have their extremes,
+    taken to be the same place.  Tension that is logged late turns the complex modulus back by 2 pi
+    f lag and narrows the loop; it has no first-order effect on extremes.
+
+    Examples
+    --------
+    A line of K_ap 100 kN with a loss of 5 kN: 2 ms of lag at 0.5 Hz are 12.6 % of the loss.
+
+    >>> line = StrainModel("rope", "gauge-length",
+    ...     {"reference_position": 0.0, "gauge_length": 1.0})
+    >>> one = np.ones(1)
+    >>> found = loop_contributions(InstrumentErrors("rope", lag=0.002), line, frequency=0.5 * one,
+    ...     mean_tension=2e3 * one, tension_amplitude=1e3 * one, mean_strain=0.02 * one,
+    ...     strain_amplitude=0.01 * one, apparent_spring_constant=1e5 * one,
+    ...     hysteresis_energy=np.pi * 0.5 * one, storage_spring_constant=99875.0 * one,
+    ...     loss_spring_constant=5e3 * one, waveform="sinusoidal")
+    >>> print((found.values["loss_spring_constant"] / 5e3).round(3))
+    [[-0.126]]
+    """
+    ends = [
+        error_field(
+            errors, model, strain=mean_strain + way * strain_amplitude,
+            tension=mean_tension + way * tension_amplitude,
+        )
+        for way in (1, -1)
+    ]  # fmt: skip
+    peak, valley = ends
+    centre = error_field(errors, model, strain=mean_strain, tension=mean_tension)
+    tension_half = (peak.tension - valley.tension) / 2
+    strain_half = (peak.strain - valley.strain) / 2
+    stretch = strain_half / strain_amplitude
+    stiffer = tension_half / tension_amplitude - stretch
+    wider = centre.divergence
+    # E'' is H / (pi strain_amplitude^2)
+    lossier = wider - 2 * stretch
+    values = {
+        "mean_tension": (peak.tension + valley.tension) / 2,
+        "tension_amplitude": tension_half,
+        "mean_strain": (peak.strain + valley.strain) / 2,
+        "strain_amplitude": strain_half,
+        "peak_tension": peak.tension,
+        "valley_tension": valley.tension,
+        "apparent_spring_constant": stiffer * apparent_spring_constant,
+        "hysteresis_energy": wider * hysteresis_energy,
+        "storage_spring_constant": stiffer * storage_spring_constant,
+        "loss_spring_constant": lossier * loss_spring_constant,
+    }
+    component = peak.component
+    if errors.lag:
+        turn = 2 * np.pi * frequency * errors.lag
+        work = _LAG_SHAPE[waveform] * frequency * tension_amplitude * strain_amplitude
+        ramps = 1.0 if waveform == "sinusoidal" else speed_ratio
+        of_lag = {
+            "hysteresis_energy": -errors.lag * work * ramps,
+            "storage_spring_constant": turn * loss_spring_constant,
+            "loss_spring_constant": -turn * storage_spring_constant,
+        }
+        component = (*component, Component("lag", errors.tension_instrument))
+        none = np.zeros(frequency.shape)
+        values = {
+            name: np.concatenate([rows, of_lag.get(name, none)[None]])
+            for name, rows in values.items()
+        }
+    loss_factor = loss_spring_constant / storage_spring_constant
+    values["loss_factor"] = loss_factor * (
+        values["loss_spring_constant"] / loss_spring_constant
+        - values["storage_spring_constant"] / storage_spring_constant
+    )
+    return Contributions(component, values)
