@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal, cast
 
+from reduction.cli.compositesource import is_of_pieces, piece_source, rule_of
 from reduction.cli.numbers import plain
 from reduction.cli.outcome import Outcome
 from reduction.errors import SettingsError
 from reduction.export.fromarchive import CurveName, line_from_archive
+from reduction.export.fromcomposite import line_from_composite
 from reduction.export.fromlookup import line_from_lookup
 from reduction.export.product import ExportLine
 from reduction.export.write import export_line
+from reduction.lookup.source import compose
 from reduction.published.linesource import published_sources
 from reduction.units import Dimension, UnitSystem, parse_quantity
 
@@ -31,12 +35,13 @@ _LEVELS: dict[str, Dimension] = {
 
 
 def export_source(
-    source: str,
+    sources: Sequence[str],
     *,
     to: str,
     out: Path,
     form: str | None,
     curve: str | None,
+    precedence: str | None,
     specimen: str | None,
     stated: dict[str, str | None],
     levels: dict[str, str | None],
@@ -58,8 +63,9 @@ def export_source(
         if text is not None
     }
     line = line_of(
-        source,
+        sources,
         cast("CurveName | None", curve),
+        precedence=precedence,
         specimen=specimen,
         stated=values,
         levels={name: text for name, text in levels.items() if text is not None},
@@ -96,15 +102,28 @@ def export_source(
 
 
 def line_of(
-    source: str,
+    sources: Sequence[str],
     curve: CurveName | None,
     *,
+    precedence: str | None,
     specimen: str | None,
     stated: dict[str, Any],
     levels: dict[str, str],
     extrapolate: Literal["refuse", "flag"],
 ) -> ExportLine:
-    """The line that a word on the command line means: a published one, or that of an archive."""
+    """The line that SOURCE means: a published one, that of an archive, or a composite of tests."""
+    if is_of_pieces(sources):
+        if levels:
+            raise _levels_choose_nothing(levels, "several tests")
+        rule = rule_of(precedence)
+        found = piece_source(sources, specimen=specimen, branch=curve)
+        return line_from_composite(found, compose(found, rule), **stated)
+    (source,) = sources
+    if precedence is not None:
+        raise SettingsError(
+            f"{source} is one curve: there are no pieces that could go before others",
+            found=f"--precedence {precedence}", needed="several tests, or no --precedence",
+        )  # fmt: skip
     published = published_sources()
     if source in published:
         line = published[source]
@@ -133,13 +152,17 @@ def line_of(
         raise SettingsError(
             "there is nothing of that name to export",
             found=source,
-            needed="an archive (.nc) of a reduced test or of predicted hoses, or one of "
+            needed="archives of reduced tests or predicted hoses, processed/CAMPAIGN, or one of "
             + ", ".join(near or published),
         )
     if levels:
-        raise SettingsError(
-            "levels of a cycle choose nothing in an archive of one test",
-            found=", ".join(f"--{name.replace('_', '-')}" for name in levels),
-            needed="a published line",
-        )
+        raise _levels_choose_nothing(levels, "an archive of one test")
     return line_from_archive(path, curve=curve, specimen=specimen, **stated)
+
+
+def _levels_choose_nothing(levels: dict[str, str], where: str) -> SettingsError:
+    return SettingsError(
+        f"levels of a cycle choose nothing in {where}",
+        found=", ".join(f"--{name.replace('_', '-')}" for name in levels),
+        needed="a published line",
+    )

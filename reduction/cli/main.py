@@ -12,6 +12,7 @@ import typer
 
 from reduction import __version__
 from reduction.cli.campaigncommands import check, init, report, run, schema, sniff
+from reduction.cli.curvecommands import composite
 from reduction.cli.experimentcommands import experiment, surface
 from reduction.cli.predictioncommands import compare, predict
 from reduction.cli.publishedcommands import export, lookup, reproduce
@@ -53,6 +54,7 @@ app.command()(experiment)
 app.command()(surface)
 app.command()(predict)
 app.command()(compare)
+app.command()(composite)
 app.command()(export)
 app.command()(lookup)
 app.command()(report)

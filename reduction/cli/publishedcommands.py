@@ -29,10 +29,13 @@ class Extrapolation(StrEnum):
 
 
 def export(
-    source: Annotated[
-        str,
+    sources: Annotated[
+        list[str],
         typer.Argument(
-            help="A published line, or an archive of a test or of hoses.", show_default=False
+            metavar="SOURCE...",
+            help="A published line, an archive of a test or of hoses; of several archives, "
+            "processed/CAMPAIGN or a published tether without the test: the composite curve.",
+            show_default=False,
         ),
     ],
     to: Annotated[
@@ -50,6 +53,10 @@ def export(
     ] = None,
     curve: Annotated[
         str | None, typer.Option(help="mean (unless said), ascending or descending.")
+    ] = None,
+    precedence: Annotated[
+        str | None,
+        typer.Option(help="Of a composite, as in `reduction composite`.", show_default=False),
     ] = None,
     specimen: Annotated[str | None, typer.Option(help="Which one, or which hose.")] = None,
     diameter: Annotated[str | None, typer.Option(help='With a unit, "26 mm".')] = None,
@@ -73,11 +80,12 @@ def export(
         from reduction.cli.export import export_source
 
         export_source(
-            source,
+            sources,
             to=to,
             out=out,
             form=form,
             curve=curve,
+            precedence=precedence,
             specimen=specimen,
             stated={
                 "diameter": diameter,

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import isotonic_regression
 
-from reduction.lookup.pieces import CurvePiece
+from reduction.lookup.pieces import CurvePiece, PieceKind
 from reduction.record import Bools, Floats, Integers, freeze_arrays
 
 __all__ = ["Blend", "blend_pieces"]
@@ -45,8 +45,8 @@ class Blend:
         With the greatest weight.
     is_covered, is_join : ndarray of bool
         Of each interval: a piece reaches over it; more than one has a say.
-    between_pieces : float
-        Relative deviation between pieces of one kind; NaN without an overlap. [1]
+    between_pieces : dict of str to float
+        Relative deviation between pieces of each kind; NaN without an overlap. [1]
     """
 
     strain: Floats
@@ -56,7 +56,7 @@ class Blend:
     piece: Integers
     is_covered: Bools
     is_join: Bools
-    between_pieces: float
+    between_pieces: dict[PieceKind, float]
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -106,7 +106,8 @@ def blend_pieces(
     tension, variance, fade = _on_grid(pieces, strain, taper)
     simple = (fade * tension).sum(axis=0) / fade.sum(axis=0)
     between = _between(pieces, tension, variance, fade > 0)
-    shared = (0.0 if np.isnan(between) else between) * simple
+    # of the kind of each piece: rises from slack differ by far more than cycles do
+    shared = np.nan_to_num([between[one.kind] for one in pieces])[:, None] * simple
     weight = fade / np.maximum(variance + shared**2, (_LEAST_UNCERTAINTY * simple) ** 2)
     total = weight.sum(axis=0)
     share = weight / total
@@ -119,7 +120,7 @@ def blend_pieces(
     return Blend(
         strain=strain,
         tension=rising,
-        variance=own + np.maximum(off, shared**2) + (rising - mean) ** 2,
+        variance=own + np.maximum(off, (share * shared**2).sum(axis=0)) + (rising - mean) ** 2,
         change=rising - mean,
         piece=share.argmax(axis=0),
         is_covered=is_covered,
@@ -170,9 +171,10 @@ def _on_grid(
 
 def _between(
     pieces: Sequence[CurvePiece], tension: Floats, variance: Floats, known: Bools
-) -> float:
-    """Relative deviation between pieces of one kind, by pairs, less their own variance."""
-    found, count = 0.0, 0
+) -> dict[PieceKind, float]:
+    """Relative deviation between pieces of each kind, by pairs, less their own variance."""
+    found = {one.kind: 0.0 for one in pieces}
+    count = dict.fromkeys(found, 0)
     for first, one in enumerate(pieces):
         for second in range(first + 1, len(pieces)):
             both = known[first] & known[second]
@@ -182,9 +184,12 @@ def _between(
             apart = (tension[first, both] - tension[second, both]) ** 2
             own = variance[first, both] + variance[second, both]
             # two draws of one deviation are apart by twice its variance
-            found += float((((apart - own) / level**2) / 2).sum())
-            count += int(np.count_nonzero(both))
-    return float(np.sqrt(max(found, 0.0) / count)) if count else float("nan")
+            found[one.kind] += float((((apart - own) / level**2) / 2).sum())
+            count[one.kind] += int(np.count_nonzero(both))
+    return {
+        kind: float(np.sqrt(max(sum_, 0.0) / count[kind])) if count[kind] else float("nan")
+        for kind, sum_ in found.items()
+    }
 
 
 def _widths(strain: Floats, is_covered: Bools) -> Floats:
@@ -205,9 +210,26 @@ def _least_slopes(
     """Slope below which the curve may not fall in each interval: of the softest piece there."""
     slopes = np.diff(tension, axis=1) / np.diff(strain)
     of_pieces = np.where(share > _NO_SAY, slopes, np.inf).min(axis=0)
-    # what a piece says outside its range is nothing: no piece has a say over a gap
-    least = np.where(is_covered & np.isfinite(of_pieces), least_slope * of_pieces, 0.0)
+    # what a piece says outside its range is nothing: a gap has a chord of those beside it
+    told = np.flatnonzero(is_covered & np.isfinite(of_pieces))
+    place = np.searchsorted(told, np.arange(is_covered.size))
+    chords = np.where(share > _NO_SAY, _chords(strain, tension)[:, None], np.inf).min(axis=0)
+    beside = [chords[told[np.clip(place - back, 0, told.size - 1)]] for back in (1, 0)]
+    least = least_slope * np.minimum(*beside)
+    least[told] = least_slope * of_pieces[told]
     return np.asarray(np.maximum(least, _LEAST_SLOPE * mean.max() / strain[-1]))
+
+
+def _chords(strain: Floats, tension: Floats) -> Floats:
+    """Slope of each piece from its first node to its last one."""
+    reached = tension > 0
+    first = reached.argmax(axis=1)
+    last = strain.size - 1 - reached[:, ::-1].argmax(axis=1)
+    row = np.arange(len(tension))
+    apart = strain[last] - strain[first]
+    # a piece between two nodes of the grid has no chord there
+    risen = tension[row, last] - tension[row, first]
+    return np.asarray(np.divide(risen, apart, out=np.full(row.size, np.inf), where=apart > 0))
 
 
 def _rising(strain: Floats, mean: Floats, weight: Floats, least: Floats) -> Floats:

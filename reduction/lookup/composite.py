@@ -5,7 +5,7 @@ The curve y is the one that rises and is nearest to all pieces T_i:
 .. math:: \min_y \int \sum_i w_i(\varepsilon)\,(y - T_i)^2\,d\varepsilon, \quad
    y' \ge b\,\min_i T_i', \qquad w_i = \frac{h_i\,g_i}{u_i^2 + (s\,\bar T)^2}
 
-u_i is the uncertainty of a piece (type A), s the relative deviation between pieces of one kind
+u_i is the uncertainty of a piece (type A), s the relative deviation between pieces of its kind
 where they overlap, h_i falls to zero towards the ends of a piece, and g_i hands over to pieces
 of a kind that goes before.  Without the constraint the answer is the weighted mean.
 
@@ -20,6 +20,7 @@ References
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -70,6 +71,10 @@ class CompositeRule:
                 found=", ".join(self.precedence) or "nothing",
                 needed="of " + ", ".join(_KINDS),
             )
+        if len(set(self.precedence)) < len(self.precedence):
+            raise SettingsError(
+                "the precedence names a kind twice", found=", ".join(self.precedence)
+            )
         if not 0 < self.taper <= 0.5:
             raise SettingsError(
                 "the taper is a share of a piece", found=f"{self.taper:g}", needed="above 0, to 0.5"
@@ -102,7 +107,8 @@ class CompositeCurve:
     monotone_change : ndarray, shape (n,)
         What making it rise has added to the weighted mean of the pieces; NaN without one. [N]
     between_pieces : float
-        Relative deviation between pieces of one kind where they overlap; NaN without two. [1]
+        Relative deviation between pieces where they overlap, of the first kind of the rule that
+        has two; NaN where none has. [1]
     piece_names : tuple of str
         By index.
     notes : tuple of str
@@ -167,8 +173,8 @@ def composite_curve(
     Notes
     -----
     *Overlap.*  Pieces of one kind are blended.  Their type A uncertainties are far smaller than
-    what is between them (another state of the rubber), so s decides, and it is one number: the
-    weights are continuous, and so is the mean.
+    what is between them (another state of the rubber), so s decides, and it is one number of a
+    kind: the weights are continuous, and so is the mean.
 
     *Monotony.*  Isotonic regression ([2]_) with the weight of all pieces there, of the mean less
     the integral of the least slope: the curve is nowhere softer than a share of the softest
@@ -229,7 +235,9 @@ def composite_curve(
             np.concatenate([[False], blend.is_covered & (moved[1:] | moved[:-1])])
         ),
         monotone_change=with_middles(np.concatenate([[np.nan], blend.change]), np.nan),
-        between_pieces=blend.between_pieces,
+        between_pieces=next(
+            (one for one in blend.between_pieces.values() if not np.isnan(one)), float("nan")
+        ),
         piece_names=tuple(one.name for one in used),
         notes=_notes(used, rule, blend, moved),
     )
@@ -261,7 +269,11 @@ def _slopes(strain: Floats, tension: Floats, first: Integers, last: Integers) ->
 def _notes(
     pieces: Sequence[CurvePiece], rule: CompositeRule, blend: Blend, moved: Bools
 ) -> tuple[str, ...]:
-    used = ", ".join(f"{one.name} ({one.kind}, {one.branch})" for one in pieces)
+    named = Counter((one.kind, one.branch, one.name) for one in pieces)
+    used = ", ".join(
+        f"{name} ({kind}, {branch}" + (f", in {count} parts)" if count > 1 else ")")
+        for (kind, branch, name), count in named.items()
+    )
     strain, change = blend.strain, blend.change
     notes = [
         f"tension against strain by {' before '.join(rule.precedence)}, blended over "
@@ -272,15 +284,16 @@ def _notes(
         f"no piece between strain {strain[gap]:.4g} and {strain[gap + 1]:.4g}: a straight line"
         for gap in np.flatnonzero(~blend.is_covered)
     ]
-    if np.isnan(blend.between_pieces):
+    between = {kind: one for kind, one in blend.between_pieces.items() if not np.isnan(one)}
+    if not between:
         notes.append("no two pieces of one kind overlap: what is between them is not known")
-    else:
-        notes.append(
-            f"pieces of one kind differ by {blend.between_pieces:.1%} of tension where they overlap"
-        )
+    notes += [
+        f"{kind} pieces differ by {one:.1%} of tension where they overlap"
+        for kind, one in between.items()
+    ]
     if moved.any():
         share = change / blend.tension
-        worst = int(np.argmax(np.abs(share)))
+        worst = int(np.argmax(np.abs(change)))
         notes.append(
             f"pieces fall where they hand over: {moved.mean():.0%} of the nodes were moved so that "
             f"the curve is nowhere softer than {rule.least_slope:g} of the softest piece there, by "

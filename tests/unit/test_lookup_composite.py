@@ -177,3 +177,40 @@ def test_rules_and_pieces_that_make_no_sense_are_refused():
         composite_curve([piece(0.5, 1.0)], rule=CompositeRule(precedence=("static",)))
     with pytest.raises(DataError, match="no piece is of a kind.*found no pieces"):
         composite_curve([])
+
+
+def test_a_gap_is_never_level():
+    """The window above begins below the end of the one before: half of the softer chord is kept."""
+    low, high = np.linspace(0.5, 1.0, 30), np.linspace(1.1, 1.6, 30)
+    pieces = [
+        CurvePiece("T-1", "cyclic", "mean", low, 200 * low, 0 * low + 1),
+        CurvePiece("T-2", "cyclic", "mean", high, 150 * (high - 0.1), 0 * high + 1),
+    ]
+    curve = composite_curve(pieces)
+    gap = (curve.strain > 1.0 + 1e-9) & (curve.strain < 1.1 + 1e-9)
+    slope = np.diff(curve.tension_at([1.0, 1.1]))[0] / 0.1
+    assert gap.any()
+    assert slope == pytest.approx(0.5 * 150, rel=1e-6)
+
+
+def test_rises_from_slack_that_differ_leave_the_cycles_as_certain_as_they_were():
+    at, early = np.linspace(0.5, 1.0, 30), np.linspace(0.1, 0.6, 30)
+    cycles = [
+        CurvePiece(name, "cyclic", "mean", at, factor * at, 0 * at + 0.1)
+        for name, factor in (("T-1", 100), ("T-2", 110))
+    ]
+    rises = [
+        CurvePiece(name, "first-loading", "ascending", early, factor * early, 0 * early + 0.1)
+        for name, factor in (("T-1", 100), ("T-2", 300))
+    ]
+    alone, both = composite_curve(cycles), composite_curve([*cycles, *rises])
+    inner = [0.7, 0.8, 0.9]
+    spread = [np.interp(inner, one.strain, one.standard_uncertainty) for one in (alone, both)]
+    assert spread[1] == pytest.approx(spread[0], rel=1e-3)
+    assert both.between_pieces == pytest.approx(alone.between_pieces, rel=1e-4)
+    assert any("first-loading pieces differ by 70.7%" in note for note in both.notes)
+
+
+def test_a_kind_that_stands_twice_is_refused():
+    with pytest.raises(SettingsError, match="names a kind twice"):
+        CompositeRule(precedence=("cyclic", "cyclic"))

@@ -1,0 +1,139 @@
+"""The command composite: one curve of tension against strain from zero, out of many tests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from reduction.cli.compositesource import piece_source, rule_of
+from reduction.cli.numbers import plain, short, table_of
+from reduction.cli.outcome import Outcome
+from reduction.errors import SettingsError
+from reduction.export.fromcomposite import composite_table, ranges_of
+from reduction.export.write import export_table
+from reduction.lookup.composite import CompositeCurve, CompositeRule
+from reduction.lookup.pieces import PieceBranch
+from reduction.lookup.source import PieceSource, compose
+from reduction.units import UnitSystem, display_unit
+
+__all__ = ["compose_tests", "table_format"]
+
+_ROWS = 24
+_FORMATS = {
+    ".csv": "csv", ".json": "json", ".nc": "netcdf", ".md": "markdown", ".tex": "latex",
+}  # fmt: skip
+
+
+def table_format(path: Path) -> str:
+    """Format of a table by the name of its file.
+
+    Raises
+    ------
+    SettingsError
+        If the name ends otherwise.
+    """
+    if path.suffix.lower() not in _FORMATS:
+        raise SettingsError(
+            "the name of a table says its format", found=path.name,
+            needed="a name that ends in " + ", ".join(_FORMATS),
+        )  # fmt: skip
+    return _FORMATS[path.suffix.lower()]
+
+
+def compose_tests(
+    sources: Sequence[str],
+    *,
+    specimen: str | None,
+    branch: PieceBranch | None,
+    precedence: str | None,
+    out: Path | None,
+    outcome: Outcome,
+) -> None:
+    """Print the composite curve of SOURCE; with ``out``, write every node of it."""
+    form = None if out is None else table_format(out)
+    rule = rule_of(precedence)
+    source = piece_source(sources, specimen=specimen, branch=branch)
+    curve = compose(source, rule)
+    units = cast("UnitSystem", outcome.units)
+    _show(source, curve, outcome, units)
+    if out is not None and form is not None:
+        export_table(composite_table(source, curve), form, out, units=units)
+        outcome.say(f"written: {out}")
+    outcome.answer(_document(source, curve, rule) | {"out": None if out is None else str(out)})
+
+
+def _show(source: PieceSource, curve: CompositeCurve, outcome: Outcome, system: UnitSystem) -> None:
+    unit, factor = display_unit("N", system)
+    made = ", SYNTHETIC: nothing was tested" if source.is_synthetic else ""
+    outcome.say(f"{composite_table(source, curve).title}{made}")
+    table = table_of(
+        "strain [%]", f"tension [{unit}]", f"standard uncertainty [{unit}]", "piece", "remark",
+        texts=0,
+    )  # fmt: skip
+    ends = np.flatnonzero(np.diff(curve.is_gap)) + 1
+    some = np.linspace(0, curve.strain.size - 1, _ROWS).round().astype(int)
+    for place in np.union1d(ends, some):
+        flags = [
+            word
+            for word, of in (
+                ("gap", curve.is_gap), ("join", curve.is_join), ("moved", curve.is_moved),
+            )
+            if place and of[place - 1]
+        ]  # fmt: skip
+        table.add_row(
+            short(100 * float(curve.strain[place]), 4),
+            short(factor * float(curve.tension[place])),
+            short(factor * float(curve.standard_uncertainty[place]), 3),
+            curve.piece_names[curve.piece[place]] if curve.piece[place] >= 0 else "-",
+            ", ".join(flags),
+        )
+    outcome.show(table)
+    for text in curve.notes:
+        outcome.say(f"note: {text}")
+    for text in source.notes:
+        outcome.say(f"note: {text}")
+    for text in source.sources:
+        outcome.say(f"source: {text}")
+
+
+def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -> dict[str, Any]:
+    """What ``--json`` says, in SI."""
+    return {
+        "name": source.name,
+        "branch": source.branch,
+        "rule": {
+            "precedence": list(rule.precedence),
+            "taper": rule.taper,
+            "least_slope": rule.least_slope,
+        },
+        "strain": plain(curve.strain),
+        "tension": plain(curve.tension),
+        "tension_standard_uncertainty": plain(curve.standard_uncertainty),
+        "piece": [curve.piece_names[one] if one >= 0 else None for one in curve.piece],
+        "units": {
+            "strain": "1", "tension": "N", "tension_standard_uncertainty": "N",
+            "joins": "1", "gaps": "1", "moved": "1", "monotone_change": "N",
+            "between_pieces": "1",
+        },
+        "pieces": [
+            {
+                "name": one.name,
+                "kind": one.kind,
+                "branch": one.branch,
+                "strain": [float(one.strain[0]), float(one.strain[-1])],
+                "used": one.kind in rule.precedence,
+            }
+            for one in source.pieces
+        ],
+        "joins": [list(one) for one in ranges_of(curve, curve.is_join)],
+        "gaps": [list(one) for one in ranges_of(curve, curve.is_gap)],
+        "moved": [list(one) for one in ranges_of(curve, curve.is_moved)],
+        "monotone_change": plain(curve.monotone_change),
+        "between_pieces": plain(curve.between_pieces),
+        "sources": list(source.sources),
+        "notes": [*curve.notes, *source.notes],
+        "synthetic": source.is_synthetic,
+    }  # fmt: skip

@@ -1,0 +1,155 @@
+"""A line for export from a composite curve: its rule, its pieces, its joins and gaps.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of
+   Rubber Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst.,
+   Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.8.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from reduction.export.product import ExportLine
+from reduction.export.table import TableColumn, ValueTable
+from reduction.lookup.composite import CompositeCurve
+from reduction.lookup.source import PieceSource
+from reduction.record import Bools
+
+__all__ = ["composite_table", "line_from_composite", "ranges_of"]
+
+_WAYS = {
+    "mean": "mean of both branches",
+    "ascending": "ascending branch",
+    "descending": "descending branch",
+}
+
+
+def ranges_of(curve: CompositeCurve, flags: Bools) -> list[tuple[float, float]]:
+    """Strains between which intervals of a curve have a flag, neighbours joined. [1].
+
+    Examples
+    --------
+    >>> from reduction.lookup.composite import composite_curve
+    >>> from reduction.lookup.pieces import CurvePiece
+    >>> at = np.array([0.5, 1.0])
+    >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
+    >>> ranges_of(curve, curve.is_gap)
+    [(0.0, 0.5)]
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
+    return [
+        (float(curve.strain[first]), float(curve.strain[stop]))
+        for first, stop in zip(edges[::2], edges[1::2], strict=True)
+    ]
+
+
+def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
+    """Return every node of a composite curve, its piece, and what is flagged below it.
+
+    Parameters
+    ----------
+    source : PieceSource
+        Of the pieces.
+    curve : CompositeCurve
+        Of them.
+
+    Returns
+    -------
+    table : ValueTable
+        For csv, json, latex, markdown and netcdf.
+    """
+    numbers = ", ".join(f"{place} {name}" for place, name in enumerate(curve.piece_names, start=1))
+    piece = np.where(curve.piece >= 0, curve.piece + 1.0, np.nan)
+
+    def below(flags: Bools) -> Bools:
+        return np.concatenate([[False], flags])
+
+    return ValueTable(
+        title=f"{source.name}: composite curve, {_WAYS[source.branch]}",
+        columns=(
+            TableColumn("strain", "1", "nominal strain", np.array(curve.strain)),
+            TableColumn("tension", "N", "tension", np.array(curve.tension)),
+            TableColumn(
+                "tension_standard_uncertainty", "N", "of the pieces, of what is between them, and "
+                "of what making the curve rise has moved", np.array(curve.standard_uncertainty),
+            ),
+            TableColumn("piece", "1", f"with the greatest weight: {numbers}", piece),
+            TableColumn(
+                "is_join", "", "from the node before: more than one piece has a say",
+                below(curve.is_join),
+            ),
+            TableColumn(
+                "is_gap", "", "from the node before: no piece reaches", below(curve.is_gap)
+            ),
+            TableColumn(
+                "is_moved", "", "from the node before: not the mean of the pieces, which falls or "
+                "is too soft nearby", below(curve.is_moved),
+            ),
+        ),
+        sources=source.sources,
+        notes=(*curve.notes, *source.notes),
+        is_synthetic=source.is_synthetic,
+    )  # fmt: skip
+
+
+def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: Any) -> ExportLine:
+    """Make a line for export of a composite curve.
+
+    Parameters
+    ----------
+    source : PieceSource
+        Of the pieces.
+    curve : CompositeCurve
+        Of them.
+    **stated
+        Fields of `ExportLine` that are better known; None and NaN are passed over.
+
+    Returns
+    -------
+    line : ExportLine
+        With rule, pieces, joins and gaps in its notes.
+
+    Raises
+    ------
+    SettingsError
+        If the line cannot be named.
+
+    Notes
+    -----
+    Tested from the first node of a piece to the last; a gap between is in the notes ([1]_).
+    """
+    given = {
+        name: value
+        for name, value in stated.items()
+        if value is not None and not (isinstance(value, float) and math.isnan(value))
+    }
+    first = int(np.argmax(curve.piece >= 0))
+    joins = [f"{low:.4g} to {high:.4g}" for low, high in ranges_of(curve, curve.is_join)]
+    fields = {
+        "diameter": source.diameter,
+        "rated_break_strength": source.rated_break_strength,
+    }
+    return ExportLine(
+        name=source.name,
+        strain=np.array(curve.strain),
+        tension=np.array(curve.tension),
+        curve=f"composite of {len(set(curve.piece_names))} tests, {_WAYS[source.branch]}; one "
+        "curve, no loop",
+        tested=(float(curve.strain[first]), float(curve.strain[-1])),
+        sources=(
+            *source.sources,
+            *(f"{name.replace('_', ' ')}: stated at the export" for name in given),
+        ),
+        notes=(
+            *curve.notes,
+            *([f"more than one piece has a say at strain {', '.join(joins)}"] if joins else []),
+            *source.notes,
+        ),
+        is_synthetic=source.is_synthetic,
+        **fields | given,
+    )

@@ -1,0 +1,151 @@
+"""Pieces of a composite from archives that are made here, variable by variable."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from reduction.archive.pieces import pieces_of_test, source_of_tests, specimens_of
+from reduction.errors import DataError, SettingsError
+
+BINS = np.array([0.5, 0.6, 0.7, 0.8])
+COEFFICIENTS = {
+    "relaxed_free_length": 2.5, "relaxed_splice_length": 1.2, "splice_compliance": 1e-3,
+    "splice_exponent": 0.8,
+}  # fmt: skip
+
+
+def cyclic(test="T-1", order=1, specimens=("new",), factor=1.0, coefficients=None, **more):
+    """A test with cycles and a first rise, straight lines of 100 and 120 N per unit strain."""
+    n = len(specimens)
+    load = factor * np.stack([110 * BINS, 90 * BINS])
+    early = np.array([0.1, 0.2, 0.3])
+    rise = np.stack([120 * early, np.full(3, np.nan)])
+    branch = ("specimen", "branch_name", "strain_bin")
+    first = ("specimen", "branch_name", "first_loading_strain_bin")
+    known = COEFFICIENTS | (coefficients or {})
+    return xr.Dataset(
+        {
+            "specimen": ("specimen", list(specimens)),
+            "strain_bin": BINS,
+            "first_loading_strain_bin": early,
+            "branch_tension": (branch, np.stack([load] * n)),
+            "branch_tension_standard_uncertainty": (branch, np.ones((n, 2, 4))),
+            "branch_tension_first_loading": (first, np.stack([rise] * n)),
+            "branch_tension_first_loading_standard_uncertainty": (first, np.ones((n, 2, 3))),
+            "diameter": ("specimen", np.full(n, more.get("diameter", 0.02))),
+            "n_slips": ("specimen", np.full(n, more.get("slips", 0))),
+            "strain_method": ("specimen", ["tension-driven"] * n),
+            "strain_marks_from": ("specimen", ["this test"] * n),
+            **{name: ("specimen", np.full(n, value)) for name, value in known.items()},
+        },
+        attrs={
+            "test": test, "id": f"{more.get('campaign', 'c')}/{test}", "test_order": str(order),
+            "campaign": more.get("campaign", "c"), "test_kind": "cyclic", "synthetic": "yes",
+        } | ({"part_of": more["part_of"]} if "part_of" in more else {}),
+    )  # fmt: skip
+
+
+def hold():
+    return xr.Dataset(
+        {"specimen": ("specimen", ["new"])},
+        attrs={"test": "held", "id": "c/held", "test_kind": "relaxation", "campaign": "c"},
+    )
+
+
+def pull(n=3):
+    """Strain 0.01 per 100 N, known to 1e-4."""
+    load = 100.0 * np.arange(1, n + 1)
+    over = ("specimen", "tension_grid")
+    early = ("specimen", "branch_name", "first_loading_strain_bin")
+    return xr.Dataset(
+        {
+            "specimen": ("specimen", ["new"]),
+            "tension_grid": load,
+            "quasi_static_strain": (over, [1e-4 * load]),
+            "quasi_static_strain_standard_uncertainty": (over, [np.full(n, 1e-4)]),
+            "first_loading_strain_bin": [0.01, 0.02],
+            "branch_tension_first_loading": (early, np.full((1, 2, 2), 150.0)),
+            "branch_tension_first_loading_standard_uncertainty": (early, np.ones((1, 2, 2))),
+        },
+        attrs={"test": "Q", "id": "c/Q", "test_kind": "quasi-static", "campaign": "c"},
+    )
+
+
+@pytest.mark.parametrize(
+    ("branch", "slope"), [("ascending", 110), ("descending", 90), ("mean", 100)]
+)
+def test_a_test_with_cycles_gives_its_branch_and_its_first_rise(branch, slope):
+    found = pieces_of_test(cyclic(), "new", branch=branch, name="T-1")
+    assert found[0].tension == pytest.approx(slope * BINS)
+    assert [one.kind for one in found] == ["cyclic"] + (branch != "descending") * ["first-loading"]
+    for rise in found[1:]:
+        assert rise.branch == "ascending"
+        assert rise.tension == pytest.approx([12, 24, 36])
+
+
+def test_a_slow_pull_is_static_and_its_first_rise_is_not_taken_twice():
+    (found,) = pieces_of_test(pull(), "new", branch="mean", name="Q")
+    assert (found.kind, found.branch) == ("static", "ascending")
+    assert found.tension == pytest.approx([100, 200, 300])
+    assert found.standard_uncertainty == pytest.approx([1.0] * 3)
+    assert pieces_of_test(pull(), "new", branch="descending", name="Q") == ()
+
+
+def test_tests_come_in_the_order_in_which_they_were_run():
+    tests = [cyclic("T-2", 10), cyclic("T-1", 9)]
+    found = source_of_tests(tests, "new", branch="ascending")
+    assert [one.name for one in found.pieces] == ["T-1", "T-1", "T-2", "T-2"]
+    assert [text.split(",")[0] for text in found.sources] == ["archive c/T-1", "archive c/T-2"]
+    assert found.is_synthetic and found.diameter == 0.02
+    assert np.isnan(found.rated_break_strength)
+    assert found.model.coefficients == COEFFICIENTS
+
+
+def test_what_is_left_out_is_said():
+    tests = [cyclic(), cyclic("T-1-end", 2, part_of="T-1"), hold(), cyclic("T-2", 3, slips=2)]
+    found = source_of_tests(tests, "new", branch="mean")
+    assert {one.name for one in found.pieces} == {"T-1", "T-2"}
+    assert set(found.notes) == {
+        "T-1-end is left out: it is a part of T-1",
+        "held (relaxation) has no mean curve",
+        "T-2: a splice slipped 2 times, and its strains hold the slip",
+    }
+
+
+def test_a_part_whose_whole_is_not_there_is_taken():
+    found = source_of_tests([cyclic("T-1-end", part_of="T-1")], "new", branch="mean")
+    assert found.pieces[0].name == "T-1-end"
+
+
+def test_strain_models_that_differ_are_told():
+    tests = [cyclic(), cyclic("T-2", 2, coefficients={"splice_exponent": 0.9})]
+    found = source_of_tests(tests, "new", branch="mean")
+    assert found.model.coefficients["splice_exponent"] == 0.8
+    assert "strain models of their own; lengths are by that of c/T-1" in found.notes[-1]
+
+
+def test_tests_of_two_campaigns_keep_their_campaigns_names():
+    found = source_of_tests([cyclic(), cyclic("T-1", 2, campaign="d")], "new", branch="descending")
+    assert [one.name for one in found.pieces] == ["c/T-1", "d/T-1"]
+
+
+def test_archives_without_the_specimen_are_passed_over():
+    tests = [cyclic(), cyclic("T-2", 2, specimens=("used",))]
+    assert specimens_of(tests[1]) == ("used",)
+    assert specimens_of(xr.Dataset()) == ()
+    assert {one.name for one in source_of_tests(tests, "new", branch="mean").pieces} == {"T-1"}
+
+
+def test_one_test_twice_is_refused():
+    with pytest.raises(SettingsError, match="test c/T-1 stands there twice"):
+        source_of_tests([cyclic(), cyclic()], "new", branch="mean")
+
+
+def test_specimens_of_one_name_and_two_diameters_are_refused():
+    with pytest.raises(SettingsError, match="another diameter of 'new'; found 0.02 in c/T-1, 0.03"):
+        source_of_tests([cyclic(), cyclic("T-2", 2, diameter=0.03)], "new", branch="mean")
+
+
+def test_tests_without_a_curve_are_refused():
+    with pytest.raises(DataError, match="no test of 'new' gives a mean curve.*held .relaxation"):
+        source_of_tests([hold()], "new", branch="mean")

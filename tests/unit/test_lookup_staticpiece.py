@@ -1,0 +1,35 @@
+import numpy as np
+import pytest
+
+from reduction.errors import DataError
+from reduction.lookup.pieces import CurvePiece
+from reduction.lookup.staticpiece import mean_piece, piece_of_pull
+
+
+def branch(way, low, high, slope, spread=3.0):
+    at = np.linspace(low, high, 5)
+    return CurvePiece("T", "static", way, at, slope * at, np.full(5, spread))
+
+
+def test_the_mean_of_two_branches_stands_where_both_were_read():
+    mean = mean_piece(branch("ascending", 0.5, 2.0, 110), branch("descending", 0.8, 2.2, 90, 4.0))
+    assert (mean.strain[0], mean.strain[-1]) == (0.8, 2.0)
+    assert mean.tension == pytest.approx(100 * mean.strain)
+    assert mean.standard_uncertainty == pytest.approx(np.full(mean.strain.size, 2.5))  # 3, 4, 5
+    assert (mean.kind, mean.branch) == ("static", "mean")
+
+
+def test_branches_that_do_not_overlap_have_no_mean():
+    with pytest.raises(DataError, match="the branches of T do not overlap; found 0.5 to 1 and 1.2"):
+        mean_piece(branch("ascending", 0.5, 1.0, 110), branch("descending", 1.2, 2.0, 90))
+
+
+def test_a_pull_ends_where_its_cubic_turns_back():
+    load = np.array([0.0, 100.0, 200.0, 300.0, 400.0])
+    found = piece_of_pull([0.0, 0.01, 0.02, 0.019, 0.03], load, np.full(5, 1e-4), name="Q")
+    assert found.tension == pytest.approx([100, 200])
+
+
+def test_a_pull_of_one_point_is_no_curve():
+    with pytest.raises(DataError, match="Q is no curve; found 1 points"):
+        piece_of_pull([0.01, np.nan], [100.0, 200.0], [1e-4, 1e-4], name="Q")
