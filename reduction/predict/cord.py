@@ -37,8 +37,6 @@ __all__ = [
     "hose_stretch_ratio",
     "pick_up_stretch_ratio",
     "slackest_stretch_ratio",
-    "stretch_ratio_per_angle",
-    "stretch_ratio_per_cord_stretch",
     "wrap_angle_for",
 ]
 
@@ -311,92 +309,6 @@ def wrap_angle_for(
         tangent2 = (stretch**2 - cord2) / (cord2 - radius2)
         is_angle = (tangent2 > 0) & np.isfinite(tangent2)
         return np.asarray(np.arctan(np.sqrt(np.where(is_angle, tangent2, np.nan))))
-
-
-def stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
-    r"""How the stretch of a water-filled hose at a given stretch of its cords goes with the angle.
-
-    .. math:: \frac{\partial\lambda_h}{\partial a_0} = \frac{(\lambda_h^2 - 1/\lambda_h)\sin a_0
-       \cos a_0}{\lambda_h \cos^2 a_0 - \sin^2 a_0/(2\lambda_h^2)}
-
-    Parameters
-    ----------
-    cord_stretch_ratio : array_like, shape (...)
-        :math:`\lambda_c`, held. [1]
-    wrap_angle : array_like, shape (...)
-        :math:`a_0` at rest, from the axis. [rad]
-
-    Returns
-    -------
-    stretch_ratio_per_angle : ndarray, shape (...)
-        NaN where the cord is nowhere as short as asked. [rad-1]
-
-    Raises
-    ------
-    SettingsError
-        If an angle is not between 0 and 90 deg.
-    DataError
-        If a stretch ratio is not a positive number.
-
-    Notes
-    -----
-    Eq. (8) of [1]_ differentiated at constant :math:`\lambda_c`.
-
-    Examples
-    --------
-    Points of stretch a degree, at a cord strain of 9.5 %:
-
-    >>> print(np.radians(100 * stretch_ratio_per_angle(1.095, np.radians([64.0, 68.0]))).round(1))
-    [ 8.6 12.5]
-    """
-    cosine2, sine2 = _squares(wrap_angle)
-    stretch = hose_stretch_ratio(cord_stretch_ratio, wrap_angle)
-    rise = (stretch**2 - 1 / stretch) * np.sqrt(cosine2 * sine2)
-    return np.asarray(rise / _half_slope(stretch, cosine2, sine2))
-
-
-def stretch_ratio_per_cord_stretch(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
-    r"""How the stretch of a water-filled hose goes with the stretch of its cords.
-
-    .. math:: \frac{\partial\lambda_h}{\partial\lambda_c} =
-       \frac{\lambda_c}{\lambda_h \cos^2 a_0 - \sin^2 a_0/(2\lambda_h^2)}
-
-    Parameters
-    ----------
-    cord_stretch_ratio : array_like, shape (...)
-        :math:`\lambda_c`. [1]
-    wrap_angle : array_like, shape (...)
-        :math:`a_0` at rest, from the axis. [rad]
-
-    Returns
-    -------
-    stretch_ratio_per_cord_stretch : ndarray, shape (...)
-        NaN where the cord is nowhere as short as asked. [1]
-
-    Raises
-    ------
-    SettingsError
-        If an angle is not between 0 and 90 deg.
-    DataError
-        If a stretch ratio is not a positive number.
-
-    Notes
-    -----
-    Eq. (8) of [1]_ differentiated at constant angle.
-
-    Examples
-    --------
-    >>> print(stretch_ratio_per_cord_stretch(1.095, np.radians([64.0, 68.0])).round(1))
-    [3.7 4. ]
-    """
-    cosine2, sine2 = _squares(wrap_angle)
-    stretch = hose_stretch_ratio(cord_stretch_ratio, wrap_angle)
-    return np.asarray(np.asarray(cord_stretch_ratio) / _half_slope(stretch, cosine2, sine2))
-
-
-def _half_slope(stretch: Floats, cosine2: Floats, sine2: Floats) -> Floats:
-    """Half the derivative of lambda_c squared: lambda_c times d lambda_c / d lambda_h."""
-    return np.asarray(stretch * cosine2 - sine2 / (2 * stretch**2))
 
 
 def _squares(wrap_angle: ArrayLike) -> tuple[Floats, Floats]:

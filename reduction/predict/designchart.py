@@ -22,9 +22,8 @@ from reduction.predict.cord import (
     hose_stretch_ratio,
     pick_up_stretch_ratio,
     slackest_stretch_ratio,
-    stretch_ratio_per_angle,
-    stretch_ratio_per_cord_stretch,
 )
+from reduction.predict.cordrates import stretch_ratio_per_angle, stretch_ratio_per_cord_stretch
 from reduction.record import Floats, freeze_arrays
 
 __all__ = ["CordStrainChart", "WorkingStrainChart", "cord_strain_chart", "working_strain_chart"]

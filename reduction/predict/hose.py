@@ -37,7 +37,8 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_finite
 from reduction.errors import DataError
 from reduction.predict.cord import cord_stretch_ratio
-from reduction.predict.cordload import CordPieces, cord_energy, evaluate_into, piece_of, pieces_of
+from reduction.predict.cordload import cord_energy
+from reduction.predict.cordpieces import CordPieces, evaluate_into, piece_of, pieces_of
 from reduction.predict.hoseloads import HoseLoads, HoseNumbers, loads_at, numbers_of
 from reduction.predict.product import HoseDesign, HosePrediction
 from reduction.predict.rubber import rubber_energy, tension_into

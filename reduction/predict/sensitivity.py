@@ -36,10 +36,9 @@ from reduction.predict.cord import (
     hose_stretch_ratio,
     pick_up_stretch_ratio,
     slackest_stretch_ratio,
-    stretch_ratio_per_angle,
-    stretch_ratio_per_cord_stretch,
 )
 from reduction.predict.cordload import cord_load, cord_stiffness, cord_strain_at
+from reduction.predict.cordrates import stretch_ratio_per_angle, stretch_ratio_per_cord_stretch
 from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
 from reduction.predict.rubber import rubber_stiffness, rubber_tension
 from reduction.record import Floats, freeze_arrays

@@ -19,10 +19,9 @@ from reduction.predict.cord import (
     hose_stretch_ratio,
     pick_up_stretch_ratio,
     slackest_stretch_ratio,
-    stretch_ratio_per_angle,
-    stretch_ratio_per_cord_stretch,
 )
 from reduction.predict.cordcurve import CordCurve
+from reduction.predict.cordrates import stretch_ratio_per_angle, stretch_ratio_per_cord_stretch
 from reduction.predict.events import find_events
 from reduction.predict.hose import predict_hose
 from reduction.predict.hoseloads import numbers_of

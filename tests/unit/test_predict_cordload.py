@@ -3,13 +3,7 @@ import pytest
 from scipy.interpolate import PchipInterpolator
 
 from reduction.predict.cordcurve import CordCurve
-from reduction.predict.cordload import (
-    cord_energy,
-    cord_load,
-    cord_stiffness,
-    cord_strain_at,
-    pieces_of,
-)
+from reduction.predict.cordload import cord_energy, cord_load, cord_stiffness, cord_strain_at
 
 CORD = CordCurve(
     strain=np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]),
@@ -95,11 +89,3 @@ def test_shapes_are_kept_and_the_strains_given_are_not_written_on():
     assert cord_load(CORD, strain).shape == cord_strain_at(CORD, strain).shape == (2, 3)
     assert cord_load(CORD, 0.05).shape == cord_strain_at(CORD, 0.05).shape == ()
     assert np.all(strain == 0.05)
-
-
-def test_pieces_are_slack_one_between_two_points_each_and_broken():
-    pieces = pieces_of(CORD)
-    assert pieces.coefficient.shape == (4, 7)
-    assert np.all(pieces.coefficient[:, 0] == 0) and np.all(np.isnan(pieces.coefficient[:, -1]))
-    assert pieces_of(CORD, order=1).coefficient.shape == (3, 7)
-    assert pieces_of(CORD, order=-1).coefficient.shape == (5, 7)

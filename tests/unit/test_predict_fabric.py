@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError
-from reduction.predict.cord import stretch_ratio_per_angle
+from reduction.predict.cordrates import stretch_ratio_per_angle
 from reduction.predict.fabric import (
     angle_per_relative_width,
     dead_length_share_of,
