@@ -17,13 +17,12 @@ from reduction.predict.armourdesign import (
 from reduction.predict.armourerror import AnglesOfUse, TheoryErrors, angles_of_use, theory_errors
 from reduction.predict.armourlayers import (
     ArmourLayers,
-    CableStrength,
     LayersResponse,
     cable_stiffness,
-    cable_strength,
     predict_layers,
 )
 from reduction.predict.armourspacing import fill_factor, wire_gap
+from reduction.predict.cablestrength import CableStrength, cable_strength
 from reduction.record import Floats
 
 __all__ = ["PredictedArmour", "predict_armour_case", "wound_at_all_angles"]

@@ -1,4 +1,4 @@
-r"""Several armour layers on each other: what the cable carries, and which layer yields first.
+r"""Several armour layers on each other: what the cable carries.
 
 Each layer lies on a core of its own that does not give and does not turn, so that all have the
 strain of the cable and squeeze what is inside them.  The torque that they leave unbalanced is
@@ -26,23 +26,10 @@ from reduction.predict.armour import predict_armour
 from reduction.predict.armourdesign import ArmourDesign, ArmourResponse, ArmourTheory
 from reduction.predict.armourspacing import wire_gap
 from reduction.predict.armourstiffness import layer_stiffness
-from reduction.predict.armouryield import (
-    YieldCriterion,
-    layer_strength,
-    wire_stress,
-    yield_strain,
-)
+from reduction.predict.armouryield import wire_stress
 from reduction.record import Bools, Floats, freeze_arrays
 
-__all__ = [
-    "ArmourLayers",
-    "CableStrength",
-    "Lay",
-    "LayersResponse",
-    "cable_stiffness",
-    "cable_strength",
-    "predict_layers",
-]
+__all__ = ["ArmourLayers", "Lay", "LayersResponse", "cable_stiffness", "predict_layers"]
 
 Lay = Literal["right", "left"]
 
@@ -283,87 +270,3 @@ def cable_stiffness(layers: ArmourLayers) -> tuple[float, float]:
     held = float(np.sum(each.tension_per_strain))
     coupling = float(np.sum(layers.hand * each.torque_per_strain))
     return held, held - coupling**2 / float(np.sum(each.torque_per_twist))
-
-
-@dataclass(frozen=True)
-class CableStrength:
-    """First yield of a cable.
-
-    Parameters
-    ----------
-    layer_strength : ndarray, shape (n_layers,)
-        By the axial stress at the angle of rest, were each layer alone. [N]
-    layer_yield_strain : ndarray, shape (n_layers,)
-        Of the cable, at which each layer yields. [1]
-    governing_layer : int
-        That which yields first; 0 is the innermost.
-    strain : float
-        Of the cable at first yield. [1]
-    tension : float
-        Of the cable at first yield, all layers together. [N]
-    """
-
-    layer_strength: Floats
-    layer_yield_strain: Floats
-    governing_layer: int
-    strain: float
-    tension: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
-
-def cable_strength(
-    layers: ArmourLayers, *, criterion: YieldCriterion = "von-mises"
-) -> CableStrength:
-    """Where the first wire of the cable yields, and what the cable carries there.
-
-    Parameters
-    ----------
-    layers : ArmourLayers
-        Every layer with its yield stress.
-    criterion : {"axial", "normal", "von-mises"}
-        As `reduction.predict.armouryield.wire_stress`.
-
-    Returns
-    -------
-    strength : CableStrength
-        The tension is less than the sum of the strengths of the layers, which do not yield at
-        one strain.
-
-    Raises
-    ------
-    SettingsError
-        If a layer has no yield stress, or the criterion is unknown.
-
-    Notes
-    -----
-    After [1]_, sec. 5.3, for several layers and with bending and torsion.
-
-    Examples
-    --------
-    The less steep layer is strained more:
-
-    >>> design = ArmourDesign(np.radians([35.0, 20.0]), 2.5e-3, np.array([25e-3, 30e-3]), 210e9,
-    ...                       n_wires=np.array([26, 36]))
-    >>> layers = ArmourLayers(design, ("right", "left"), np.array([800e6, 800e6]))
-    >>> strength = cable_strength(layers, criterion="axial")
-    >>> strength.governing_layer, round(100 * strength.strain, 3)
-    (1, 0.431)
-    """
-    bare = np.isnan(layers.yield_stress)
-    if bare.any():
-        raise SettingsError(
-            f"layer {_first(bare)} has no yield stress", needed="one for every layer"
-        )
-    strain = yield_strain(layers.design, layers.yield_stress, criterion=criterion)
-    governing = int(np.argmin(strain))
-    first = float(strain[governing])
-    return CableStrength(
-        layer_strength=layer_strength(layers.design, layers.yield_stress),
-        layer_yield_strain=strain,
-        governing_layer=governing,
-        strain=first,
-        tension=float(predict_layers(layers, first).tension[0]),
-    )

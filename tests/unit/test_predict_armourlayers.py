@@ -6,13 +6,9 @@ import pytest
 from reduction.errors import SettingsError
 from reduction.predict.armour import predict_armour
 from reduction.predict.armourdesign import ArmourDesign
-from reduction.predict.armourlayers import (
-    ArmourLayers,
-    cable_stiffness,
-    cable_strength,
-    predict_layers,
-)
+from reduction.predict.armourlayers import ArmourLayers, cable_stiffness, predict_layers
 from reduction.predict.armourstiffness import layer_stiffness
+from reduction.predict.cablestrength import cable_strength
 
 STEEL = 800e6
 
