@@ -12,7 +12,8 @@ from reduction.archive.attributes import part_attributes
 from reduction.archive.build import build_dataset
 from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.values import Values, pad, pad_texts, texts
-from reduction.compare.product import Calibration, Comparison, CurveName
+from reduction.compare.measuredcurve import CurveName
+from reduction.compare.product import Calibration, Comparison
 from reduction.errors import ArchiveError
 from reduction.predict.hose import predict_hose
 from reduction.provenance import Origin

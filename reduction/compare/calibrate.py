@@ -20,8 +20,10 @@ from scipy.stats import t as student
 from reduction.compare.difference import difference_of
 from reduction.compare.fitproblem import FitProblem, FitSpread, parameter_bounds, spread_of
 from reduction.compare.identifiability import identify_directions, plausible_error
-from reduction.compare.product import Calibration, Identifiability, MeasuredCurve
-from reduction.compare.trials import cord_curve_error, design_with, known_uncertainties, number_of
+from reduction.compare.inputs import cord_curve_error, known_uncertainties
+from reduction.compare.measuredcurve import MeasuredCurve
+from reduction.compare.product import Calibration, Identifiability
+from reduction.compare.trials import design_with, number_of
 from reduction.errors import DataError, SettingsError
 from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign

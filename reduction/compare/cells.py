@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reduction.compare.product import NODES_A_BIN, Reading
+from reduction.compare.measuredcurve import NODES_A_BIN, Reading
 from reduction.errors import DataError
 from reduction.record import Floats, Integers, freeze_arrays
 

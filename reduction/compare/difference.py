@@ -14,13 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
-from reduction.compare.product import (
-    CurveName,
-    CycleDifference,
-    Difference,
-    EnergyDifference,
-    MeasuredCurve,
-)
+from reduction.compare.measuredcurve import CurveName, MeasuredCurve
+from reduction.compare.product import CycleDifference, Difference, EnergyDifference
 from reduction.errors import DataError
 from reduction.record import Floats
 

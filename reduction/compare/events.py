@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from reduction.compare.difference import strain_at_tension
-from reduction.compare.product import EventDifference, MeasuredCurve
+from reduction.compare.measuredcurve import MeasuredCurve
+from reduction.compare.product import EventDifference
 from reduction.predict.events import find_events
 from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign, HoseEvent

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from reduction.compare.identifiability import plausible_error
-from reduction.compare.product import MeasuredCurve
+from reduction.compare.measuredcurve import MeasuredCurve
 from reduction.compare.residuals import autocorrelation_length
 from reduction.compare.trials import number_of, range_of, trial_tension
 from reduction.errors import FitError

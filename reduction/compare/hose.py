@@ -17,10 +17,11 @@ import numpy as np
 from reduction.compare.calibrate import calibrate_hose
 from reduction.compare.difference import cycle_differences, difference_of, energy_difference
 from reduction.compare.events import event_differences
+from reduction.compare.inputs import input_draws
+from reduction.compare.measuredcurve import MeasuredCurve
 from reduction.compare.pickup import PickUp, measured_pick_up
 from reduction.compare.plausibility import plausibility_of_working_strain
-from reduction.compare.product import Comparison, EventDifference, MeasuredCurve
-from reduction.compare.trials import input_draws
+from reduction.compare.product import Comparison, EventDifference
 from reduction.compare.validation import N_DRAWS, validate_curve
 from reduction.errors import SettingsError
 from reduction.predict.hose import predict_hose

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.compare.cells import Cells, fill_cells, reading_of, tension_at_centres
-from reduction.compare.product import Loading, MeasuredCurve
+from reduction.compare.measuredcurve import Loading, MeasuredCurve
 from reduction.compare.samples import select_samples
 from reduction.compare.scatter import bin_noise, branch_scatter, shared_scatter
 from reduction.errors import DataError, SettingsError

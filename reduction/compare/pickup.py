@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from reduction.compare.product import MeasuredCurve
+from reduction.compare.measuredcurve import MeasuredCurve
 from reduction.compare.residuals import autocorrelation_length
 from reduction.record import Floats, Integers
 

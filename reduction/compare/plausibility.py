@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from math import degrees
 
-from reduction.compare.product import Loading
+from reduction.compare.measuredcurve import Loading
 from reduction.errors import DataError
 
 __all__ = ["plausibility_of_working_strain"]

@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
-from reduction.compare.product import MeasuredCurve, Validation
+from reduction.compare.measuredcurve import MeasuredCurve
+from reduction.compare.product import Validation
 from reduction.compare.verdict import LEAST_PROBABILITY, probability_words, verdict_words
 from reduction.errors import DataError
 from reduction.record import Floats
@@ -120,7 +121,7 @@ def validate_curve(
         The test; its judged curve counts. [SI]
     input_error : array_like, shape (n_draws, n_strain)
         What the prediction may be off by, in draws of the numbers that went into it, from
-        `reduction.compare.trials.input_draws`; no rows where it counts as exact. [N]
+        `reduction.compare.inputs.input_draws`; no rows where it counts as exact. [N]
     largest_useful_share : float
         Where U is more than this part of the measured tension at half of the strains,
         agreement says little. [1]

@@ -8,7 +8,8 @@ import numpy as np
 
 from reduction.compare.hose import compare_hose
 from reduction.compare.measured import SharedUncertainty, measured_curve
-from reduction.compare.product import Comparison, Loading
+from reduction.compare.measuredcurve import Loading
+from reduction.compare.product import Comparison
 from reduction.errors import DataError
 from reduction.prediction import HosePlan
 from reduction.record import Floats, Integers

@@ -8,9 +8,10 @@ from reduction.compare import fitproblem
 from reduction.compare.calibrate import calibrate_hose
 from reduction.compare.fitproblem import parameter_bounds
 from reduction.compare.identifiability import CALIBRATED, identify_directions, plausible_error
+from reduction.compare.inputs import cord_curve_error
 from reduction.compare.measured import SharedUncertainty, measured_curve
 from reduction.compare.residuals import autocorrelation_length
-from reduction.compare.trials import cord_curve_error, trial_tension
+from reduction.compare.trials import trial_tension
 from reduction.errors import DataError, FitError, SettingsError
 
 TRUTH = Truth(dead_length_share=0.04)

@@ -3,9 +3,10 @@ import pytest
 from measured_hoses import Truth
 
 from reduction.compare.hose import compare_hose
+from reduction.compare.inputs import input_draws
 from reduction.compare.measured import SharedUncertainty, measured_curve
 from reduction.compare.plausibility import plausibility_of_working_strain
-from reduction.compare.trials import design_with, input_draws, number_of
+from reduction.compare.trials import design_with, number_of
 from reduction.errors import DataError, SettingsError
 from reduction.predict.events import find_events
 

@@ -6,7 +6,7 @@ from measured_hoses import Truth
 
 from reduction.compare.cells import fill_cells, tension_at_centres
 from reduction.compare.measured import SharedUncertainty, measured_curve
-from reduction.compare.product import MeasuredCurve, Reading
+from reduction.compare.measuredcurve import MeasuredCurve, Reading
 from reduction.compare.samples import select_samples
 from reduction.compare.scatter import branch_scatter, shared_scatter
 from reduction.errors import DataError, SettingsError

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
+from reduction.compare.inputs import input_draws
 from reduction.compare.measured import SharedUncertainty, measured_curve
-from reduction.compare.trials import input_draws
 from reduction.compare.validation import N_DRAWS, validate_curve
 from reduction.compare.verdict import probability_words, verdict_words
 from reduction.errors import DataError
