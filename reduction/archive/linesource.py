@@ -13,9 +13,9 @@ from reduction.errors import ArchiveError
 from reduction.lookup.line import Branch
 from reduction.lookup.product import LineCurve, LineSource, LineSurface
 from reduction.record import Floats
-from reduction.surface.fit import variance_factor
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.terms import model_matrix
+from reduction.surface.variance import variance_factor
 from reduction.vocabulary import RESPONSES, quantity
 
 __all__ = ["Facts", "facts_of_specimens", "line_of_experiment", "line_of_test", "specimens_of"]

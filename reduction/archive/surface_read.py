@@ -14,8 +14,8 @@ from reduction.errors import ArchiveError
 from reduction.record import Floats, Integers
 from reduction.surface.blocks import block_columns
 from reduction.surface.coding import engineering_matrix
+from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.product import (
-    FIT_REASONS,
     LACK_OF_FIT_REASONS,
     STATIONARY_REASONS,
     Anova,

@@ -12,12 +12,8 @@ from reduction.archive.values import Values, texts
 from reduction.errors import ArchiveError
 from reduction.experiment import ExperimentResult, RunTable
 from reduction.line.single import VERDICTS, SingleTimeCheck
-from reduction.surface.product import (
-    FIT_REASONS,
-    LACK_OF_FIT_REASONS,
-    STATIONARY_REASONS,
-    ResponseSurfaces,
-)
+from reduction.surface.leastsquares import FIT_REASONS
+from reduction.surface.product import LACK_OF_FIT_REASONS, STATIONARY_REASONS, ResponseSurfaces
 from reduction.surface.select import ReducedSurfaces
 from reduction.units import combined_unit
 from reduction.vocabulary import SURFACE_NAMES

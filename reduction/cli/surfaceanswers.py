@@ -10,8 +10,8 @@ from reduction.campaign.runtable import RunSeries
 from reduction.cli.numbers import fitted_unit, plain
 from reduction.surface.confounding import alias_matrix
 from reduction.surface.drift import Drift
+from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.product import (
-    FIT_REASONS,
     LACK_OF_FIT_REASONS,
     STATIONARY_KINDS,
     STATIONARY_REASONS,

@@ -8,8 +8,8 @@ from rich.markup import escape
 from reduction.campaign.runtable import RunSeries
 from reduction.cli.numbers import Shown, short, table_of
 from reduction.cli.outcome import Outcome
+from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.product import (
-    FIT_REASONS,
     LACK_OF_FIT_REASONS,
     STATIONARY_KINDS,
     STATIONARY_REASONS,

@@ -21,9 +21,9 @@ from reduction.lookup.product import LineSurface
 from reduction.record import Bools, Floats, freeze_arrays
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import box_behnken
-from reduction.surface.fit import variance_factor
 from reduction.surface.terms import model_matrix, quadratic_exponents
 from reduction.surface.transform import back_transform
+from reduction.surface.variance import variance_factor
 from reduction.workers import run_blocks
 
 __all__ = ["SurfacePoints", "evaluate_surface", "sigma_from_r2"]

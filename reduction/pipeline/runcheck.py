@@ -12,8 +12,9 @@ from reduction.errors import DataError
 from reduction.experiment import RunTable
 from reduction.record import Bools, Floats, Integers
 from reduction.surface.cautions import Caution, find_cautions
+from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.levels import FactorLevels
-from reduction.surface.product import FIT_REASONS, ResponseSurfaces
+from reduction.surface.product import ResponseSurfaces
 from reduction.surface.reached import levels_off_plan
 from reduction.surface.runsheet import RunSheet
 

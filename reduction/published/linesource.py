@@ -23,8 +23,8 @@ from reduction.published.lines import published_lines
 from reduction.published.tether import PublishedTether, TetherSegment
 from reduction.published.tethers import published_tethers
 from reduction.surface.designs import box_behnken
-from reduction.surface.fit import covariance_factor, variance_factor
 from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.surface.variance import covariance_factor, variance_factor
 
 __all__ = ["published_sources"]
 

@@ -28,10 +28,8 @@ from reduction.report.section import Part, Section, make_part, provenance_of
 from reduction.report.surfacegrid import make_planes, negative_inside
 from reduction.report.surfacetables import anova_table, coefficient_table, quality_table
 from reduction.report.view import TestView
-from reduction.surface.product import (
-    FIT_REASONS,
-    ResponseSurfaces,
-)
+from reduction.surface.leastsquares import FIT_REASONS
+from reduction.surface.product import ResponseSurfaces
 
 __all__ = ["make_experiment_section"]
 

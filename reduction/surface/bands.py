@@ -28,11 +28,11 @@ from reduction.checks import as_finite
 from reduction.errors import DataError, SettingsError
 from reduction.record import Bools, Floats, freeze_arrays
 from reduction.surface.coding import coded_from_engineering, engineering_from_coded
-from reduction.surface.fit import variance_factor
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.rows import times
 from reduction.surface.terms import model_matrix
 from reduction.surface.transform import back_transform, retransformed_mean
+from reduction.surface.variance import variance_factor
 
 __all__ = ["SurfaceValues", "evaluate_surfaces"]
 

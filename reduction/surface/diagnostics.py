@@ -14,7 +14,8 @@ import numpy as np
 from scipy.special import ndtri
 
 from reduction.record import Bools, Floats
-from reduction.surface.product import Diagnostics, LeastSquares
+from reduction.surface.leastsquares import LeastSquares
+from reduction.surface.product import Diagnostics
 
 __all__ = ["diagnose"]
 

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike
 from reduction.record import Floats, Integers
 from reduction.surface.blocks import fit_random_intercept
 from reduction.surface.coding import engineering_matrix
-from reduction.surface.fit import variance_factor
-from reduction.surface.product import BlockEffects, LeastSquares
+from reduction.surface.leastsquares import LeastSquares
+from reduction.surface.product import BlockEffects
+from reduction.surface.variance import variance_factor
 
 __all__: list[str] = []
 

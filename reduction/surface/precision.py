@@ -23,8 +23,8 @@ from scipy.special import stdtrit
 from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError, FitError, SettingsError
 from reduction.record import Bools, Floats, freeze_arrays
-from reduction.surface.fit import covariance_factor, variance_factor
 from reduction.surface.terms import model_matrix, quadratic_exponents, term_names
+from reduction.surface.variance import covariance_factor, variance_factor
 
 __all__ = ["ExpectedPrecision", "expected_precision"]
 

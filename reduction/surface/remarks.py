@@ -8,7 +8,8 @@ from itertools import combinations
 import numpy as np
 
 from reduction.record import Bools, Floats
-from reduction.surface.product import FIT_REASONS, BlockEffects, LackOfFit, LeastSquares
+from reduction.surface.leastsquares import FIT_REASONS, LeastSquares
+from reduction.surface.product import BlockEffects, LackOfFit
 
 __all__: list[str] = []
 

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from reduction.record import Floats, freeze_arrays
-from reduction.surface.product import FIT_REASONS, LeastSquares
+from reduction.surface.leastsquares import FIT_REASONS, LeastSquares
 
 __all__ = ["FormQuality", "StiffnessForm", "StiffnessFormName", "form_quality"]
 

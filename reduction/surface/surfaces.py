@@ -24,14 +24,16 @@ from reduction.surface.blocks import block_columns
 from reduction.surface.canonical import canonical_analysis
 from reduction.surface.diagnostics import diagnose
 from reduction.surface.estimates import deviations, fixed_estimates, with_blocks
-from reduction.surface.fit import covariance_factor, fit_least_squares, two_sided_p
+from reduction.surface.fit import fit_least_squares, two_sided_p
+from reduction.surface.leastsquares import LeastSquares
 from reduction.surface.overall import statistics_from_r2
-from reduction.surface.product import LeastSquares, ResponseSurfaces
+from reduction.surface.product import ResponseSurfaces
 from reduction.surface.remarks import remarks
 from reduction.surface.rows import times
 from reduction.surface.runs import coded_levels, require_motion, require_names
 from reduction.surface.terms import model_matrix, quadratic_exponents, term_kinds, term_names
 from reduction.surface.transform import Transform, box_cox_exponent, transform
+from reduction.surface.variance import covariance_factor
 
 __all__ = ["fit_surfaces"]
 

@@ -9,9 +9,9 @@ from scipy import stats
 
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import box_behnken
-from reduction.surface.fit import covariance_factor, variance_factor
 from reduction.surface.overall import statistics_from_r2
 from reduction.surface.terms import model_matrix, quadratic_exponents, term_names
+from reduction.surface.variance import covariance_factor, variance_factor
 
 # Table 3, K_ap of seven new lines: r2, F-STAT as printed
 TABLE_3 = (

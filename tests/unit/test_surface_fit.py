@@ -3,16 +3,10 @@ import pytest
 import statsmodels.api as sm
 from scipy import stats
 
-from reduction.errors import DataError, FitError
+from reduction.errors import DataError
 from reduction.surface.designs import box_behnken
-from reduction.surface.fit import (
-    covariance_factor,
-    find_confounded,
-    fit_least_squares,
-    two_sided_p,
-    variance_factor,
-)
-from reduction.surface.product import FIT_REASONS
+from reduction.surface.fit import fit_least_squares, two_sided_p
+from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.terms import model_matrix, quadratic_exponents, term_names
 
 EXPONENTS = quadratic_exponents(3)
@@ -97,26 +91,9 @@ def test_as_many_runs_as_terms_give_a_surface_without_scatter():
     assert np.isnan(fit.sigma[0])
 
 
-def test_the_design_of_the_report_has_the_variance_factors_of_its_algebra():
-    factor = covariance_factor(MATRIX, names=NAMES)
-    expected = [1 / 3, *[13 / 48] * 3, *[1 / 8] * 3, *[1 / 4] * 3]
-    np.testing.assert_allclose(np.diag(factor), expected, rtol=1e-12)
-    assert np.linalg.cond(MATRIX) == pytest.approx(4.24, abs=0.005)
-    corner = variance_factor(model_matrix([[1.0, 1.0, 1.0]], EXPONENTS), factor)
-    assert corner[0] == pytest.approx(1.396, abs=0.0005)
-    assert variance_factor(MATRIX, factor).max() == pytest.approx(0.75, abs=1e-12)
-
-
 def test_the_first_coefficient_is_the_mean_of_the_centre_runs(responses):
     fit = fit_least_squares(MATRIX, responses)
     np.testing.assert_allclose(fit.coefficient[:, 0], responses[:, 12:].mean(axis=1), rtol=1e-12)
-
-
-def test_variance_factors_of_several_patterns_pair_up_with_their_responses():
-    factors = np.stack([np.eye(2), 4 * np.eye(2)])
-    rows = np.ones((3, 1, 2))
-    found = variance_factor(rows, factors, pattern=np.array([1, 0, 1]))
-    np.testing.assert_array_equal(found.ravel(), [8.0, 2.0, 8.0])
 
 
 @pytest.mark.parametrize("df", [1, 2, 3, 5, 8, 47, 60, 61, 300, 2.5])
@@ -130,28 +107,6 @@ def test_p_of_many_degrees_of_freedom_at_once_is_that_of_each():
     found = two_sided_p(t, df)
     expected = [2 * stats.t.sf(1, 5), 2 * stats.t.sf(2, 4), np.nan, np.nan, 0.0]
     np.testing.assert_allclose(found, expected, rtol=1e-12)
-
-
-def test_fewer_runs_than_terms_are_refused():
-    with pytest.raises(FitError, match="fewer runs than terms; found 9 runs; needed 10"):
-        covariance_factor(MATRIX[:9], names=NAMES)
-
-
-def test_a_singular_design_names_what_it_confounds():
-    two_levels = np.sign(np.random.default_rng(0).normal(size=(20, 3)))
-    with pytest.raises(FitError, match=r"cannot tell all terms apart; found f\^2 with mean; "):
-        covariance_factor(model_matrix(two_levels, EXPONENTS), names=NAMES)
-
-
-def test_a_column_of_noughts_is_named():
-    assert find_confounded([[1.0, 0.0], [1.0, 0.0]], ["mean", "f"]) == ("f is zero in every run",)
-    with pytest.raises(FitError, match="f is zero in every run"):
-        covariance_factor([[1.0, 0.0], [1.0, 0.0]], names=["mean", "f"])
-
-
-def test_names_that_do_not_pair_up_are_refused():
-    with pytest.raises(DataError, match="names do not pair up with the columns"):
-        find_confounded(MATRIX, ["mean"])
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from statsmodels.stats.anova import anova_lm
 
 from reduction.errors import DataError, FitError, SettingsError
 from reduction.surface.designs import box_behnken
-from reduction.surface.product import FIT_REASONS
+from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.select import reduce_terms
 from reduction.surface.surfaces import fit_surfaces
 from reduction.surface.terms import model_matrix, quadratic_exponents

@@ -4,7 +4,7 @@ from scipy import stats
 
 from reduction.errors import DataError, SettingsError
 from reduction.surface.designs import box_behnken
-from reduction.surface.product import FIT_REASONS
+from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.surfaces import fit_surfaces
 from reduction.surface.terms import model_matrix, quadratic_exponents
 from reduction.surface.transform import (
