@@ -125,6 +125,11 @@ def error_field(
         *_of_position(errors, model, at, load),
         *_of_coefficients(errors, model, at, load),
     ]
+    if errors.stiffness:
+        # the rubber is warmer or colder than the test says: the cell reads what there is
+        component = Component("temperature", errors.test)
+        u = errors.stiffness
+        parts.append((component, _rows(load, tension=u * load, tension_slope=u)))
     if errors.strain_gain:
         u = errors.strain_gain
         component = Component("strain_gain", errors.strain_model or errors.specimen)

@@ -49,6 +49,10 @@ class InstrumentErrors:
         Relative, of strain: what the strain method itself may miss. [1]
     rated_break_strength : float
         Relative. [1]
+    stiffness : float
+        Relative, of the material for the temperature of the test, which is its own. [1]
+    test : str
+        Which test.
     tension_instrument, position_instrument : str
         Channels with one name share their gain and offset.
     strain_model : str
@@ -64,6 +68,8 @@ class InstrumentErrors:
     diameter: float = 0.0
     strain_gain: float = 0.0
     rated_break_strength: float = 0.0
+    stiffness: float = 0.0
+    test: str = ""
     tension_instrument: str = "tension"
     position_instrument: str = "crosshead_position"
     strain_model: str = ""

@@ -1,0 +1,83 @@
+"""``[uncertainty]``: every form in which it is printed, and every way to get it wrong."""
+
+from pathlib import Path
+
+import pytest
+
+from reduction.campaign.uncertaintyspec import UncertaintySection, stated_errors
+from reduction.errors import SettingsError
+
+PATH = Path("campaign.toml")
+LBF = 4.4482216152605
+
+
+def errors(**section):
+    return stated_errors(PATH, UncertaintySection.model_validate(section))
+
+
+def test_what_is_not_stated_is_zero():
+    found = errors()
+    assert found.tension_gain == found.lag == found.diameter == found.stiffness == 0.0
+
+
+def test_a_plain_value_is_a_standard_uncertainty():
+    found = errors(tension={"gain": "0.1 %", "offset": "0.5 lbf"}, lag="2 ms")
+    assert found.tension_gain == pytest.approx(0.001)
+    assert found.tension_offset == pytest.approx(0.5 * LBF)
+    assert found.lag == pytest.approx(0.002)
+
+
+def test_an_expanded_value_is_over_its_k():
+    assert errors(tension={"gain": {"expanded": "0.2 %", "k": 2}}).tension_gain == pytest.approx(
+        0.001
+    )
+
+
+def test_limits_are_over_the_root_of_three_and_triangular_ones_of_six():
+    found = errors(diameter={"half_width": "0.003 in"})
+    assert found.diameter == pytest.approx(0.003 * 0.0254 / 3**0.5)
+    found = errors(diameter={"half_width": "0.003 in", "shape": "triangular"})
+    assert found.diameter == pytest.approx(0.003 * 0.0254 / 6**0.5)
+
+
+def test_noise_and_resolution_are_of_one_reading():
+    found = errors(tension={"noise": "0.3 N", "resolution": "1 N"})
+    assert found.tension_reading == pytest.approx((0.3**2 + 1 / 12) ** 0.5)
+
+
+def test_a_temperature_moves_the_stiffness():
+    found = errors(temperature={"value": "2 K", "stiffness_per_kelvin": "-0.3 %"})
+    assert found.stiffness == pytest.approx(0.006)
+
+
+@pytest.mark.parametrize(
+    ("section", "words"),
+    [
+        ({"tension": {"gain": "0.5 lbf"}}, r"uncertainty\.tension\.gain"),
+        ({"tension": {"offset": "0.1 %"}}, r"uncertainty\.tension\.offset"),
+        ({"tension": {"gain": "-0.1 %"}}, "no standard uncertainty.*zero or more"),
+        ({"tension": {"gain": 60}}, "at most 50 %"),
+        ({"lag": {"expanded": "2 ms", "k": 0}}, r"uncertainty\.lag.*coverage_factor"),
+        (
+            {"temperature": {"value": "2 degC", "stiffness_per_kelvin": "0.3 %"}},
+            "as a difference: in K",
+        ),
+    ],
+)
+def test_what_cannot_be_meant_is_refused_with_its_key(section, words):
+    with pytest.raises(SettingsError, match=words):
+        errors(**section)
+
+
+def test_channels_share_a_load_cell_only_where_that_is_said():
+    apart = errors(tension={"gain": "0.1 %"})
+    first = apart.of_channel("new", channel=1, test="T-1", load_cell="LC-3")
+    other = apart.of_channel("used", channel=2, test="T-1", load_cell="LC-3")
+    assert first.tension_instrument != other.tension_instrument
+    again = apart.of_channel("new", channel=1, test="T-2", load_cell="LC-3")
+    assert first.tension_instrument == again.tension_instrument
+    one = errors(tension={"gain": "0.1 %", "one_load_cell": True})
+    assert (
+        one.of_channel("new", channel=1, test="T-1").tension_instrument
+        == one.of_channel("used", channel=2, test="T-1").tension_instrument
+    )
