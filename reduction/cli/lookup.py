@@ -3,38 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal, cast
+from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 
-from reduction.cli.lookupsource import lines_of
+from reduction.cli.lookuppoints import Wanted, points_of
+from reduction.cli.lookupsource import lines_of, one_of
 from reduction.cli.numbers import plain, short, table_of
 from reduction.cli.outcome import Outcome
-from reduction.errors import SettingsError
-from reduction.lookup.line import Branch, look_up
+from reduction.export.lookuptable import TENSIONS, format_of_file, table_of_values
+from reduction.export.table import ValueTable
+from reduction.export.write import export_table
+from reduction.lookup.line import look_up
 from reduction.lookup.product import DesignValues, LineSource
+from reduction.lookup.search import find_lines
 from reduction.record import Floats
-from reduction.units import Dimension, UnitSystem, display_unit, parse_quantity
+from reduction.units import UnitSystem, display_unit
 
-__all__ = ["list_sources", "look_up_values"]
-
-_DIMENSIONS: dict[str, Dimension] = {
-    "frequency": "frequency",
-    "mean_tension": "force",
-    "tension_amplitude": "force",
-    "tension": "force",
-    "strain": "strain",
-}
+__all__ = ["list_sources", "look_up_values", "said_of_lines", "shown_levels", "span", "write_table"]
 
 
-def list_sources(source: str, *, outcome: Outcome) -> None:
+def list_sources(source: str, search: Mapping[str, Any], *, outcome: Outcome) -> None:
     """Print what SOURCE holds: each line, its quantities, and over which range."""
-    lines = lines_of(source)
-    table = table_of("line", "material", "construction", "condition", "quantities", texts=5)
+    lines = find_lines(lines_of(source), **search)
+    unit, factor = ("in", 1 / 0.0254) if outcome.units == "us" else ("mm", 1e3)
+    table = table_of(
+        "line", "source", "material", "construction", "condition", f"diameter\n[{unit}]",
+        "quantities", texts=5,
+    )  # fmt: skip
+    table.columns[-1].justify, table.columns[-1].no_wrap = "left", False
     for line in lines:
         table.add_row(
-            line.name, line.material, line.construction, line.condition, ", ".join(line.quantities)
-        )
+            line.name, line.source, line.material, line.construction, line.condition,
+            short(factor * line.diameter, 4), ", ".join(line.quantities),
+        )  # fmt: skip
     outcome.show(table)
     outcome.answer({"lines": [_described(line) for line in lines]})
 
@@ -43,12 +46,20 @@ def _described(line: LineSource) -> dict[str, Any]:
     return {
         "name": line.name,
         "source": line.source,
+        "kind": line.kind,
         "material": line.material,
         "construction": line.construction,
         "condition": line.condition,
         "diameter": plain(line.diameter),
         "rated_break_strength": plain(line.rated_break_strength),
-        "units": {"diameter": "m", "rated_break_strength": "N"},
+        "linear_density": plain(line.linear_density),
+        "wet_linear_density": plain(line.wet_linear_density),
+        "units": {
+            "diameter": "m",
+            "rated_break_strength": "N",
+            "linear_density": "kg m-1",
+            "wet_linear_density": "kg m-1",
+        },
         "quantities": list(line.quantities),
         "absent": line.absent,
         "ranges": {
@@ -58,104 +69,55 @@ def _described(line: LineSource) -> dict[str, Any]:
             }
             for quantity, surface in line.surfaces.items()
         },
+        "rule": line.rule,
         "notes": list(line.notes),
     }
 
 
-def look_up_values(
-    source: str,
-    quantity: str,
-    levels: Mapping[str, str],
-    *,
-    name: str | None,
-    branch: Branch | None,
-    extrapolate: Literal["refuse", "flag"],
-    grid: bool,
-    outcome: Outcome,
-) -> None:
+def look_up_values(source: str, wanted: Wanted, *, outcome: Outcome) -> None:
     """Print design values; several values of a level, parted by commas, make a grid."""
-    line = _one(lines_of(source), quantity, name)
-    given = {level: _numbers(level, text, line) for level, text in levels.items()}
-    if grid and quantity in line.surfaces:
-        surface = line.surfaces[quantity]
-        for place, factor in enumerate(line.factor_names):
-            low, high = surface.low[place], surface.high[place]
-            given.setdefault(factor, np.array([low, (low + high) / 2, high]))
-        mean, amplitude = given.get("mean_tension"), given.get("tension_amplitude")
-        if mean is not None and amplitude is not None and amplitude.max() > mean.min():
-            outcome.say("combinations whose amplitude is above the mean tension are left out")
-    axes = np.meshgrid(*given.values(), indexing="ij") if given else []
-    points = {level: axis.ravel() for level, axis in zip(given, axes, strict=True)}
-    if grid and {"mean_tension", "tension_amplitude"} <= points.keys():
-        taut = points["tension_amplitude"] <= points["mean_tension"] * (1 + 1e-12)
-        points = {level: values[taut] for level, values in points.items()}
-    if not grid and any(values.size > 1 for values in given.values()):
-        raise SettingsError("several values of a level make a grid", needed="--table with them")
-    found = look_up(line, quantity, branch=branch, extrapolate=extrapolate, **points)
-    _show(line, found, points, outcome, cast("UnitSystem", outcome.units))
-    outcome.answer(_document(line, found, points, grid=grid))
+    form = None if wanted.out is None else format_of_file(wanted.out)
+    line = one_of(find_lines(lines_of(source), **wanted.search), wanted.quantity, wanted.name)
+    points, left_out = points_of(wanted, line)
+    if left_out:
+        outcome.say("combinations whose amplitude is above the mean tension are left out")
+    found = look_up(
+        line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **points
+    )
+    _show(line, found, points, outcome)
+    files = write_table(table_of_values(line, found, points), wanted.out, form, outcome)
+    outcome.answer(_document(line, found, points, grid=wanted.grid) | {"files": files})
 
 
-def _one(lines: list[LineSource], quantity: str, name: str | None) -> LineSource:
-    """The line that was meant: by its name, else the only one that has the quantity."""
-    named = [line for line in lines if name in (None, line.name)]
-    if not named:
-        raise SettingsError(
-            f"there is no line '{name}'", needed=", ".join(line.name for line in lines)
-        )
-    having = [line for line in named if quantity in line.quantities]
-    if len(having) > 1:
-        raise SettingsError(
-            f"several lines have {quantity}",
-            found=", ".join(dict.fromkeys(line.source for line in having)),
-            needed="one archive, or --line NAME",
-        )
-    return having[0] if having else named[0]
-
-
-def _numbers(name: str, text: str, line: LineSource) -> Floats:
-    strength = line.rated_break_strength
-    known = strength if np.isfinite(strength) else None
-    try:
-        return np.array(
-            [
-                parse_quantity(part.strip(), _DIMENSIONS[name], rated_break_strength=known)
-                for part in text.split(",")
-            ]
-        )
-    except SettingsError as error:
-        raise SettingsError(
-            f"--{name.replace('_', '-')}: {error.problem}", found=error.found, needed=error.needed
-        ) from error
+def write_table(
+    table: ValueTable, out: Path | None, form: str | None, outcome: Outcome
+) -> list[str]:
+    """Write the table where a file was named, and say so."""
+    if out is None or form is None:
+        return []
+    paths = export_table(table, form, out, units=cast("UnitSystem", outcome.units))
+    for path in paths:
+        outcome.say(f"written: {path}")
+    return [str(path) for path in paths]
 
 
 def _show(
-    line: LineSource,
-    found: DesignValues,
-    points: Mapping[str, Floats],
-    outcome: Outcome,
-    system: UnitSystem,
+    line: LineSource, found: DesignValues, points: Mapping[str, Floats], outcome: Outcome
 ) -> None:
+    system = cast("UnitSystem", outcome.units)
     unit, factor = display_unit(found.unit, system)
     outcome.say(f"{found.quantity} of {line.name}; {found.source}")
-    # names stand below each other's words: there is little room beside seven columns
-    heads = [f"{name.replace('_', chr(10))}\n[{_shown(name, system)[0]}]" for name in points]
+    heads, levels = shown_levels(points, line.rated_break_strength, found.value.size, system)
     table = table_of(
         *heads, f"value\n[{unit}]", "95 % of\none more test", "95 % of\nthe surface",
         "peak\n[%RBS]", "minimum\n[%RBS]", "remark", texts=0,
     )  # fmt: skip
-    size = found.value.size
-    for place in range(size):
-        numbers = [
-            short(_shown(name, system)[1] * float(values[place])) for name, values in points.items()
-        ]
-        at = {
-            name: np.atleast_1d(getattr(found, name)).ravel()[place]
-            for name in (
-                "value", "low", "high", "surface_low", "surface_high", "peak_share",
-                "minimum_share", "is_inside", "is_untested", "is_above_rule",
-            )
-        }  # fmt: skip
+    names = (
+        "value", "low", "high", "surface_low", "surface_high", "peak_share", "minimum_share",
+        "is_inside", "is_untested", "is_above_rule",
+    )  # fmt: skip
+    for place, numbers in enumerate(levels):
+        at = {name: getattr(found, name).ravel()[place] for name in names}
         remarks = [
             word
             for word, is_so in (
@@ -169,20 +131,51 @@ def _show(
         table.add_row(
             *numbers,
             short(factor * float(at["value"])),
-            _span(factor, at["low"], at["high"]),
-            _span(factor, at["surface_low"], at["surface_high"]),
+            span(factor, at["low"], at["high"]),
+            span(factor, at["surface_low"], at["surface_high"]),
             short(100 * float(at["peak_share"]), 4),
             short(100 * float(at["minimum_share"]), 4),
             "; ".join(remarks),
         )
     outcome.show(table)
-    if found.errata:
-        outcome.say(f"errata that touch it: {', '.join(found.errata)}")
-    for note in found.notes:
-        outcome.say(f"note: {note}")
+    said_of_lines(outcome, (line, found))
 
 
-def _span(factor: float, low: float, high: float) -> str:
+def said_of_lines(outcome: Outcome, *pairs: tuple[LineSource, DesignValues]) -> None:
+    """What is stated of each line, its rule, its errata and notes; each sentence once."""
+    told = []
+    for line, found in pairs:
+        of = f" of {line.name}" if len(pairs) > 1 else ""
+        for what, value in (("in air", line.linear_density), ("in water", line.wet_linear_density)):
+            if np.isfinite(value):
+                told.append(f"linear density{of} {what}: {short(value)} kg/m")
+        told.append(f"rule: {found.rule}")
+        if found.errata:
+            told.append(f"errata that touch it{of}: {', '.join(found.errata)}")
+        told += [f"note{of}: {note}" for note in found.notes]
+    for text in dict.fromkeys(told):
+        outcome.say(text)
+
+
+def shown_levels(
+    points: Mapping[str, Floats], strength: float, size: int, system: UnitSystem
+) -> tuple[list[str], list[list[str]]]:
+    """Headings and cells of the levels, tensions in %RBS as well where that is known."""
+    heads, columns = [], []
+    for name, values in points.items():
+        unit, factor = _shown(name, system)
+        # names stand below each other's words: there is little room beside seven columns
+        words = name.replace("_", "\n")
+        heads.append(f"{words}\n[{unit}]")
+        columns.append([short(factor * float(value)) for value in values.ravel()])
+        if name in TENSIONS and np.isfinite(strength):
+            heads.append("\n[%RBS]")
+            columns.append([short(100 * float(value) / strength, 4) for value in values.ravel()])
+    return heads, [[column[place] for column in columns] for place in range(size)]
+
+
+def span(factor: float, low: float, high: float) -> str:
+    """An interval for a table; a dash where there is none."""
     if not (np.isfinite(low) and np.isfinite(high)):
         return "-"
     return f"{short(factor * float(low))} to {short(factor * float(high))}"
@@ -219,6 +212,10 @@ def _document(
         "peak_share": of(found.peak_share),
         "minimum_share": of(found.minimum_share),
         "above_rule": of(found.is_above_rule),
+        "rule": found.rule,
+        "linear_density": plain(line.linear_density),
+        "wet_linear_density": plain(line.wet_linear_density),
+        "linear_density_unit": "kg m-1",
         "source": found.source,
         "errata": list(found.errata),
         "notes": list(found.notes),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from reduction.archive.linesource import (
@@ -17,7 +18,7 @@ from reduction.errors import SettingsError
 from reduction.lookup.product import LineSource
 from reduction.published.linesource import published_sources
 
-__all__ = ["lines_of", "lines_of_archive"]
+__all__ = ["lines_of", "lines_of_archive", "one_of"]
 
 
 def lines_of(source: str) -> list[LineSource]:
@@ -92,6 +93,44 @@ def lines_of_archive(path: Path) -> list[LineSource]:
             return []
         names = archive["specimen"].values.astype(str).tolist()
         return [line_of_test(archive, name) for name in names]
+
+
+def one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> LineSource:
+    """The line that was meant: by its name, else the only one that has the quantity.
+
+    Parameters
+    ----------
+    lines : sequence of LineSource
+        What SOURCE names.
+    quantity : str
+        That is wanted.
+    name : str or None
+        Of the line, where it was said.
+
+    Returns
+    -------
+    line : LineSource
+        It may not have the quantity; the look-up says why.
+
+    Raises
+    ------
+    SettingsError
+        If no line has the name, or several have the quantity.
+    """
+    named = [line for line in lines if name in (None, line.name)]
+    if not named:
+        raise SettingsError(
+            f"there is no line '{name}'",
+            needed=", ".join(dict.fromkeys(line.name for line in lines)),
+        )
+    having = [line for line in named if quantity in line.quantities]
+    if len(having) > 1:
+        raise SettingsError(
+            f"several lines have {quantity}",
+            found=", ".join(dict.fromkeys(f"{line.name} ({line.source})" for line in having)),
+            needed="one archive, --line NAME, or a search that leaves one",
+        )
+    return having[0] if having else named[0]
 
 
 def _specimens(path: Path, names: set[str]) -> dict[str, Facts]:

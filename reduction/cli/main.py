@@ -14,8 +14,9 @@ from reduction import __version__
 from reduction.cli.campaigncommands import check, init, report, run, schema, sniff
 from reduction.cli.curvecommands import composite
 from reduction.cli.experimentcommands import experiment, surface
+from reduction.cli.lookupcommand import lookup
 from reduction.cli.predictioncommands import compare, predict
-from reduction.cli.publishedcommands import export, lookup, reproduce
+from reduction.cli.publishedcommands import export, reproduce
 from reduction.cli.usage import Commands
 
 __all__ = ["app"]

@@ -1,8 +1,7 @@
-"""Commands of numbers that stand already: look up, export, hold against the reports."""
+"""Commands of numbers that stand already: export them, hold them against the reports."""
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -11,21 +10,7 @@ import typer
 from reduction.cli.options import Json, Quiet, Units
 from reduction.cli.outcome import Outcome, guarded
 
-__all__ = ["export", "lookup", "reproduce"]
-
-
-class BranchName(StrEnum):
-    """Branches of a cycle."""
-
-    ASCENDING = "ascending"
-    DESCENDING = "descending"
-
-
-class Extrapolation(StrEnum):
-    """What is done outside the tested range."""
-
-    REFUSE = "refuse"
-    FLAG = "flag"
+__all__ = ["export", "reproduce"]
 
 
 def export(
@@ -99,59 +84,6 @@ def export(
                 "tension_amplitude": tension_amplitude,
             },
             extrapolate=extrapolate,
-            outcome=outcome,
-        )
-
-
-def lookup(
-    source: Annotated[
-        str,
-        typer.Argument(
-            help="A published line, `published`, an archive, or a processed campaign.",
-            show_default=False,
-        ),
-    ],
-    quantity: Annotated[str | None, typer.Option(help="What is wanted.")] = None,
-    frequency: Annotated[str | None, typer.Option(help='"0.3 Hz".')] = None,
-    mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
-    tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
-    tension: Annotated[str | None, typer.Option(help="Of a load-strain curve.")] = None,
-    strain: Annotated[str | None, typer.Option(help='"100 %".')] = None,
-    branch: Annotated[BranchName | None, typer.Option(help="Of a cycle.")] = None,
-    line: Annotated[str | None, typer.Option(help="Which line of SOURCE.")] = None,
-    extrapolate: Annotated[
-        Extrapolation, typer.Option(help="Outside what was tested.")
-    ] = Extrapolation.REFUSE,
-    table: Annotated[
-        bool, typer.Option("--table", help="A grid; values of a level parted by commas.")
-    ] = False,
-    what_there_is: Annotated[bool, typer.Option("--list", help="What SOURCE holds.")] = False,
-    json: Json = False,
-    quiet: Quiet = False,
-    units: Units = "si",
-) -> None:
-    """One design value with its interval, range check and source, or a table of them."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
-        from reduction.cli.lookup import list_sources, look_up_values
-
-        if what_there_is or quantity is None:
-            list_sources(source, outcome=outcome)
-            return
-        levels = {
-            "frequency": frequency,
-            "mean_tension": mean_tension,
-            "tension_amplitude": tension_amplitude,
-            "tension": tension,
-            "strain": strain,
-        }
-        look_up_values(
-            source,
-            quantity,
-            {name: text for name, text in levels.items() if text is not None},
-            name=line,
-            branch=None if branch is None else branch.value,
-            extrapolate=extrapolate.value,
-            grid=table,
             outcome=outcome,
         )
 

@@ -1,0 +1,178 @@
+"""The command lookup with --against: design values of two lines at the same points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, cast
+
+import numpy as np
+
+from reduction.cli.lookup import said_of_lines, shown_levels, span, write_table
+from reduction.cli.lookuppoints import Wanted, points_of
+from reduction.cli.lookupsource import lines_of, one_of
+from reduction.cli.numbers import plain, short, table_of
+from reduction.cli.outcome import Outcome
+from reduction.export.lookuptable import format_of_file, table_of_difference
+from reduction.lookup.against import LineDifference, compare_values
+from reduction.lookup.line import look_up
+from reduction.lookup.product import DesignValues, LineSource
+from reduction.lookup.search import find_lines
+from reduction.record import Bools, Floats
+from reduction.units import UnitSystem, display_unit
+
+__all__ = ["look_up_against"]
+
+
+def look_up_against(source: str, other: str, wanted: Wanted, *, outcome: Outcome) -> None:
+    """Print values of two lines, their difference and ratio, and whether the intervals allow it."""
+    form = None if wanted.out is None else format_of_file(wanted.out)
+    lines = lines_of(source)
+    first = one_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
+    second = _other(lines, other, wanted.quantity)
+    points, left_out = points_of(wanted, first, second)
+    others = _at_own_shares(wanted, points, first, second)
+    if left_out:
+        outcome.say("combinations whose amplitude is above the mean tension are left out")
+    values = [
+        look_up(line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **at)
+        for line, at in ((first, points), (second, others))
+    ]
+    found = compare_values(*values)
+    _show(first, second, found, points, others, outcome)
+    table = table_of_difference(first, second, found, points, others)
+    files = write_table(table, wanted.out, form, outcome)
+    document = _document(first, second, found, points, others, grid=wanted.grid)
+    outcome.answer(document | {"files": files})
+
+
+def _other(lines: list[LineSource], name: str, quantity: str) -> LineSource:
+    """The second line: one of SOURCE by its name, else what the name means by itself."""
+    of_source = [line for line in lines if line.name == name]
+    return one_of(of_source or lines_of(name), quantity, None)
+
+
+def _at_own_shares(
+    wanted: Wanted, points: Mapping[str, Floats], first: LineSource, second: LineSource
+) -> dict[str, Floats]:
+    """Points of the second line: a level in %RBS is a share of its own break strength."""
+    ratio = second.rated_break_strength / first.rated_break_strength
+    return {
+        # an unknown strength of the second leaves NaN, which the look-up refuses
+        name: values * ratio if "RBS" in wanted.levels.get(name, "") else values
+        for name, values in points.items()
+    }
+
+
+def _show(
+    first: LineSource,
+    second: LineSource,
+    found: LineDifference,
+    points: Mapping[str, Floats],
+    others: Mapping[str, Floats],
+    outcome: Outcome,
+) -> None:
+    system = cast("UnitSystem", outcome.units)
+    unit, factor = display_unit(found.unit, system)
+    outcome.say(f"{found.quantity} of {second.name} (second) against {first.name} (first)")
+    if any(not np.array_equal(values, others[name]) for name, values in points.items()):
+        outcome.say(
+            "levels in %RBS are shares of each line's own break strength: "
+            + " and ".join(
+                f"{short(scale * line.rated_break_strength)} {force}"
+                for line in (first, second)
+                for force, scale in (display_unit("N", system),)
+            )
+            + "; loads are those of the first"
+        )
+    heads, levels = shown_levels(points, first.rated_break_strength, found.difference.size, system)
+    table = table_of(
+        *heads, f"first\n[{unit}]", f"second\n[{unit}]", f"difference\n[{unit}]", "ratio",
+        "95 % of the\ndifference", "means", "one test\nof each", "remark", texts=0,
+    )  # fmt: skip
+    numbers = ("difference", "ratio", "surface_low", "surface_high")
+    for place, cells in enumerate(levels):
+        at = {name: float(getattr(found, name).ravel()[place]) for name in numbers}
+        table.add_row(
+            *cells,
+            *(
+                short(factor * float(one.value.ravel()[place]))
+                for one in (found.first, found.second)
+            ),
+            short(factor * at["difference"]),
+            short(at["ratio"], 4),
+            span(factor, at["surface_low"], at["surface_high"]),
+            _verdict(found.is_known, found.is_different, place),
+            _verdict(found.is_test_known, found.is_test_different, place),
+            _remark(found, place),
+        )
+    outcome.show(table)
+    outcome.say("differ: zero is not in the 95 % interval that follows from those of both lines")
+    said_of_lines(outcome, (first, found.first), (second, found.second))
+
+
+def _verdict(is_known: Bools, is_different: Bools, place: int) -> str:
+    if not is_known.ravel()[place]:
+        return "no interval"
+    return "differ" if is_different.ravel()[place] else "not told apart"
+
+
+def _remark(found: LineDifference, place: int) -> str:
+    words = []
+    for which, one in (("first", found.first), ("second", found.second)):
+        if not one.is_inside.ravel()[place]:
+            words.append(f"OUTSIDE what was tested of the {which}")
+        if one.is_untested.ravel()[place]:
+            words.append(f"untested corner of the {which}")
+        if one.is_above_rule.ravel()[place]:
+            words.append(f"peak above the rule of the {which}")
+    return "; ".join(words)
+
+
+def _document(
+    first: LineSource,
+    second: LineSource,
+    found: LineDifference,
+    points: Mapping[str, Floats],
+    others: Mapping[str, Floats],
+    *,
+    grid: bool,
+) -> dict[str, Any]:
+    """What ``--json`` says, in SI: numbers of a single point, lists of a grid."""
+
+    def of(values: Any) -> Any:
+        shaped = np.atleast_1d(values).ravel()
+        return plain(shaped if grid else shaped[0])
+
+    def side(line: LineSource, one: DesignValues, at: Mapping[str, Floats]) -> dict[str, Any]:
+        return {
+            "line": line.name,
+            "levels": {name: of(values) for name, values in at.items()},
+            "value": of(one.value),
+            "interval": [of(one.low), of(one.high)],
+            "surface_interval": [of(one.surface_low), of(one.surface_high)],
+            "inside": of(one.is_inside),
+            "untested": of(one.is_untested),
+            "peak_share": of(one.peak_share),
+            "minimum_share": of(one.minimum_share),
+            "above_rule": of(one.is_above_rule),
+            "rule": one.rule,
+            "source": one.source,
+            "errata": list(one.errata),
+            "notes": list(one.notes),
+        }
+
+    return {
+        "quantity": found.quantity,
+        "unit": found.unit,
+        "first": side(first, found.first, points),
+        "second": side(second, found.second, others),
+        "difference": of(found.difference),
+        "ratio": of(found.ratio),
+        "surface_interval": [of(found.surface_low), of(found.surface_high)],
+        "interval": [of(found.low), of(found.high)],
+        "known": of(found.is_known),
+        "different": of(found.is_different),
+        "test_known": of(found.is_test_known),
+        "test_different": of(found.is_test_different),
+        "inside": of(found.is_inside),
+    }
