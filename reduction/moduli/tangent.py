@@ -10,9 +10,6 @@ References
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from functools import reduce
-from operator import add
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,12 +20,10 @@ from reduction.errors import DataError
 from reduction.moduli.blur import window_blur
 from reduction.moduli.grid import StrainGrid, strain_grid
 from reduction.moduli.groups import CycleGroups, select_cycles
-from reduction.moduli.moments import accumulate_moments, fit_windows
 from reduction.moduli.product import ModulusCurves
-from reduction.moduli.running import RunningStatistics
-from reduction.record import Floats, Integers
+from reduction.moduli.specimencurves import SpecimenCurves, reduce_specimens
+from reduction.record import Floats
 from reduction.settings import ModulusSettings
-from reduction.workers import run_blocks
 
 __all__ = ["tangent_curves"]
 
@@ -46,128 +41,6 @@ def pair_specimens(
             needed="(n_specimens, n_samples) and (n_specimens,)",
         )
     return strains, tensions, areas
-
-
-@dataclass(frozen=True)
-class _SpecimenCurves:
-    """What one specimen gives in a block: statistics (2, n_bins) [N] and selected curves."""
-
-    trimmed: RunningStatistics
-    untrimmed: RunningStatistics
-    tension: RunningStatistics
-    selected: Floats
-    selected_variance: Floats
-    n_outside: int
-
-    def __add__(self, later: _SpecimenCurves) -> _SpecimenCurves:
-        """Both blocks together, in the order of the record."""
-        return _SpecimenCurves(
-            self.trimmed + later.trimmed,
-            self.untrimmed + later.untrimmed,
-            self.tension + later.tension,
-            np.concatenate([self.selected, later.selected]),
-            np.concatenate([self.selected_variance, later.selected_variance]),
-            self.n_outside + later.n_outside,
-        )
-
-
-def _tension_reference(tension: Floats, cycles: Cycles) -> float:
-    ends = tension[cycles.branch_first]
-    return float(np.nanmean(ends)) if np.isfinite(ends).any() else 0.0
-
-
-def _curve_of_sample(
-    cycles: Cycles, groups: CycleGroups, start: int, stop: int, samples: slice
-) -> Integers:
-    """Curve of each sample of a block: trimmed parts first, then the ends; -1 for none."""
-    number, branch = cycles.cycle_number[samples], cycles.branch[samples]
-    group = groups.of_cycle[number] - start
-    curve = 2 * group + branch - 1
-    curve[~cycles.is_constant_rate[samples]] += 2 * (stop - start)
-    outside = (group < 0) | (group >= stop - start) | (branch == 0)
-    if outside.any():
-        curve[outside] = -1
-    return curve
-
-
-def _reduce_block(
-    strain: Floats,
-    tension: Floats,
-    *,
-    curve: Integers,
-    reference: float,
-    grid: StrainGrid,
-    minimum_count: int,
-    weight: Floats,
-    n_break_in: int,
-    chosen: Integers,
-) -> _SpecimenCurves:
-    """Curves of one block and specimen; its first ``n_break_in`` groups are in no mean."""
-    n_groups = weight.size
-    moments, n_outside = accumulate_moments(
-        strain,
-        tension,
-        curve=curve,
-        n_curves=4 * n_groups,
-        grid=grid,
-        tension_reference=reference,
-    )
-    shape = (2, n_groups, 2, grid.n_bins)
-    trimmed = moments.curves(0, 2 * n_groups)
-    whole = trimmed + moments.curves(2 * n_groups, 4 * n_groups)
-    fits = fit_windows(trimmed.followed_by(whole), minimum_count=minimum_count)
-    slope, slope_variance = fits.slope.reshape(shape), fits.slope_variance.reshape(shape)
-
-    def statistics(values: Floats, variance: Floats, which: int) -> RunningStatistics:
-        return RunningStatistics.of(
-            values.reshape(shape)[which, n_break_in:],
-            variance.reshape(shape)[which, n_break_in:],
-            weight=weight[n_break_in:],
-        )
-
-    return _SpecimenCurves(
-        trimmed=statistics(slope, slope_variance, 0),
-        untrimmed=statistics(slope, slope_variance, 1),
-        tension=statistics(fits.tension, fits.tension_variance, 0),
-        selected=slope[0, chosen],
-        selected_variance=slope_variance[0, chosen],
-        n_outside=n_outside,
-    )
-
-
-def _reduce_specimens(
-    strain: Floats,
-    tension: Floats,
-    *,
-    cycles: Cycles,
-    groups: CycleGroups,
-    grid: StrainGrid,
-    minimum_count: int,
-    selected: Integers,
-) -> list[_SpecimenCurves]:
-    references = [_tension_reference(row, cycles) for row in tension]
-    sizes = np.diff(np.append(groups.first, cycles.n_cycles)).astype(np.float64)
-
-    def reduce_block(block: tuple[int, int, slice]) -> list[_SpecimenCurves]:
-        start, stop, samples = block
-        curve = _curve_of_sample(cycles, groups, start, stop, samples)
-        return [
-            _reduce_block(
-                strain[row, samples],
-                tension[row, samples],
-                curve=curve,
-                reference=reference,
-                grid=grid,
-                minimum_count=minimum_count,
-                weight=sizes[start:stop],
-                n_break_in=int(np.count_nonzero(groups.is_break_in[start:stop])),
-                chosen=selected[(selected >= start) & (selected < stop)] - start,
-            )
-            for row, reference in enumerate(references)
-        ]
-
-    blocks = run_blocks(reduce_block, groups.blocks(cycles, grid.n_bins))
-    return [reduce(add, of_specimen) for of_specimen in zip(*blocks, strict=True)]
 
 
 def tangent_curves(
@@ -275,7 +148,7 @@ def tangent_curves(
     groups = CycleGroups.of(n_cycles, break_in_cycles, grid.cycles_pooled)
     numbers = select_cycles(n_cycles, longest=settings.selected_cycles)
     selected = np.unique(groups.of_cycle[numbers])
-    specimens = _reduce_specimens(
+    specimens = reduce_specimens(
         strain,
         tension,
         cycles=cycles,
@@ -330,7 +203,7 @@ def _notes(
     grid: StrainGrid,
     groups: CycleGroups,
     break_in_cycles: int,
-    specimens: Sequence[_SpecimenCurves],
+    specimens: Sequence[SpecimenCurves],
 ) -> list[str]:
     notes = [f"tangent modulus by local regression in a window of {grid.window:g} of strain"]
     if break_in_cycles:
