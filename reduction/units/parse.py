@@ -1,0 +1,78 @@
+"""A number with a unit, as a person or a test house writes it, into SI."""
+
+from __future__ import annotations
+
+import re
+
+from reduction.errors import SettingsError
+from reduction.units.scale import DIMENSIONS, Dimension, scale_to_si
+
+__all__ = ["parse_quantity"]
+
+_QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
+
+
+def parse_quantity(
+    text: str | float, dimension: Dimension, *, rated_break_strength: float | None = None
+) -> float:
+    """Value in SI of a text with a unit, such as ``"21.5 ft"`` or ``"12 %RBS"``.
+
+    Parameters
+    ----------
+    text : str or float
+        A number and a unit; a bare number only where the dimension is a plain
+        number or a strain.
+    dimension : Dimension
+        What it has to be.
+    rated_break_strength : float, optional
+        What ``%RBS`` (also ``%MBS``, ``%MBL``) refers to. [N]
+
+    Returns
+    -------
+    value : float
+        In SI.
+
+    Raises
+    ------
+    SettingsError
+        If there is no unit, or the wrong one.
+
+    Examples
+    --------
+    >>> parse_quantity("21.5 ft", "length")
+    6.5532
+    >>> parse_quantity("12 %RBS", "force", rated_break_strength=1000.0)
+    120.0
+    """
+    if isinstance(text, (int, float)) and not isinstance(text, bool):
+        if dimension in ("strain", "number"):
+            return float(text)
+        raise SettingsError(
+            "a value has no unit",
+            found=repr(text),
+            needed=f'text such as "{text} {DIMENSIONS[dimension]}"',
+        )
+    match = _QUANTITY.match(str(text))
+    if match is None:
+        raise SettingsError(
+            "a value is not a number with a unit",
+            found=repr(text),
+            needed=f'text such as "1.5 {DIMENSIONS[dimension]}"',
+        )
+    number, unit = float(match[1]), match[2]
+    if re.fullmatch(r"%\s*(RBS|MBS|MBL)", unit) and dimension == "force":
+        if rated_break_strength is None:
+            raise SettingsError(
+                "a share of the break strength is given, but no break strength",
+                found=repr(text),
+                needed="rated_break_strength of the specimen",
+            )
+        return number / 100 * rated_break_strength
+    if not unit and dimension not in ("strain", "number"):
+        raise SettingsError(
+            "a value has no unit",
+            found=repr(text),
+            needed=f'text such as "{number:g} {DIMENSIONS[dimension]}"',
+        )
+    factor, offset = scale_to_si(unit, dimension)
+    return factor * number + offset
