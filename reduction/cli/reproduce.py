@@ -141,6 +141,7 @@ def _described(item: Item) -> dict[str, Any]:
         "unit": cell.unit,
         "corrected": cell.corrected,
         "recomputed": plain(item.recomputed),
+        "tolerance": plain(item.tolerance),
         "verdict": item.verdict,
         "erratum": cell.erratum or None,
         "confidence": cell.confidence or None,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -11,14 +10,14 @@ from reduction.errors import DataError
 from reduction.line.cubic import slope_of_cubic
 from reduction.published.cell import Cell, number_of, printed_step
 from reduction.record import Floats
-from reduction.reproduce.item import Item, Verdict, not_testable
+from reduction.reproduce.item import Item, not_testable
 
 __all__ = [
     "CUBIC_SCALES",
     "POLYNOMIAL_SCALES",
+    "Check",
     "Pages",
-    "agree",
-    "beside",
+    "always",
     "number",
     "rounding",
 ]
@@ -98,24 +97,13 @@ class Pages:
         return float(tension ** np.arange(4) @ self.cubic(table, row))
 
 
-def agree(cell: Cell, holds: bool, how: str) -> Item:
-    """A claim in words that numbers bear out or not.
-
-    A claim that does not hold is an ``erratum`` or ``open`` where the cell says so.
-    """
-    verdict: Verdict = "unexplained"
-    if holds:
-        verdict = "reproduced"
-    elif cell.confidence == "open":
-        verdict = "open"
-    elif cell.erratum:
-        verdict = "erratum"
-    return Item(cell, float("nan"), verdict, how)
+Check = Callable[[Cell, Pages], Item]
+"""Verdict on one claim of the text among all cells."""
 
 
-def beside(cell: Cell, recomputed: float, why: str) -> Item:
-    """A cell that nothing determines to its last digit, with a number to hold against it."""
-    return replace(not_testable(cell, why), recomputed=recomputed)
+def always(why: str) -> Check:
+    """The check of a claim that nothing in the report determines."""
+    return lambda cell, pages: not_testable(cell, why)
 
 
 def rounding(

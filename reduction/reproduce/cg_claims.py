@@ -1,24 +1,20 @@
-"""CG-D-39-80, claims of the text on stiffness, strain and loss, held against its tables.
-
-"Approximately" and round numbers: a number holds to its last digit that is not a zero.
-"""
+"""CG-D-39-80, claims of the text on stiffness, strain and loss, held against its tables."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import numpy as np
 from scipy.special import fdtri
 
 from reduction.line.model import apparent_spring_constant
 from reduction.published.cell import Cell
-from reduction.reproduce.cg_cells import Pages, agree, beside, number
+from reduction.reproduce.cg_cells import Check, Pages, always
 from reduction.reproduce.cg_surfaces import CENTRE_LINES, centre_stiffness, change_of_mean
-from reduction.reproduce.item import Item, judge, not_testable
+from reduction.reproduce.item import Item, agree, beside, judge, not_testable
+from reduction.reproduce.wording import judge_round
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.terms import model_matrix, quadratic_exponents
 
-__all__ = ["CLAIMS_OF_STIFFNESS", "step_of_round_number"]
+__all__ = ["CLAIMS_OF_STIFFNESS"]
 
 K_AP, ENERGY, K_1, TIME = (
     "apparent_spring_constant", "hysteresis_energy", "dissipation_spring_constant",
@@ -32,25 +28,6 @@ NYLON_BRAIDS = tuple(
     f"nylon | double braid | {size} in | new" for size in ("1/2", "3/4", "1", "1 1/4")
 )
 COLUMN_LOST = "the column of the five-year line is lost in the text"
-Check = Callable[[Cell, Pages], Item]
-
-
-def step_of_round_number(value: float) -> float:
-    """One unit of the last digit that is not a zero.
-
-    Examples
-    --------
-    >>> step_of_round_number(200.0), step_of_round_number(50.0), step_of_round_number(17.0)
-    (100.0, 10.0, 1.0)
-    """
-    step = 1.0
-    while value % (10 * step) == 0:
-        step *= 10
-    return step
-
-
-def _round(cell: Cell, recomputed: float, how: str) -> Item:
-    return judge(cell, recomputed, how, tolerance=0.5 * step_of_round_number(number(cell)))
 
 
 def _ratios(pages: Pages) -> dict[str, float]:
@@ -118,7 +95,7 @@ def _over_mean_load(cell: Cell, pages: Pages) -> Item:
     for row in (NYLON_BRAIDS[0], NYLON_BRAIDS[2]):
         least, greatest, _ = _over_factor(pages, row, 1)
         changes.append(100 * (greatest / least - 1))
-    return _round(
+    return judge_round(
         cell, float(np.mean(changes)), "Table 3, mean of the two lines that the text names"
     )
 
@@ -167,10 +144,6 @@ def _constant(cell: Cell, pages: Pages) -> Item:
         found.append(pages.value("11", row, f"{ENERGY} B1") / form)
     mean = float(np.exp(np.mean(np.log(found))))
     return beside(cell, mean, "geometric mean at the seven centre points")
-
-
-def _by_theory(why: str) -> Check:
-    return lambda cell, pages: not_testable(cell, why)
 
 
 def _little_effect_on_energy(cell: Cell, pages: Pages) -> Item:
@@ -224,12 +197,10 @@ CLAIMS_OF_STIFFNESS: dict[str, Check] = {
     f"{K_AP} at high frequency": _limit,
     f"{K_AP} at low frequency": _limit,
     "constant in front of K_1": _constant,
-    "power of K_0 in the denominator": _by_theory(
-        "a sum of K_0 and a square of K_0 + K_1 has no unit"
-    ),
-    "tension under the integral": _by_theory("the mean load over a closed loop has no integral"),
-    "angular frequency": _by_theory("2 pi f gives K_ap of the centre points, f does not"),
-    "factors": _by_theory("App. C: the coefficients belong to coded levels"),
+    "power of K_0 in the denominator": always("a sum of K_0 and a square of K_0 + K_1 has no unit"),
+    "tension under the integral": always("the mean load over a closed loop has no integral"),
+    "angular frequency": always("2 pi f gives K_ap of the centre points, f does not"),
+    "factors": always("App. C: the coefficients belong to coded levels"),
     "apparent over quasi-static spring constant low": _stiffness_ratio,
     "apparent over quasi-static spring constant high": _stiffness_ratio,
     f"{K_AP} change": _change,

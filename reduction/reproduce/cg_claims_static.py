@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from reduction.published.cell import Cell
-from reduction.reproduce.cg_cells import Pages, agree
-from reduction.reproduce.item import Item, judge
+from reduction.reproduce.cg_cells import Check, Pages
+from reduction.reproduce.item import Item, agree, judge
 
 __all__ = ["CLAIMS_OF_PULLS"]
 
@@ -22,7 +20,6 @@ STRENGTH = {
     PB: ("10", f"{PB} | new", "tensile_strength mean"),
     PP: ("10", f"{PP} | new", "tensile_strength mean"),
 }
-Check = Callable[[Cell, Pages], Item]
 
 
 def _sizes_at(pages: Pages, tension: float) -> str:

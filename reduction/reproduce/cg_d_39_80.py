@@ -14,6 +14,7 @@ from reduction.published.cell import Cell
 from reduction.published.read import cells_of
 from reduction.reproduce.cg_cells import Pages
 from reduction.reproduce.cg_claims import CLAIMS_OF_STIFFNESS
+from reduction.reproduce.cg_claims_settings import CLAIMS_OF_SETTINGS
 from reduction.reproduce.cg_claims_static import CLAIMS_OF_PULLS
 from reduction.reproduce.cg_claims_tests import CLAIMS_OF_TESTS
 from reduction.reproduce.cg_levels import item_of_level
@@ -31,7 +32,7 @@ OF_TABLE = {
     **dict.fromkeys(("6", "7", "8", "9", "D-1"), item_of_static),
     **dict.fromkeys(("10", "20", "21", "A-2", "A-3", "A-4"), item_of_test),
 }
-CLAIMS = CLAIMS_OF_STIFFNESS | CLAIMS_OF_PULLS | CLAIMS_OF_TESTS
+CLAIMS = CLAIMS_OF_STIFFNESS | CLAIMS_OF_PULLS | CLAIMS_OF_TESTS | CLAIMS_OF_SETTINGS
 PRINTED_ONCE = "measured, or a setting that is printed once"
 
 

@@ -11,9 +11,9 @@ import numpy as np
 from reduction.line.pull import fit_pull
 from reduction.line.quasistatic import spring_constant_ratio
 from reduction.published.cell import Cell
-from reduction.reproduce.cg_cells import POLYNOMIAL_SCALES, Pages, agree, beside, number
+from reduction.reproduce.cg_cells import POLYNOMIAL_SCALES, Pages, number
 from reduction.reproduce.cg_surfaces import CENTRE_LINES
-from reduction.reproduce.item import Item, judge, not_testable
+from reduction.reproduce.item import Item, agree, beside, judge, not_testable
 
 __all__ = ["item_of_static"]
 

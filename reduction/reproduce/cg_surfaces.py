@@ -12,8 +12,8 @@ import numpy as np
 from reduction.line.identify import identify_by_amplitude
 from reduction.line.model import apparent_spring_constant, hysteresis_energy
 from reduction.published.cell import Cell, printed_step
-from reduction.reproduce.cg_cells import Pages, beside, number, rounding
-from reduction.reproduce.item import Item, judge, not_testable
+from reduction.reproduce.cg_cells import Pages, number, rounding
+from reduction.reproduce.item import Item, beside, judge, not_testable
 from reduction.surface.overall import statistics_from_r2
 from reduction.surface.terms import model_matrix, quadratic_exponents
 

@@ -57,6 +57,7 @@ class _Row:
     item: Item
     corrected: str
     recomputed: str
+    tolerance: str
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,13 @@ def _report(report: ReportId, items: Sequence[Item]) -> _Report:
     for item in items:
         cell = item.cell
         corrected = "" if cell.corrected is None else f"{cell.corrected:.12g}"
-        row = _Row(item, corrected, number_beside(item.recomputed, cell.printed))
+        wide = item.tolerance > 0.501 * printed_step(cell.printed) > 0
+        row = _Row(
+            item,
+            corrected,
+            number_beside(item.recomputed, cell.printed),
+            f"{item.tolerance:.2g}" if wide and item.verdict == "reproduced" else "",
+        )
         rows.setdefault(cell.table, []).append(row)
     counts = counts_by_table(items)
     errata = touched_errata(report, items)
@@ -127,7 +134,7 @@ def _report(report: ReportId, items: Sequence[Item]) -> _Report:
 
 def _title(table: str) -> str:
     """A table has a number on its page; equations, sections and parts have a name."""
-    return table if table[0].islower() else f"Table {table}"
+    return table if table[0].islower() or table.startswith("App ") else f"Table {table}"
 
 
 def number_beside(value: float, printed: str) -> str:

@@ -38,8 +38,8 @@ _ITEMS: Mapping[ReportId, Callable[[], list[Item]]] = {
     "Wang-2022": wang_2022.items,
 }
 _COLUMNS = (
-    "report", "table", "row", "column", "printed", "unit", "corrected", "recomputed", "verdict",
-    "erratum", "confidence", "how", "page", "note",
+    "report", "table", "row", "column", "printed", "unit", "corrected", "recomputed", "tolerance",
+    "verdict", "erratum", "confidence", "how", "page", "note",
 )  # fmt: skip
 
 
@@ -144,7 +144,10 @@ def csv_of(items: Iterable[Item]) -> str:
     writer = csv.writer(text)
     writer.writerow(_COLUMNS)
     for item in items:
-        own = {"recomputed": item.recomputed, "verdict": item.verdict, "how": item.how}
+        own = {
+            "recomputed": item.recomputed, "tolerance": item.tolerance, "verdict": item.verdict,
+            "how": item.how,
+        }  # fmt: skip
         values = (own[name] if name in own else getattr(item.cell, name) for name in _COLUMNS)
         writer.writerow(_written(value) for value in values)
     return text.getvalue()

@@ -10,8 +10,6 @@ References
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from math import isnan
 
 from reduction.published.cell import Cell
 from reduction.published.read import cells_of
@@ -93,22 +91,12 @@ def items_of(cells: Sequence[Cell]) -> list[Item]:
     ]
     by_key = {item.cell.key: item for item in found}
     return [
-        _as_printed(
-            by_key.get(cell.key)
-            or item_of_programme(cell, table["1"])
-            or item_printed_twice(cell, book)
-            or not_testable(cell, _why_not(cell))
-        )
+        by_key.get(cell.key)
+        or item_of_programme(cell, table["1"])
+        or item_printed_twice(cell, book)
+        or not_testable(cell, _why_not(cell))
         for cell in cells
     ]
-
-
-def _as_printed(item: Item) -> Item:
-    """An erratum that lets the printed number stand explains no difference from it."""
-    stands = item.cell.corrected is None and not item.cell.confidence
-    if item.verdict == "erratum" and stands and not isnan(item.recomputed):
-        return replace(item, verdict="unexplained")
-    return item
 
 
 def _why_not(cell: Cell) -> str:

@@ -9,8 +9,9 @@ import pytest
 from reduction.errors import DataError
 from reduction.published.cell import number_of
 from reduction.published.read import cells_of, errata_of
-from reduction.reproduce.cg_cells import Pages, agree, beside, number, rounding
+from reduction.reproduce.cg_cells import Pages, number, rounding
 from reduction.reproduce.cg_d_39_80 import item_of, items, items_of
+from reduction.reproduce.item import agree, beside, judge, not_testable
 
 REPORT = "CG-D-39-80"
 CELLS = cells_of(REPORT)
@@ -161,6 +162,10 @@ def test_a_claim_that_fails_without_an_erratum_is_unexplained():
     assert agree(cell, True, "why").verdict == "reproduced"
     assert agree(doubted, False, "why").verdict == "open"
     assert agree(replace(doubted, confidence="certain"), False, "why").verdict == "erratum"
+    stands = replace(doubted, confidence="")
+    assert agree(stands, False, "why").verdict == "unexplained"
+    assert judge(stands, 1e9, "why").verdict == "unexplained"
+    assert not_testable(stands, "why").verdict == "not_testable"
     assert beside(cell, 2.5, "why").recomputed == 2.5
     assert beside(cell, 2.5, "why").verdict == "not_testable"
 

@@ -60,13 +60,13 @@ def test_counts_of_a_table(table):
 
 def test_counts_of_the_report():
     found = Counter(item.verdict for item in items())
-    assert found == {"reproduced": 483, "erratum": 33, "open": 18, "not_testable": 85}
+    assert found == {"reproduced": 483, "erratum": 30, "open": 18, "not_testable": 90}
 
 
 def test_every_erratum_is_the_verdict_of_a_cell_or_a_remark_on_one_that_stands():
     shown = {item.cell.erratum for item in items() if item.verdict in ("erratum", "open")}
     # a stray dash of WH5-10 leaves the number legible
-    stands = {"WH5-6", "WH5-10", "WH5-7", "WH5-12", "WH5-17", "WH5-35"}
+    stands = {"WH5-6", "WH5-10", "WH5-7", "WH5-12", "WH5-16", "WH5-17", "WH5-34", "WH5-35"}
     assert {one.id for one in errata_of(REPORT)} - shown <= stands
     assert {item.cell.erratum for item in items()} - {""} == {one.id for one in errata_of(REPORT)}
 
@@ -122,6 +122,42 @@ def test_a_length_of_the_static_test_is_held_to_half_a_per_cent_of_elongation():
     assert verdict(cell, "12.98") == "unexplained"
 
 
+@pytest.mark.parametrize(
+    ("key", "least", "greatest"),
+    [
+        (("sec 2.3.3", "single tether at 100 % stretch", "tension"), 63, 106),
+        (("sec 2.3.2", "assembly of four tethers, no waves or currents", "mean_tension"), 252, 424),
+        (("sec 2.3.2", "assembly of six tethers, no waves or currents", "mean_tension"), 378, 636),
+        (("sec 1", "low elongations", "tangent_modulus"), 115, 138),
+        (("sec 2.3.5", "static test of Buoy Technology", "tangent_modulus"), 101, 152),
+    ],
+)
+def test_what_scatters_or_rests_on_a_size_that_is_not_printed_is_held_beside_and_not_confirmed(
+    key, least, greatest
+):
+    (item,) = (one for one in items() if one.cell.key == key)
+    assert item.verdict == "not_testable"
+    assert "not stated" in item.how or "no diameter" in item.how
+    assert least < item.recomputed < greatest
+
+
+def test_strains_of_table_5_end_where_the_interpolated_stretch_does():
+    # T-1 ends at 1.23 and 1.25 in Table 5; Table 3 has 123.8 and 125.1 %, actual 127.1 and 128.9 %
+    key = ("sec 4.1", "strain of Tables 5 and 6", "strain_method")
+    (item,) = (one for one in items() if one.cell.key == key)
+    assert (
+        item.verdict == "reproduced" and "within 0.8 points" in item.how and "up to 4.1" in item.how
+    )
+    changed = [
+        replace(one, printed="1.27")
+        if one.printed == "1.23" and one.row.startswith("T-1 ")
+        else one
+        for one in CELLS
+    ]
+    (item,) = (one for one in items_of(changed) if one.cell.key == key)
+    assert item.verdict == "unexplained"
+
+
 def test_times_of_the_static_test_run_on():
     clock = [cell for cell in cells("4") if cell.column == "clock"]
     assert verdict(clock[3], "0920") == "unexplained"
@@ -132,13 +168,12 @@ def test_times_of_the_static_test_run_on():
     [
         (("sec 4.7", "test T-4 Extended", "duration"), "17"),
         (("sec 4.7", "test T-4 Extended", "cycle rate"), "4"),
-        (("sec 2.3.3", "single tether at 100 % stretch", "tension"), "58"),
-        (("sec 2.3.2", "assembly of four tethers, no waves or currents", "mean_tension"), "530"),
-        (("sec 2.3.2", "assembly of six tethers, no waves or currents", "mean_tension"), "700"),
+        (("sec 4.8", "static test, after a weight was added", "hold duration"), "about 15"),
+        (("sec 4.8", "static test, after a weight was taken off", "hold duration"), "about 30"),
+        (("sec 6.0", "relaxation at the low end of a cycle", "tangent_modulus"), "below 10"),
         (("sec 6.0", "smaller cycles about 100 %, to", "tangent_modulus"), "160"),
         (("sec 6.0", "greatest modulus to that of lower elongations", "ratio of moduli"), "7"),
         (("sec 6.0", "greatest of all tests", "tangent_modulus"), "800"),
-        (("sec 1", "low elongations", "tangent_modulus"), "about 155"),
         (("sec 4.7", "all tests, greatest", "strain"), "less than 255"),
         (("sec 4.6", "test T-6", "mean_strain"), "240"),
         (("sec 2.3.5", "mooring run of Figure 16", "wave_period"), "13"),
