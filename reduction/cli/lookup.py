@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
+from rich.table import Table
 
 from reduction.cli.lookuppoints import Wanted, points_of
 from reduction.cli.lookupsource import lines_of, one_of
@@ -21,7 +22,15 @@ from reduction.lookup.search import find_lines
 from reduction.record import Floats
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["list_sources", "look_up_values", "said_of_lines", "shown_levels", "span", "write_table"]
+__all__ = [
+    "fold_last",
+    "list_sources",
+    "look_up_values",
+    "said_of_lines",
+    "shown_levels",
+    "span",
+    "write_table",
+]
 
 
 def list_sources(source: str, search: Mapping[str, Any], *, outcome: Outcome) -> None:
@@ -32,7 +41,7 @@ def list_sources(source: str, search: Mapping[str, Any], *, outcome: Outcome) ->
         "line", "source", "material", "construction", "condition", f"diameter\n[{unit}]",
         "quantities", texts=5,
     )  # fmt: skip
-    table.columns[-1].justify, table.columns[-1].no_wrap = "left", False
+    fold_last(table)
     for line in lines:
         table.add_row(
             line.name, line.source, line.material, line.construction, line.condition,
@@ -112,6 +121,7 @@ def _show(
         *heads, f"value\n[{unit}]", "95 % of\none more test", "95 % of\nthe surface",
         "peak\n[%RBS]", "minimum\n[%RBS]", "remark", texts=0,
     )  # fmt: skip
+    fold_last(table)
     names = (
         "value", "low", "high", "surface_low", "surface_high", "peak_share", "minimum_share",
         "is_inside", "is_untested", "is_above_rule",
@@ -172,6 +182,11 @@ def shown_levels(
             heads.append("\n[%RBS]")
             columns.append([short(100 * float(value) / strength, 4) for value in values.ravel()])
     return heads, [[column[place] for column in columns] for place in range(size)]
+
+
+def fold_last(table: Table) -> None:
+    """Let the last column, of words, take the room that numbers leave."""
+    table.columns[-1].justify, table.columns[-1].no_wrap = "left", False
 
 
 def span(factor: float, low: float, high: float) -> str:

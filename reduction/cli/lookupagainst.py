@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from reduction.cli.lookup import said_of_lines, shown_levels, span, write_table
+from reduction.cli.lookup import fold_last, said_of_lines, shown_levels, span, write_table
 from reduction.cli.lookuppoints import Wanted, points_of
 from reduction.cli.lookupsource import lines_of, one_of
 from reduction.cli.numbers import plain, short, table_of
@@ -89,6 +89,7 @@ def _show(
         *heads, f"first\n[{unit}]", f"second\n[{unit}]", f"difference\n[{unit}]", "ratio",
         "95 % of the\ndifference", "means", "one test\nof each", "remark", texts=0,
     )  # fmt: skip
+    fold_last(table)
     numbers = ("difference", "ratio", "surface_low", "surface_high")
     for place, cells in enumerate(levels):
         at = {name: float(getattr(found, name).ravel()[place]) for name in numbers}
@@ -120,11 +121,11 @@ def _remark(found: LineDifference, place: int) -> str:
     words = []
     for which, one in (("first", found.first), ("second", found.second)):
         if not one.is_inside.ravel()[place]:
-            words.append(f"OUTSIDE what was tested of the {which}")
+            words.append(f"{which}: OUTSIDE")
         if one.is_untested.ravel()[place]:
-            words.append(f"untested corner of the {which}")
+            words.append(f"{which}: untested corner")
         if one.is_above_rule.ravel()[place]:
-            words.append(f"peak above the rule of the {which}")
+            words.append(f"{which}: peak above the rule")
     return "; ".join(words)
 
 

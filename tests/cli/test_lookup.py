@@ -1,9 +1,13 @@
+import csv
 import json
 
 import pytest
+import xarray as xr
 
 LBF = 4.4482216152605
 NYLON = "nylon-double-braid-0.5in-new"
+PLAIT, BRAID = "polyester-8-strand-plaited-0.5in", "polyester-double-braid-0.5in"
+TETHER = "rubber-tether-new-T-2"
 LEVELS = (
     "--frequency", "0.3 Hz", "--mean-tension", "21 %RBS", "--tension-amplitude", "8.5 %RBS",
 )  # fmt: skip
@@ -32,6 +36,156 @@ def test_a_grid_is_a_table(command):
     assert answer["levels"]["frequency"] == [0.1] * 3 + [0.5] * 3
     text = command("lookup", NYLON, "--quantity", "relaxation_time", "--table", "--units", "us")
     assert "untested corner" in text.stdout
+
+
+def test_a_grid_fills_what_is_not_given_of_a_curve_too(command):
+    done = command(
+        "lookup", NYLON, "--quantity", "quasi_static_spring_constant", "--table", "--json"
+    )
+    answer = json.loads(done.stdout)
+    # Table 6: used up to 1,920 lb, which is 30 % of 6,400
+    assert answer["levels"]["mean_tension"] == pytest.approx([0, 960 * LBF, 1920 * LBF])
+    assert answer["peak_share"] == pytest.approx([0, 0.15, 0.3])
+    tether = command("lookup", TETHER, "--quantity", "tangent_modulus", "--branch", "ascending",
+                     "--table", "--json")  # fmt: skip
+    assert json.loads(tether.stdout)["levels"]["strain"] == pytest.approx([0.6, 1.015, 1.43])
+    damping = command("lookup", NYLON, "--quantity", "dashpot_coefficient", "--table", "--json")
+    assert len(json.loads(damping.stdout)["value"]) == 27
+
+
+def test_ends_of_the_tension_and_the_rule_are_in_every_answer(command):
+    text = command("lookup", NYLON, "--quantity", "relaxation_time", *LEVELS).stdout
+    assert "29.5" in text
+    assert "rule: peak at most 60 % of the break strength where the line is always loaded" in text
+    text = command(
+        "lookup", TETHER, "--quantity", "tangent_modulus", "--strain", "60 %", "--branch",
+        "ascending",
+    ).stdout  # fmt: skip
+    # 62 lb (Table 6, T-2) of 800 lb
+    assert "7.75" in text
+    assert "rule: a rubber tether must not go slack" in text
+
+
+def test_a_search_leaves_the_lines_that_are_so(command):
+    words = ("--material", "nylon", "--construction", "double braid", "--condition", "new")
+    done = command("lookup", "published", "--list", *words, "--diameter", "0.5 in", "--json")
+    assert [one["name"] for one in json.loads(done.stdout)["lines"]] == [NYLON]
+    wide = command("lookup", "published", *words, "--diameter", "18 mm", "--tolerance", "10 %",
+                   "--json")  # fmt: skip
+    (found,) = json.loads(wide.stdout)["lines"]
+    assert found["diameter"] == pytest.approx(0.75 * 0.0254)
+    assert found["linear_density"] is None
+    value = command(
+        "lookup", "published", *words, "--diameter", "13 mm", "--quantity", "relaxation_time",
+        *LEVELS, "--json",
+    )  # fmt: skip
+    assert json.loads(value.stdout)["line"] == NYLON
+
+
+def test_a_search_in_a_campaign(command, synthetic):
+    done = command("lookup", synthetic.processed, "--material", "RUBBER", "--condition", "used",
+                   "--json")  # fmt: skip
+    lines = json.loads(done.stdout)["lines"]
+    assert {one["name"] for one in lines} == {"used"}
+    assert {one["kind"] for one in lines} == {"rubber tether"}
+    none = command("lookup", synthetic.processed, "--list", "--material", "nylon")
+    assert none.returncode == 2
+    assert "no line is so; found material 'nylon'; needed material Natsyn rubber" in none.stderr
+    assert "condition new or used" in none.stderr
+
+
+def test_old_line_stands_against_new(command):
+    done = command(
+        "lookup", f"{PLAIT}-new", "--quantity", "apparent_spring_constant", "--against",
+        f"{PLAIT}-4-years", *LEVELS, "--json",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout)
+    # B1 of Table 5; the text of sec. 4.4.1 says 30 %
+    assert answer["ratio"] == pytest.approx(8.252 / 6.317)
+    assert answer["difference"] == pytest.approx((8.252 - 6.317) * 1e4 * LBF)
+    assert answer["known"] is True
+    assert answer["different"] is (answer["surface_interval"][0] > 0)
+    assert answer["test_different"] is False
+    assert any("about half" in note for note in answer["second"]["notes"])
+
+
+def test_shares_are_of_each_lines_own_strength_and_tensions_are_one(command):
+    pair = ("lookup", f"{BRAID}-new", "--quantity", "apparent_spring_constant", "--against",
+            f"{BRAID}-4-years")  # fmt: skip
+    text = command(*pair, *LEVELS, "--units", "us").stdout
+    assert "of each line's own break strength: 6400 lbf and 7000 lbf" in text
+    shares = json.loads(command(*pair, *LEVELS, "--json").stdout)
+    assert shares["ratio"] == pytest.approx(11.55 / 9.457)  # B1 of Table 5
+    forces = (
+        "--frequency", "0.3 Hz", "--mean-tension", "1344 lbf", "--tension-amplitude", "544 lbf",
+    )  # fmt: skip
+    one = json.loads(command(*pair, *forces, "--json").stdout)
+    assert one["first"]["levels"] == one["second"]["levels"]
+    assert one["first"]["value"] == pytest.approx(9.457e4 * LBF)
+
+
+def test_a_grid_of_two_lines_is_over_what_both_boxes_have(command, tmp_path):
+    done = command(
+        "lookup", f"{BRAID}-new", "--quantity", "apparent_spring_constant", "--against",
+        f"{BRAID}-4-years", "--table", "--json", "--out", tmp_path / "both.csv",
+    )  # fmt: skip
+    answer = json.loads(done.stdout)
+    assert len(answer["ratio"]) == 27
+    assert all(answer["inside"])
+    mean = answer["first"]["levels"]["mean_tension"]
+    # 12 % of 7,000 lb to 30 % of 6,400 lb
+    assert (min(mean), max(mean)) == pytest.approx((840 * LBF, 1920 * LBF))
+    assert answer["files"] == [str(tmp_path / "both.csv")]
+    with (tmp_path / "both.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["ratio [1]"]) for row in rows] == pytest.approx(answer["ratio"])
+    assert {row["is_different"] for row in rows} == {"yes", "no"}
+
+
+def test_outside_one_of_two_boxes_is_refused_and_flagged(command):
+    pair = ("lookup", f"{BRAID}-new", "--quantity", "apparent_spring_constant", "--against",
+            f"{BRAID}-4-years", "--frequency", "0.3 Hz", "--mean-tension", "800 lbf",
+            "--tension-amplitude", "400 lbf")  # fmt: skip
+    done = command(*pair)
+    assert done.returncode == 4
+    assert f"of {BRAID}-4-years" in done.stderr
+    flagged = command(*pair, "--extrapolate", "flag")
+    assert "second: OUTSIDE" in flagged.stdout
+    assert "first: OUTSIDE" not in flagged.stdout
+    # a number that lacks its last digits is another number
+    assert "\N{HORIZONTAL ELLIPSIS}" not in flagged.stdout
+
+
+def test_boxes_without_anything_in_common_make_no_grid(command):
+    done = command(
+        "lookup", NYLON, "--quantity", "apparent_spring_constant", "--table", "--against",
+        "nylon-double-braid-1.25in-new",
+    )  # fmt: skip
+    assert done.returncode == 4
+    assert "has no mean tension in common" in done.stderr
+
+
+@pytest.mark.parametrize("suffix", ["csv", "json", "tex", "md", "nc"])
+def test_values_are_written_in_every_format_of_a_table(command, tmp_path, suffix):
+    path = tmp_path / f"values.{suffix}"
+    done = command(
+        "lookup", NYLON, "--quantity", "apparent_spring_constant", "--table", "--out", path,
+        "--json",
+    )  # fmt: skip
+    answer = json.loads(done.stdout)
+    assert answer["files"] == [str(path)]
+    if suffix == "nc":
+        with xr.open_dataset(path) as read:
+            assert read["apparent_spring_constant"].to_numpy().tolist() == answer["value"]
+            assert "CG-D-39-80" in read.attrs["source"]
+    else:
+        text = path.read_text(encoding="utf-8")
+        assert f"{answer['value'][0]:.15g}" in text or suffix == "json"
+        assert "CG-D-39-80" in text
+        if suffix == "json":
+            values = json.loads(text)["values"]
+            assert values["apparent_spring_constant"] == answer["value"]
 
 
 def test_what_there_is(command):
@@ -74,6 +228,16 @@ def test_what_there_is(command):
             2,
             "several values of a level make a grid",
         ),
+        (("published", "--list", "--material", "steel"), 2, "no line is so; found material 'steel'"),
+        (("published", "--tolerance", "3 %"), 2, "a tolerance is that of a diameter"),
+        (("published", "--quantity", "relaxation_time", *LEVELS), 2, "a search that leaves one"),
+        ((NYLON, "--quantity", "relaxation_time", *LEVELS, "--out", "a.xls"), 2, "says no format"),
+        (
+            (NYLON, "--quantity", "relaxation_time", "--against", "nylon-braid", *LEVELS), 2,
+            "no line is called 'nylon-braid'",
+        ),
+        ((NYLON, "--quantity", "strain", "--tension", "9 kN"), 4, "outside what was tested"),
+        ((NYLON, "--quantity", "strain", "--line", "x", "--tension", "1 kN"), 2, "no line 'x'"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_looked_up_ends_with_its_status(command, arguments, status, told):

@@ -1,14 +1,16 @@
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from reduction.archive.linesource import line_of_experiment, line_of_test
+from reduction.archive.linesource import line_of_experiment, line_of_test, specimens_of
 from reduction.archive.open import open_archive
 from reduction.archive.surface_read import surfaces_of
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
-from reduction.errors import ArchiveError
+from reduction.cli.lookupsource import lines_of
+from reduction.errors import ArchiveError, DataError
 from reduction.lookup.line import look_up
 from reduction.surface.bands import evaluate_surfaces
 
@@ -81,6 +83,54 @@ def test_curves_of_a_test_are_by_branch(folder):
         open_archive(path) as archive,
     ):
         line_of_test(archive, "other")
+
+
+def test_the_line_of_an_experiment_is_of_its_specimens(folder):
+    line = lines_of(str(folder / "surfaces.nc"))[0]
+    assert (line.kind, line.material) == ("rope", "nylon (synthetic)")
+    assert (line.construction, line.condition) == ("double braid", "new, wet")
+    assert line.diameter == pytest.approx(0.0127)
+    assert line.rule.startswith("peak at most 60 %")
+
+
+def test_nothing_is_said_of_what_specimens_differ_in(surfaces):
+    (name,) = specimens_of(surfaces, "nylon")
+    several = surfaces.copy(deep=True)
+    several["run_specimen"][0, :3] = "other"
+    known = {
+        name: {"material": "nylon", "condition": "new", "diameter": 0.0127},
+        "other": {"material": "nylon", "condition": "used", "diameter": 0.0130},
+    }
+    line = line_of_experiment(several, "nylon", specimens=known)
+    assert (line.material, line.condition, line.construction) == ("nylon", "", "")
+    assert np.isnan(line.diameter)
+    # of one specimen nothing is known
+    alone = line_of_experiment(several, "nylon", specimens={name: known[name]})
+    assert alone.material == ""
+
+
+def test_surfaces_of_tethers_refuse_zero_tension(folder, tmp_path):
+    """A synthetic campaign, whose specimen is called a tether."""
+    rope = lines_of(str(folder / "surfaces.nc"))[0]
+    shutil.copy(folder / "surfaces.nc", tmp_path)
+    with open_archive(folder / "R01.nc") as archive:
+        tests = archive.load()
+    tests["specimen_kind"] = ("specimen", ["rubber tether"])
+    tests.to_netcdf(tmp_path / "R01.nc", engine="netcdf4")
+    tether = lines_of(str(tmp_path / "surfaces.nc"))[0]
+    assert tether.is_tether
+    lowest = 0.12 * rope.rated_break_strength
+    at_zero = {"frequency": 0.3, "mean_tension": lowest, "tension_amplitude": lowest}
+    found = look_up(rope, "apparent_spring_constant", **at_zero)
+    assert found.minimum_tension == 0
+    assert found.is_inside
+    with pytest.raises(DataError, match="nylon goes slack at 1 of 1 points, and a tether must not"):
+        look_up(tether, "apparent_spring_constant", **at_zero)
+    above = look_up(
+        tether, "apparent_spring_constant", **(at_zero | {"tension_amplitude": 0.99 * lowest})
+    )
+    assert above.minimum_share == pytest.approx(0.0012)
+    assert above.rule.startswith("a rubber tether must not go slack")
 
 
 def test_what_has_no_surface_is_refused(surfaces):
