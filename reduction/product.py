@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from reduction.cycles.product import Cycles, Loops
 from reduction.holds.product import HoldResult, hold_numbers
@@ -29,6 +29,7 @@ from reduction.phases.standstill import Standstills
 from reduction.provenance import Source, Step
 from reduction.record import Floats, Integers, Record, Specimen
 from reduction.strain.model import StrainModel
+from reduction.uncertainty.product import Contributions
 
 __all__ = ["History", "ReducedTest", "TestDescription"]
 
@@ -87,7 +88,10 @@ class ReducedTest:
     ``line`` has one entry a cycle and ``line_of_test`` one a specimen, from the means over the
     cycles, with ``quasi_static_standard_uncertainty`` [N] of the K_0 that both used; ``pulls``
     is what a slow pull gave, None for a specimen of which it gave nothing; ``rope_step`` is
-    what the test gave as a step of a rope laboratory's programme.
+    what the test gave as a step of a rope laboratory's programme.  Every uncertainty here is
+    random (type A); ``contributions`` holds what errors that samples share add to curves,
+    segments and means of the test, by name of the archive, and
+    ``shared_uncertainty_of_cycles`` [unit of each] the same of each cycle, all sources together.
     """
 
     description: TestDescription
@@ -130,6 +134,8 @@ class ReducedTest:
     line_notes: tuple[str, ...] = ()
     pulls: tuple[SlowPull | None, ...] = ()
     rope_step: RopeStep | None = None
+    contributions: Contributions | None = None
+    shared_uncertainty_of_cycles: dict[str, Floats] = field(default_factory=dict)
 
     def all_notes(self) -> tuple[tuple[str, str], ...]:
         """Every note as (stage, text), most serious first, none twice.

@@ -59,6 +59,7 @@ def settings_json(
         "description": asdict(describe(campaign, survey)),
         "target_strain": plan.target_strain,
         "reduction": asdict(plan.settings),
+        "uncertainty": asdict(campaign.uncertainty),
         "layouts": {
             layout: campaign.layouts[layout].model_dump(exclude_defaults=True)
             for _, layout in plan.files

@@ -28,6 +28,7 @@ from reduction.campaign.plan import Campaign, StepPlan, TestPlan
 from reduction.campaign.specimens import specimen_of
 from reduction.campaign.testtable import merge_tests, read_test_table
 from reduction.campaign.toml import read_toml
+from reduction.campaign.uncertaintyspec import stated_errors
 from reduction.errors import LogError, SettingsError
 from reduction.record import SpliceMarks
 from reduction.settings import CycleSettings, ReductionSettings, StrainSettings
@@ -318,4 +319,5 @@ def load_campaign(path: Path) -> Campaign:
         outcomes=outcomes,
         hoses=hoses,
         comparisons=comparisons,
+        uncertainty=stated_errors(path, file.uncertainty),
     )

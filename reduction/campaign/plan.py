@@ -14,6 +14,7 @@ from reduction.provenance import Source
 from reduction.record import Specimen, SpliceMarks
 from reduction.settings import ReductionSettings
 from reduction.surface.levels import FactorLevels
+from reduction.uncertainty.stated import StatedErrors
 
 __all__ = [
     "Campaign",
@@ -118,7 +119,7 @@ class Campaign:
     """One campaign.toml with everything that it names, resolved.
 
     ``outcomes`` are the rows of the table ``results``, with what the sheets of their
-    specimens say.
+    specimens say; ``uncertainty`` is what is stated of the instruments.
     """
 
     path: Path
@@ -133,6 +134,7 @@ class Campaign:
     outcomes: tuple[Outcome, ...] = ()
     hoses: dict[str, HosePlan] = field(default_factory=dict)
     comparisons: dict[str, ComparisonPlan] = field(default_factory=dict)
+    uncertainty: StatedErrors = field(default_factory=StatedErrors)
 
     @property
     def folder(self) -> Path:

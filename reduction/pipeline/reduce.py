@@ -29,6 +29,7 @@ from reduction.pipeline.locate import HELD, PULLED, Located
 from reduction.pipeline.plausibility import plausibility_notes
 from reduction.pipeline.programme import rope_step
 from reduction.pipeline.rope import PullConditions, parts_of_line, pull_specimens
+from reduction.pipeline.shared import contributions_of_test, shared_uncertainty_of_cycles
 from reduction.pipeline.spread import strain_spread
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
@@ -37,6 +38,7 @@ from reduction.settings import ReductionSettings
 from reduction.strain.evaluate import extrapolated, strain_by_model
 from reduction.strain.model import StrainModel
 from reduction.strain.stress import check_constant_volume, nominal_stress
+from reduction.uncertainty.product import InstrumentErrors
 from reduction.workers import run_blocks
 
 __all__ = ["reduce_stepwise_test", "reduce_test", "strain_of_record"]
@@ -56,6 +58,7 @@ def reduce_test(
     settings_json: str,
     pulls: Sequence[SlowPull | None] | None = None,
     pull_conditions: PullConditions | None = None,
+    instruments: Sequence[InstrumentErrors] = (),
 ) -> ReducedTest:
     """Reduce one located test.
 
@@ -81,6 +84,8 @@ def reduce_test(
         Slow pull of each specimen; with it the loops give a three-parameter line.
     pull_conditions : PullConditions, optional
         What a slow pull cannot tell of itself.
+    instruments : sequence of InstrumentErrors, length n_specimens, optional
+        What is known of the errors that all samples share; nothing where it is left out.
 
     Returns
     -------
@@ -138,7 +143,7 @@ def reduce_test(
     notes += [
         f"{name}: {text}" for name, text in zip(record.specimens, remarks, strict=True) if text
     ]
-    return ReducedTest(
+    test = ReducedTest(
         description=description,
         specimens=specimens,
         record=_flag(located, models),
@@ -168,6 +173,17 @@ def reduce_test(
             settings=settings.rope,
         ),
         **parts,
+    )
+    if not instruments:
+        return test
+    return replace(
+        test,
+        contributions=contributions_of_test(
+            test, instruments, cycles=settings.cycles, pulls=pulls
+        ),
+        shared_uncertainty_of_cycles=shared_uncertainty_of_cycles(
+            test, instruments, cycles=settings.cycles
+        ),
     )
 
 

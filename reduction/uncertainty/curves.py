@@ -29,7 +29,7 @@ from reduction.record import Floats
 from reduction.uncertainty.field import ErrorField
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
-__all__ = ["curve_contributions", "strain_rate_of_wave"]
+__all__ = ["by_diameter", "curve_contributions", "strain_rate_of_wave"]
 
 Waveform = Literal["triangular", "sinusoidal", "other"]
 
@@ -92,6 +92,43 @@ def strain_rate_of_wave(
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = np.where(rate > 0, -(turn**2) * away / rate, 0.0)
     return rate, slope
+
+
+def by_diameter(modulus: ArrayLike, errors: InstrumentErrors, *, area: float) -> Floats:
+    r"""Contribution of the diameter to moduli.
+
+    .. math:: \delta E = -2 E \, \delta d / d
+
+    Parameters
+    ----------
+    modulus : array_like, shape (...)
+        Any modulus: a tension, or a slope of it, over the area. [Pa]
+    errors : InstrumentErrors
+        For the diameter.
+    area : float
+        Nominal. [m2]
+
+    Returns
+    -------
+    contribution : ndarray, shape (...)
+        [Pa]
+
+    Raises
+    ------
+    DataError
+        If the area is not positive.
+
+    Notes
+    -----
+    Eq. 2 of [2]_: the area is that of the mean diameter.
+
+    Examples
+    --------
+    >>> print(by_diameter(1e6, InstrumentErrors("new", diameter=1e-4), area=np.pi * 0.02**2 / 4))
+    -10000.0
+    """
+    as_positive("area", area)
+    return np.asarray(-2 * np.asarray(modulus) * errors.diameter / np.sqrt(4 * area / np.pi))
 
 
 def curve_contributions(
@@ -167,10 +204,9 @@ def curve_contributions(
         tension.append(-errors.lag * rise * rate)
         moduli.append(-errors.lag * (bend * rate + modulus * faster))
     if errors.diameter:
-        diameter = float(np.sqrt(4 * area / np.pi))
         component.append(Component("diameter", errors.specimen))
         tension.append(np.zeros(modulus.shape))
-        moduli.append(-2 * modulus * errors.diameter / diameter)
+        moduli.append(by_diameter(modulus, errors, area=area))
     return Contributions(
         tuple(component),
         {

@@ -1,0 +1,36 @@
+"""What a campaign states of the instruments, for each specimen of a test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from reduction.batch.survey import Survey
+from reduction.campaign.plan import Campaign
+from reduction.strain.model import StrainModel
+from reduction.uncertainty.product import InstrumentErrors
+
+__all__ = ["instruments_of"]
+
+
+def instruments_of(
+    campaign: Campaign, survey: Survey, models: Sequence[StrainModel]
+) -> tuple[InstrumentErrors, ...]:
+    """Stated errors of each specimen, with the names by which tests share them.
+
+    Tests share the load cell and the machine that they name in the same words, and a strain
+    model that was pooled over the campaign; marks of one test are its own.
+    """
+    plan = survey.plan
+    return tuple(
+        campaign.uncertainty.of_channel(
+            model.specimen,
+            channel=number,
+            test=plan.log,
+            load_cell=plan.attributes.get("load_cell", ""),
+            machine=plan.attributes.get("machine", ""),
+            strain_model=f"{model.specimen}, marks of {plan.log}"
+            if model.marks_from == "this test"
+            else model.specimen,
+        )
+        for number, model in enumerate(models, start=1)
+    )

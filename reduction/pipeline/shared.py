@@ -1,0 +1,153 @@
+"""Errors that a test shares with others, carried to what it gave.
+
+Names of the contributions are those of the variables of the archive; the axis of the specimens
+stands behind that of the components.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from reduction.line.product import SlowPull
+from reduction.pipeline.sharedcurves import of_curves, of_segments, strain_rates
+from reduction.pipeline.sharedloops import of_dynamic_modulus, of_line, of_loops
+from reduction.product import ReducedTest
+from reduction.record import Floats, areas_of
+from reduction.settings import CycleSettings
+from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
+
+__all__ = ["contributions_of_test", "shared_uncertainty_of_cycles"]
+
+
+def contributions_of_test(
+    test: ReducedTest,
+    errors: Sequence[InstrumentErrors],
+    *,
+    cycles: CycleSettings,
+    pulls: Sequence[SlowPull | None] | None = None,
+) -> Contributions | None:
+    """What each shared error adds to the curves, segments and means of a test.
+
+    Parameters
+    ----------
+    test : ReducedTest
+        As reduced; its uncertainties are of type A.
+    errors : sequence of InstrumentErrors, length n_specimens
+        What is stated of the instruments.
+    cycles : CycleSettings
+        Control and waveform.
+    pulls : sequence of SlowPull or None, length n_specimens, optional
+        From which the test has its K_0.
+
+    Returns
+    -------
+    contributions : Contributions or None
+        Shape (n_components, n_specimens, ...); None where no error is shared.
+    """
+    own = [
+        _merged(
+            list(_of_specimen(test, index, one, cycles, None if pulls is None else pulls[index]))
+        )
+        for index, one in enumerate(errors)
+    ]
+    component = tuple(sorted({one for part in own for one in part.component}))
+    if not component:
+        return None
+    return Contributions(component, _stacked(own, component))
+
+
+def shared_uncertainty_of_cycles(
+    test: ReducedTest, errors: Sequence[InstrumentErrors], *, cycles: CycleSettings
+) -> dict[str, Floats]:
+    """Shared standard uncertainty of the quantities of each cycle, shape (n_specimens, n_cycles).
+
+    Parameters
+    ----------
+    test : ReducedTest
+        With loops.
+    errors : sequence of InstrumentErrors, length n_specimens
+        What is stated of the instruments.
+    cycles : CycleSettings
+        Control and waveform.
+
+    Returns
+    -------
+    shared : dict of str to ndarray
+        By name of the quantity; empty where no error is shared.
+    """
+    if test.loops is None or test.cycles is None:
+        return {}
+    found = [
+        of_loops(test.loops, index, one, test.strain_models[index], test.cycles, cycles)
+        for index, one in enumerate(errors)
+    ]
+    if not any(part.component for part in found):
+        return {}
+    names = found[0].values
+    return {
+        name: np.stack([part.shared_standard_uncertainty(name) for part in found]) for name in names
+    }
+
+
+def _merged(parts: list[Contributions]) -> Contributions:
+    """Contributions to different quantities of one specimen, on the same components."""
+    component = tuple(sorted({one for part in parts for one in part.component}))
+    values = {}
+    for part in parts:
+        rows = [component.index(one) for one in part.component]
+        for name, array in part.values.items():
+            table = np.zeros((len(component), *array.shape[1:]))
+            table[rows] = array
+            values[name] = table
+    return Contributions(component, values)
+
+
+def _stacked(own: Sequence[Contributions], component: tuple[Component, ...]) -> dict[str, Floats]:
+    """One table a quantity, specimens behind components; NaN where a specimen has none."""
+    tables = {}
+    shapes = {name: array.shape[1:] for part in own for name, array in part.values.items()}
+    for name, shape in shapes.items():
+        table = np.zeros((len(component), len(own), *shape))
+        for index, part in enumerate(own):
+            if name in part.values:
+                rows = [component.index(one) for one in part.component]
+                table[rows, index] = part.values[name]
+        tables[name] = table
+    return tables
+
+
+def _of_specimen(
+    test: ReducedTest,
+    index: int,
+    errors: InstrumentErrors,
+    cycles: CycleSettings,
+    pull: SlowPull | None,
+) -> Iterator[Contributions]:
+    model = test.strain_models[index]
+    area = float(areas_of(test.specimens)[index])
+    summary = test.amplitude
+    if test.curves is not None:
+        rate = strain_rates(test, index, model, cycles)
+        yield of_curves(test.curves, "", index, errors, model, area, rate)
+        if test.segments is not None:
+            yield of_segments(test.curves, test.segments, index, errors, model, area, rate)
+    if test.first_loading is not None:
+        still = np.zeros((2, 2, test.first_loading.strain_bin.size))
+        yield of_curves(test.first_loading, "_first_loading", index, errors, model, area, still)
+    if summary is not None and test.cycles is not None:
+        of_loop = of_loops(summary, index, errors, model, test.cycles, cycles)
+        yield _named(of_loop, "test_")
+        if np.isfinite(area):
+            yield _named(of_dynamic_modulus(of_loop, summary, index, errors, area), "test_")
+        if test.line_of_test is not None and pull is not None:
+            yield _named(
+                of_line(test.line_of_test, summary, index, errors, model, of_loop, pull), "test_"
+            )
+
+
+def _named(found: Contributions, prefix: str) -> Contributions:
+    return Contributions(
+        found.component, {f"{prefix}{name}": rows for name, rows in found.values.items()}
+    )

@@ -1,0 +1,140 @@
+"""What shared errors add to the loops of a specimen, to its dynamic modulus and to its line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Literal
+
+import numpy as np
+
+from reduction.cycles.product import Cycles, Loops
+from reduction.line.product import LineParameters, SlowPull
+from reduction.line.quasistatic import quasi_static_spring_constant, strain_at_tension
+from reduction.moduli.product import AmplitudeSummary
+from reduction.record import Floats
+from reduction.settings import CycleSettings
+from reduction.strain.inverse import position_by_model
+from reduction.strain.model import StrainModel
+from reduction.uncertainty.curves import by_diameter
+from reduction.uncertainty.field import error_field
+from reduction.uncertainty.line import line_contributions, pull_contributions
+from reduction.uncertainty.loops import loop_contributions
+from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
+
+__all__ = ["of_dynamic_modulus", "of_line", "of_loops", "speed_ratio"]
+
+Reading = Literal["amplitude", "fundamental"]
+_LOOP = (
+    "frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
+    "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
+    "loss_spring_constant",
+)  # fmt: skip
+_K_0 = "quasi_static_spring_constant"
+_STEP = 1e-3  # of the range of a pull, for the slope of its compliance
+
+
+def speed_ratio(
+    loops: Loops | AmplitudeSummary,
+    index: int,
+    model: StrainModel,
+    cycles: Cycles,
+    settings: CycleSettings,
+) -> Floats:
+    """Speed of the ramps over that of ramps without a stop at their ends."""
+    frequency, mean, amplitude = (
+        getattr(loops, name)[index] for name in ("frequency", "mean_strain", "strain_amplitude")
+    )
+    tension, swing = loops.mean_tension[index], loops.tension_amplitude[index]
+    if settings.control == "load":
+        half = swing
+    elif model.method == "extensometer":
+        return np.ones(np.shape(frequency))
+    else:
+        ends = [
+            position_by_model(model, strain=mean + way * amplitude, tension=tension + way * swing)
+            for way in (1, -1)
+        ]
+        half = (ends[0] - ends[1]) / 2
+    plateau = cycles.plateau_rate.mean(axis=1)
+    if np.ndim(frequency) == 0:
+        plateau = np.asarray(np.nanmedian(plateau))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = plateau / (4 * frequency * half)
+    usable = np.isfinite(ratio) & (ratio > 1)
+    return np.asarray(np.where(usable, ratio, 1.0))
+
+
+def of_loops(
+    loops: Loops | AmplitudeSummary,
+    index: int,
+    errors: InstrumentErrors,
+    model: StrainModel,
+    cycles: Cycles,
+    settings: CycleSettings,
+) -> Contributions:
+    """Each cycle of a specimen, or the means of its test."""
+    return loop_contributions(
+        errors, model,
+        **{name: np.asarray(getattr(loops, name)[index]) for name in _LOOP},
+        waveform=settings.waveform,
+        speed_ratio=speed_ratio(loops, index, model, cycles, settings),
+    )  # fmt: skip
+
+
+def of_dynamic_modulus(
+    of_loop: Contributions,
+    summary: AmplitudeSummary,
+    index: int,
+    errors: InstrumentErrors,
+    area: float,
+) -> Contributions:
+    """Spring constant over area."""
+    rows = of_loop.values["apparent_spring_constant"] / area
+    component = of_loop.component
+    if errors.diameter:
+        component = (*component, Component("diameter", errors.specimen))
+        own = by_diameter(summary.dynamic_modulus[index], errors, area=area)
+        rows = np.concatenate([rows, own[None]])
+    return Contributions(component, {"dynamic_modulus": rows})
+
+
+def of_line(
+    line: LineParameters,
+    summary: AmplitudeSummary,
+    index: int,
+    errors: InstrumentErrors,
+    model: StrainModel,
+    of_loop: Contributions,
+    pull: SlowPull,
+) -> Contributions:
+    """K_0 of the pull, whose fit all runs of one pull share, and what follows from it."""
+    at = np.asarray(summary.mean_tension[index])
+    constant, spread = quasi_static_spring_constant(pull, at)
+    step = _STEP * pull.tension_half_range
+    beside = [1 / quasi_static_spring_constant(pull, at + way * step)[0] for way in (1, -1)]
+    bend = (beside[0] - beside[1]) / (2 * step)
+    field = error_field(errors, model, strain=strain_at_tension(pull, at)[0], tension=at)
+    of_pull = pull_contributions(
+        field,
+        quasi_static_spring_constant=constant,
+        compliance_slope=np.where(np.isfinite(bend), bend, 0.0),
+    )
+    fit = Component("quasi_static_fit", errors.specimen)
+    of_pull = Contributions(
+        (*of_pull.component, fit), {_K_0: np.append(of_pull.values[_K_0], spread)}
+    )
+    values: Mapping[str, Floats] = {
+        item.name: getattr(line, item.name)[index]
+        for item in fields(line)
+        if isinstance(getattr(line, item.name), np.ndarray)
+    } | {name: np.asarray(getattr(summary, name)[index]) for name in _LOOP if name not in
+         ("storage_spring_constant", "loss_spring_constant")}  # fmt: skip
+    reading: Reading = "fundamental" if line.reading == "fundamental" else "amplitude"
+    found = line_contributions(of_loop, of_pull, values, reading=reading)
+    names = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
+    rows = np.zeros(len(found.component))
+    rows[[found.component.index(one) for one in of_pull.component]] = of_pull.values[_K_0]
+    return Contributions(
+        found.component, {_K_0: rows} | {name: found.values[name] for name in names}
+    )
