@@ -2,50 +2,19 @@
 
 from __future__ import annotations
 
-import numpy as np
-import xarray as xr
-
 from reduction.archive.schema import COEFFICIENTS, SCHEMA
+from reduction.tables.derived import (
+    with_chords,
+    with_cycle_count,
+    with_edges,
+    with_fit_of_parameter,
+    with_its_one_specimen,
+)
 from reduction.tables.programme import ROPE_TABLES
 from reduction.tables.table import Table
 from reduction.vocabulary import BRANCH_NAMES
 
 __all__ = ["TABLES"]
-
-
-def _with_edges(dataset: xr.Dataset) -> xr.Dataset:
-    edges = dataset["strain_bin_bounds"]
-    return dataset.assign(strain_bin_low=edges[:, 0], strain_bin_high=edges[:, 1])
-
-
-def _with_cycle_count(dataset: xr.Dataset) -> xr.Dataset:
-    return dataset.assign(n_cycles=dataset.sizes.get("cycle", 0))
-
-
-def _with_chords(dataset: xr.Dataset) -> xr.Dataset:
-    """Give each branch a column of its own, so that a cycle stays one row."""
-    if "chord_modulus" not in dataset:
-        return dataset
-    return dataset.assign(
-        {
-            f"chord_modulus_{branch}{suffix}": dataset[f"chord_modulus{suffix}"][:, :, index]
-            for index, branch in enumerate(BRANCH_NAMES)
-            for suffix in ("", "_standard_uncertainty")
-        }
-    )
-
-
-def _with_fit_of_parameter(dataset: xr.Dataset) -> xr.Dataset:
-    """Repeat what is said of a fit beside each of its parameters."""
-    fit = dataset["elastomer_parameter_fit"].values - 1
-    of_fit = [name for name in dataset.variables if dataset[name].dims == ("elastomer_fit",)]
-    return dataset.assign(
-        {name: ("elastomer_parameter", np.asarray(dataset[name].values)[fit]) for name in of_fit}
-    )
-
-
-def _with_its_one_specimen(dataset: xr.Dataset) -> xr.Dataset:
-    return dataset.isel(specimen=0)
 
 
 _PER_CYCLE = tuple(
@@ -93,14 +62,14 @@ TABLES = (
             "segment_criterion",
         ),
         ("segment_modulus",),
-        _with_cycle_count,
+        with_cycle_count,
     ),
     Table(
         "cycles",
         ("specimen", "cycle"),
         (*_PER_CYCLE, *(f"chord_modulus_{branch}" for branch in BRANCH_NAMES)),
         _PER_CYCLE,
-        _with_chords,
+        with_chords,
     ),
     Table(
         "tangent_modulus",
@@ -117,7 +86,7 @@ TABLES = (
             "branch_tension",
         ),
         ("tangent_modulus", "tangent_modulus_untrimmed"),
-        _with_edges,
+        with_edges,
     ),
     Table(
         "first_loading",
@@ -233,7 +202,7 @@ TABLES = (
         ("specimen",),
         ("mean_identity_residual", "n_cycles"),
         ("mean_identity_residual",),
-        _with_cycle_count,
+        with_cycle_count,
     ),
     Table(
         "history",
@@ -270,7 +239,7 @@ TABLES = (
             "elastomer_aicc",
         ),
         ("elastomer_parameter_name",),
-        _with_fit_of_parameter,
+        with_fit_of_parameter,
     ),
     Table(
         "stress_at_strain",
@@ -315,7 +284,7 @@ TABLES = (
             "relaxed_gauge_length",
         ),
         ("clock",),
-        _with_its_one_specimen,
+        with_its_one_specimen,
         product="stepwise test",
     ),
     Table(
@@ -323,7 +292,7 @@ TABLES = (
         ("interval",),
         ("specimen", "interval_branch", "interval_strain", "interval_modulus"),
         ("interval_modulus",),
-        _with_its_one_specimen,
+        with_its_one_specimen,
         product="stepwise test",
     ),
     Table(
