@@ -12,6 +12,7 @@ from reduction.archive.dataset import to_dataset
 from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.write import write_archive, write_whole
 from reduction.batch.basis import basis_of
+from reduction.batch.check import Progress, selected_surveys
 from reduction.batch.comparisons import write_comparisons
 from reduction.batch.describe import describe
 from reduction.batch.experiments import write_experiments
@@ -27,7 +28,6 @@ from reduction.batch.status import Status, TestStatus, read_status, status_csv
 from reduction.batch.survey import Survey, as_reduction_error, located_again, survey_campaign
 from reduction.batch.waiting import waiting_runs
 from reduction.campaign.plan import Campaign
-from reduction.errors import SettingsError
 from reduction.line.product import SlowPull
 from reduction.pipeline.reduce import reduce_stepwise_test, reduce_test
 from reduction.product import History, ReducedTest
@@ -36,9 +36,7 @@ from reduction.strain.model import StrainModel
 from reduction.tables.write import write_tables
 from reduction.units import UnitSystem
 
-__all__ = ["CampaignResult", "check_campaign", "reduce_survey", "run_campaign"]
-
-Progress = Callable[[str, str], None]
+__all__ = ["CampaignResult", "reduce_survey", "run_campaign"]
 
 
 @dataclass(frozen=True)
@@ -64,60 +62,6 @@ class CampaignResult:
         """The highest seen."""
         seen = [test.exit_status for test in self.tests]
         return max([*seen, *(one.exit_status for one in self.parts)], default=0)
-
-
-def _selected(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
-    """The surveys that were asked for; a test's name stands for all its steps."""
-    if not tests:
-        return list(surveys)
-    known = {survey.plan.id for survey in surveys}
-    known |= {name.rpartition(".")[0] for name in known if "." in name}
-    unknown = sorted(set(tests) - known)
-    if unknown:
-        raise SettingsError(
-            "--test names a test that the campaign lacks",
-            found=", ".join(unknown),
-            needed="one of " + ", ".join(sorted(known)),
-        )
-    return [
-        survey
-        for survey in surveys
-        if survey.plan.id in tests or survey.plan.id.rpartition(".")[0] in tests
-    ]
-
-
-def check_campaign(
-    campaign: Campaign, *, tests: Sequence[str] = (), progress: Progress | None = None
-) -> tuple[list[TestStatus], dict[tuple[str, str], StrainModel]]:
-    """Read and validate everything, write nothing.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    tests : sequence of str
-        Only these; all where empty.
-    progress : callable, optional
-        Called with a stage and a test id.
-
-    Returns
-    -------
-    statuses : list of TestStatus
-        ``no_work`` (nothing was reduced) or ``failed``.
-    models : dict of (test, specimen) to StrainModel
-        How position would become strain.
-    """
-    surveys = survey_campaign(campaign, progress=progress)
-    models, errors = fit_strain_models(campaign, surveys)
-    statuses = []
-    for survey in _selected(surveys, tests):
-        error = survey.error or errors.get(survey.plan.id)
-        statuses.append(
-            status_row(campaign, survey, "no_work", message="ready for a run")
-            if error is None
-            else status_row(campaign, survey, "failed", error=error)
-        )
-    return statuses, models
 
 
 def reduce_survey(
@@ -228,7 +172,7 @@ def run_campaign(
     """
     folder = processed / campaign.id
     surveys = survey_campaign(campaign, progress=progress)
-    chosen = _selected(surveys, tests)
+    chosen = selected_surveys(surveys, tests)
     models, errors = fit_strain_models(campaign, surveys)
     pulls, errors_of_pulls = fit_pulls(campaign, surveys, models)
     errors |= errors_of_pulls

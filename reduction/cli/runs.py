@@ -16,10 +16,10 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from reduction.batch.check import check_campaign as check_tests
 from reduction.batch.part import PartStatus
 from reduction.batch.planned import experiments_found
 from reduction.batch.results import results_found
-from reduction.batch.run import check_campaign as check_tests
 from reduction.batch.run import run_campaign as run_tests
 from reduction.batch.status import TestStatus
 from reduction.campaign.load import load_campaign

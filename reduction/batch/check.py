@@ -1,0 +1,71 @@
+"""What a campaign holds, without a product of it: which tests are asked for and can be reduced."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from reduction.batch.models import fit_strain_models
+from reduction.batch.outcome import status_row
+from reduction.batch.status import TestStatus
+from reduction.batch.survey import Survey, survey_campaign
+from reduction.campaign.plan import Campaign
+from reduction.errors import SettingsError
+from reduction.strain.model import StrainModel
+
+__all__ = ["Progress", "check_campaign", "selected_surveys"]
+
+Progress = Callable[[str, str], None]
+
+
+def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
+    """The surveys that were asked for; a test's name stands for all its steps."""
+    if not tests:
+        return list(surveys)
+    known = {survey.plan.id for survey in surveys}
+    known |= {name.rpartition(".")[0] for name in known if "." in name}
+    unknown = sorted(set(tests) - known)
+    if unknown:
+        raise SettingsError(
+            "--test names a test that the campaign lacks",
+            found=", ".join(unknown),
+            needed="one of " + ", ".join(sorted(known)),
+        )
+    return [
+        survey
+        for survey in surveys
+        if survey.plan.id in tests or survey.plan.id.rpartition(".")[0] in tests
+    ]
+
+
+def check_campaign(
+    campaign: Campaign, *, tests: Sequence[str] = (), progress: Progress | None = None
+) -> tuple[list[TestStatus], dict[tuple[str, str], StrainModel]]:
+    """Read and validate everything, write nothing.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    tests : sequence of str
+        Only these; all where empty.
+    progress : callable, optional
+        Called with a stage and a test id.
+
+    Returns
+    -------
+    statuses : list of TestStatus
+        ``no_work`` (nothing was reduced) or ``failed``.
+    models : dict of (test, specimen) to StrainModel
+        How position would become strain.
+    """
+    surveys = survey_campaign(campaign, progress=progress)
+    models, errors = fit_strain_models(campaign, surveys)
+    statuses = []
+    for survey in selected_surveys(surveys, tests):
+        error = survey.error or errors.get(survey.plan.id)
+        statuses.append(
+            status_row(campaign, survey, "no_work", message="ready for a run")
+            if error is None
+            else status_row(campaign, survey, "failed", error=error)
+        )
+    return statuses, models
