@@ -7,12 +7,13 @@ from html.parser import HTMLParser
 
 import pytest
 
+from reduction.published.cell import printed_step
 from reduction.published.read import REPORTS, cells_of, errata_of
 from reduction.reproduce.item import Item
 from reduction.reproduce.page import TITLES, number_beside, render_reproduction
 from reduction.reproduce.reports import reproduce
 
-VOID = {"meta", "input", "link", "br"}
+VOID = {"meta", "input", "link", "br", "wbr"}
 
 
 class Read(HTMLParser):
@@ -79,10 +80,32 @@ def test_each_report_has_its_title():
     assert all(title in PAGE.text for title in TITLES.values())
 
 
+def test_a_tolerance_wider_than_half_the_last_digit_is_told():
+    # F of 79.6 from r2 of .995, half of whose last digit is 11 % of F
+    wide = sum(
+        item.verdict == "reproduced"
+        and item.tolerance > 0.501 * printed_step(item.cell.printed) > 0
+        for items in WHOLE.values()
+        for item in items
+    )
+    assert PAGE.text.count("Held within ") == wide and "Held within 8.9." in PAGE.text
+
+
+def test_parts_of_a_report_are_no_tables_and_long_names_may_break():
+    assert "CG-D-39-80, App B" in PAGE.text and "CG-D-39-80, Table A-2" in PAGE.text
+    assert "Table App" not in PAGE.text
+    assert "<td>apparent_<wbr>spring_<wbr>constant B1</td>" in HTML
+
+
 def test_words_of_a_cell_are_no_markup_and_an_unexplained_cell_stands_out():
-    cell = replace(cells_of("Wang-2022")[0], row="<b>steel</b>", note="a & b")
+    cell = replace(cells_of("Wang-2022")[0], row="<b>steel</b>", column="<i>modulus", note="a & b")
     html = render_reproduction({"Wang-2022": [Item(cell, 1.0, "unexplained", "x < y")]})
-    assert "&lt;b&gt;steel" in html and "a &amp; b" in html and "x &lt; y" in html
+    assert (
+        "&lt;b&gt;steel" in html
+        and "&lt;i&gt;modulus" in html
+        and "a &amp; b" in html
+        and "x &lt; y" in html
+    )
     assert re.search(r'<a href="#filter" data-only="unexplained" class=bad>', html)
     # errata of the report without a cell here are named
     assert "No single cell: WA-1, WA-2" in html

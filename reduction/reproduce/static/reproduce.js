@@ -22,8 +22,7 @@
     let count = 0;
     for (const { section, tables } of sections) {
       const inReport = !report.value || report.value === section.dataset.report;
-      section.hidden = !inReport;
-      if (!inReport) continue;
+      let inSection = 0;
       for (const { details, name, rows } of tables) {
         let visible = 0;
         for (const { row, text } of rows) {
@@ -35,8 +34,10 @@
         }
         details.hidden = visible === 0;
         details.open = filtered && visible > 0;
-        count += visible;
+        inSection += visible;
       }
+      section.hidden = !inReport || inSection === 0;
+      if (inReport) count += inSection;
     }
     shown.textContent = `${count.toLocaleString("en")} of ${all.toLocaleString("en")} cells`;
   };
@@ -58,7 +59,7 @@
     const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
     if (!target) return;
     if (target.closest("section[hidden]")) {
-      report.value = "";
+      form.reset();
       apply();
     }
     const folded = target.closest("details");
