@@ -167,16 +167,24 @@ def _read_statuses(path: Path) -> list[Status]:
 
 
 def _place(view: TestView, by_id: Mapping[str, TestView], starts: Mapping[str, float]) -> Place:
-    """Return where a test stands: by its order, the parts of a test behind it as they began."""
+    """Return where a test stands: by its order, the parts of a test behind it as they began.
+
+    The steps of a log stand as they began, too.
+    """
     name = view.attribute("part_of")
     whole = by_id.get(name or view.id)
     order = "" if whole is None else whole.attribute("test_order")
     return (
         int(order) if order.isdigit() else _LAST,
         "" if whole is None else whole.attribute("date"),
-        natural_order(name or view.id),
+        natural_order(name or _log_of(view)),
         bool(name),
         view.attribute("date"),
         starts[view.key],
         natural_order(view.id),
     )
+
+
+def _log_of(view: TestView) -> str:
+    """Return the test whose log this is: of a step, its name before the step's."""
+    return view.id.partition(".")[0] if view.attribute("step") else view.id

@@ -29,6 +29,9 @@ from reduction.report.hoseview import HoseView, view_hoses
 from reduction.report.htmltable import Table
 from reduction.report.outcomesection import make_outcome_section
 from reduction.report.outcomeview import OutcomeView, view_outcomes
+from reduction.report.ropesection import make_rope_section, rope_tiles
+from reduction.report.ropetables import answer_of_ropes
+from reduction.report.ropeview import RopeView, view_ropes
 from reduction.report.section import Part, Section, make_part
 from reduction.report.summary import Finding, Tile
 from reduction.report.surfacetables import answer_table
@@ -37,7 +40,7 @@ from reduction.units import UnitSystem
 
 __all__ = ["WholeCampaign", "is_there", "read_whole"]
 
-_SHOWN = ("outcomes", "surfaces", "predictions", "comparisons")
+_SHOWN = ("outcomes", "surfaces", "predictions", "comparisons", "change_in_length")
 _Read = TypeVar("_Read")
 
 
@@ -49,21 +52,23 @@ class WholeCampaign:
     experiments: tuple[tuple[ExperimentView, Section], ...]
     hoses: tuple[tuple[HoseView, Section], ...]
     compared: tuple[tuple[ComparisonView, Section], ...]
+    ropes: tuple[tuple[RopeView, Section], ...]
 
     @property
-    def views(self) -> list[OutcomeView | ExperimentView | HoseView | ComparisonView]:
+    def views(self) -> list[OutcomeView | ExperimentView | HoseView | ComparisonView | RopeView]:
         """All of them; the first speaks for the campaign where there is no test."""
         return [
             *(view for view, _ in self.experiments),
             *(view for view, _ in self.outcomes),
             *(view for view, _ in self.hoses),
             *(view for view, _ in self.compared),
+            *(view for view, _ in self.ropes),
         ]
 
     @property
     def chapters(self) -> list[Section]:
         """Sections that stand before those of the tests."""
-        pairs = (*self.experiments, *self.hoses, *self.compared)
+        pairs = (*self.experiments, *self.ropes, *self.hoses, *self.compared)
         return [section for _, section in pairs]
 
     @property
@@ -95,6 +100,7 @@ class WholeCampaign:
             for view, _ in self.experiments
             if view.surfaces is not None
         ]
+        found.append(answer_of_ropes([view for view, _ in self.ropes]))
         found.append(answer_of_hoses([view for view, _ in self.hoses]))
         found.append(verdict_table([view for view, _ in self.compared]))
         return [table for table in found if table is not None]
@@ -120,6 +126,7 @@ class WholeCampaign:
             size = len(self.experiments)
             noun = "experiment" if size == 1 else "experiments"
             found.append(Tile(f"{size:,}", noun, self.experiments[0][0].key))
+        found += rope_tiles([view for view, _ in self.ropes])
         found += hose_tiles([view for view, _ in self.hoses])
         return [*found, *comparison_tiles([view for view, _ in self.compared]), *of_tests]
 
@@ -164,11 +171,15 @@ def read_whole(
     def compared(data: xr.Dataset) -> list[tuple[ComparisonView, Section]]:
         return [(view, make_comparison_section(view)) for view in view_comparisons(data, units)]
 
+    def ropes(data: xr.Dataset) -> list[tuple[RopeView, Section]]:
+        return [(view, make_rope_section(view)) for view in view_ropes(data, tests, units)]
+
     return WholeCampaign(
         outcomes=_read(processed / "outcomes.nc", outcomes, unreadable),
         experiments=_read(processed / "surfaces.nc", experiments, unreadable),
         hoses=_read(processed / "predictions.nc", hoses, unreadable),
         compared=_read(processed / "comparisons.nc", compared, unreadable),
+        ropes=_read(processed / "change_in_length.nc", ropes, unreadable),
     )
 
 

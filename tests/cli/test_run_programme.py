@@ -1,5 +1,6 @@
 """A rope programme from its logs to archives and tables, each number against what made it."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -228,6 +229,15 @@ def test_the_archive_of_properties_says_what_it_was_made_from(whole):
         stiffness = archive["property_stiffness"]
         assert stiffness.attrs["units"] == "N"
         assert stiffness.attrs["ancillary_variables"] == "property_stiffness_standard_uncertainty"
+
+
+def test_the_page_has_the_programme_and_its_steps_as_they_were_done(whole):
+    html = whole.report.read_text(encoding="utf-8")
+    assert "Programme of rope R-1" in html
+    assert "Programme of rope R-2" not in html
+    titles = re.findall(r'<h2 id="test-\d+">([^<]+)</h2>', html)
+    steps = ["bedding-in", "quasi-static", "dynamic-1", "dynamic-2", "dynamic-3", "creep", "life"]
+    assert titles == ["B-1", *(f"P-7.{step}" for step in steps)]
 
 
 @pytest.fixture(scope="module")
