@@ -21,11 +21,11 @@ from __future__ import annotations
 
 from itertools import chain
 
+from reduction.archive.reasons import BOUND, CRITERION, NO_YES, PART, SETTING, SPREAD, STATISTIC
 from reduction.archive.variable import Variable, count, flag, label, measured, stated
 
 __all__ = ["COMPARISON_SCHEMA"]
 
-_NO_YES = {"no": 0, "yes": 1}
 _C = ("comparison",)
 _P = ("comparison", "comparison_point")
 _V = ("comparison", "curve")
@@ -35,11 +35,6 @@ _N = ("comparison", "parameter")
 
 _GIVEN = "given: the strain at which both are compared"
 _DIFFERENCE = "see validation_uncertainty"
-_TEST = "a statistic of a test"
-_SPREAD = "is itself a measure of spread"
-_BOUND = "bound"
-_SETTING = "setting"
-_CRITERION = "criterion of a fit"
 _IS = "is an uncertainty"
 _NOT_CARRIED = "not carried through"
 
@@ -73,14 +68,14 @@ COMPARISON_SCHEMA: dict[str, Variable] = {
             stated(name, _V, why)
             for name, why in (
                 ("tension_bias", _DIFFERENCE),
-                ("tension_rms", _SPREAD),
-                ("tension_relative_rms", _SPREAD),
+                ("tension_rms", SPREAD),
+                ("tension_relative_rms", SPREAD),
                 ("worst_strain", _DIFFERENCE),
                 ("worst_tension_difference", _DIFFERENCE),
             )
         ),
         *(
-            stated(name, _C, _TEST)
+            stated(name, _C, STATISTIC)
             for name in (
                 "coverage_factor",
                 "largest_ratio",
@@ -91,8 +86,8 @@ COMPARISON_SCHEMA: dict[str, Variable] = {
                 "uncertainty_share",
             )
         ),
-        flag("agrees", _C, _NO_YES),
-        flag("is_informative", _C, _NO_YES),
+        flag("agrees", _C, NO_YES),
+        flag("is_informative", _C, NO_YES),
         label("verdict", _C),
         stated("event_strain", _E, "see event_strain_difference"),
         stated("event_tension", _E, "see event_tension_difference"),
@@ -104,8 +99,8 @@ COMPARISON_SCHEMA: dict[str, Variable] = {
         *(
             stated(name, _C, why)
             for name, why in (
-                ("energy_strain_low", _BOUND),
-                ("energy_strain_high", _BOUND),
+                ("energy_strain_low", BOUND),
+                ("energy_strain_high", BOUND),
                 ("measured_energy", _NOT_CARRIED),
                 ("predicted_energy", _NOT_CARRIED),
                 ("energy_difference", _NOT_CARRIED),
@@ -115,28 +110,28 @@ COMPARISON_SCHEMA: dict[str, Variable] = {
         ),
         count("comparison_cycle_number", _K),
         stated("cycle_bias", _K, _DIFFERENCE),
-        stated("cycle_rms", _K, _SPREAD),
+        stated("cycle_rms", _K, SPREAD),
         measured("bias_per_decade", _C),
         label("parameter_name", _N),
         label("parameter_unit", _N),
-        stated("parameter_start", _N, _SETTING),
+        stated("parameter_start", _N, SETTING),
         measured("parameter_value", _N),
         *(
-            stated(f"parameter_{name}", _N, _BOUND)
+            stated(f"parameter_{name}", _N, BOUND)
             for name in ("low", "high", "lower_bound", "upper_bound")
         ),
-        flag("parameter_is_at_bound", _N, _NO_YES),
-        stated("parameter_correlation", (*_N, "parameter_other"), "is part of an uncertainty"),
+        flag("parameter_is_at_bound", _N, NO_YES),
+        stated("parameter_correlation", (*_N, "parameter_other"), PART),
         stated("calibrated_bias", _C, _DIFFERENCE),
-        stated("calibrated_rms", _C, _SPREAD),
-        stated("calibrated_relative_rms", _C, _SPREAD),
-        flag("is_identified", _C, _NO_YES | {"not_asked": 2}),
+        stated("calibrated_rms", _C, SPREAD),
+        stated("calibrated_relative_rms", _C, SPREAD),
+        flag("is_identified", _C, NO_YES | {"not_asked": 2}),
         label("identifiability", _C),
         *(
-            stated(name, _C, _CRITERION)
+            stated(name, _C, CRITERION)
             for name in ("collinearity", "least_change", "needed_change", "effective_points")
         ),
-        stated("model_error", _C, _SPREAD),
+        stated("model_error", _C, SPREAD),
         label("note_comparison", ("note",)),
         label("note", ("note",)),
     )

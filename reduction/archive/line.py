@@ -8,6 +8,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.archive.reasons import AXIS, BOUND, SETTING, SPREAD, STATED
 from reduction.archive.values import Values, texts
 from reduction.archive.variable import Variable, count, flag, label, measured, stated
 from reduction.line.product import LineParameters, SlowPull
@@ -48,20 +49,20 @@ LINE_ROWS: tuple[Variable, ...] = tuple(
         chain.from_iterable(measured(f"test_{name}", _S) for name in _LINE),
         stated("test_line_conditioning", _S, "a sensitivity"),
         flag("test_line_refusal", _S, LINE_REFUSALS),
-        stated("tension_grid", ("tension_grid",), "axis of the curve"),
+        stated("tension_grid", ("tension_grid",), AXIS),
         measured("quasi_static_spring_constant", _T),
         measured("quasi_static_strain", _T),
         count("pull_term", ("pull_term",)),
         measured("pull_strain_coefficient", _P),
         stated("pull_spring_constant_coefficient", _P, "a re-expression of the load-strain cubic"),
-        stated("pull_tension_low", _S, "bound"),
-        stated("pull_tension_high", _S, "bound"),
+        stated("pull_tension_low", _S, BOUND),
+        stated("pull_tension_high", _S, BOUND),
         stated("pull_strain_rate", _S, _CALIBRATION),
-        stated("pull_waiting_time", _S, "stated by the laboratory"),
+        stated("pull_waiting_time", _S, STATED),
         label("pull_waiting", _S),
-        stated("pull_residual", _S, "is itself a measure of spread"),
-        stated("pull_reference_tension", _S, "stated by the laboratory"),
-        stated("break_share", ("break_share",), "setting"),
+        stated("pull_residual", _S, SPREAD),
+        stated("pull_reference_tension", _S, STATED),
+        stated("break_share", ("break_share",), SETTING),
         measured("strain_at_break_share", ("specimen", "break_share")),
     )
 )

@@ -17,6 +17,7 @@ import xarray as xr
 
 from reduction.archive.attributes import part_attributes
 from reduction.archive.build import build_dataset
+from reduction.archive.reasons import NO_YES, STATED
 from reduction.archive.values import Values, numbers, texts
 from reduction.archive.variable import Variable, count, flag, label, stated
 from reduction.errors import ArchiveError
@@ -28,7 +29,6 @@ __all__ = ["OUTCOME_SCHEMA", "outcomes_of_dataset", "outcomes_to_dataset"]
 _ALONG = ("outcome",)
 _QUANTITIES: tuple[OutcomeQuantity, ...] = get_args(OutcomeQuantity)
 _PLACES: tuple[Place, ...] = get_args(Place)
-_NO_YES = {"no": 0, "yes": 1}
 _USES = {"value": 0, "lower_bound": 1, "excluded": 2}
 _TEXTS = ("test", "specimen", "line", "material", "construction", "condition", "mode", "note")
 _NUMBERS = (
@@ -41,16 +41,13 @@ OUTCOME_SCHEMA: dict[str, Variable] = {
     for row in chain(
         count("outcome_row", _ALONG),
         flag("outcome_quantity", _ALONG, {name: code for code, name in enumerate(_QUANTITIES)}),
-        *(
-            stated(name, _ALONG, "stated by the laboratory", ancillary=_COMPANIONS)
-            for name in _QUANTITIES
-        ),
+        *(stated(name, _ALONG, STATED, ancillary=_COMPANIONS) for name in _QUANTITIES),
         flag("outcome_use", _ALONG, _USES),
         *(label(f"outcome_{name}", _ALONG) for name in _TEXTS),
-        *(stated(f"outcome_{name}", _ALONG, "stated by the laboratory") for name in _NUMBERS),
+        *(stated(f"outcome_{name}", _ALONG, STATED) for name in _NUMBERS),
         flag("outcome_place", _ALONG, {name: code for code, name in enumerate(_PLACES)}),
-        flag("outcome_is_valid", _ALONG, _NO_YES),
-        flag("outcome_is_suspended", _ALONG, _NO_YES),
+        flag("outcome_is_valid", _ALONG, NO_YES),
+        flag("outcome_is_suspended", _ALONG, NO_YES),
     )
 }
 """Every variable that an archive of outcomes may have."""

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from itertools import chain
 
+from reduction.archive.reasons import PART, SETTING
 from reduction.archive.variable import Variable, count, label, mask, measured, stated
 
 __all__ = ["HOSE_STATES", "PREDICTION_SCHEMA"]
@@ -39,8 +40,6 @@ _N = ("hose", "hose_layer")
 
 _GIVEN = "given: the strain at which the hose is predicted"
 _GEOMETRY = "follows from strain and wrap angle alone"
-_SETTING = "setting"
-_PART = "is part of an uncertainty"
 _CURVE = "see cord_strain_scale and cord_load_scale"
 _NOT_CARRIED = "not carried through: see the tension"
 
@@ -70,8 +69,8 @@ PREDICTION_SCHEMA: dict[str, Variable] = {
         measured("layer_diameter", _L),
         stated("cord_diameter", _H, "limits the spacing alone"),
         label("rubber_law", _H),
-        stated("working_share", _H, _SETTING),
-        stated("minimum_inner_diameter", _H, _SETTING),
+        stated("working_share", _H, SETTING),
+        stated("minimum_inner_diameter", _H, SETTING),
         stated("ribbon_width", _L, _GEOMETRY),
         stated("number_of_cords", _H, _GEOMETRY),
         stated("cord_curve_strain", _C, _CURVE),
@@ -95,8 +94,8 @@ PREDICTION_SCHEMA: dict[str, Variable] = {
             for name in ("current_wrap_angle", "cord_spacing", "current_inner_diameter")
         ),
         mask("hose_state", _P, HOSE_STATES),
-        stated("tension_contribution", _S, _PART),
-        stated("fill_pressure_contribution", _S, _PART),
+        stated("tension_contribution", _S, PART),
+        stated("fill_pressure_contribution", _S, PART),
         measured("event_strain", _E),
         measured("event_tension", _E),
         measured("event_fill_pressure", _E),
@@ -106,9 +105,9 @@ PREDICTION_SCHEMA: dict[str, Variable] = {
         *(
             stated(f"hose_layer_{name}", _N, why)
             for name, why in (
-                ("wrap_angle", _SETTING),
-                ("strain_limit", _SETTING),
-                ("compression_limit", _SETTING),
+                ("wrap_angle", SETTING),
+                ("strain_limit", SETTING),
+                ("compression_limit", SETTING),
                 ("least_strain", _NOT_CARRIED),
                 ("greatest_strain", _NOT_CARRIED),
                 ("break_strain", _NOT_CARRIED),

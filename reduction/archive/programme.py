@@ -8,6 +8,7 @@ from itertools import chain
 
 import numpy as np
 
+from reduction.archive.reasons import CLOCK, MEAN_READING, NO_YES, SETTING
 from reduction.archive.values import Values, numbers, pad, texts
 from reduction.archive.variable import Variable, count, flag, label, measured, stated
 from reduction.line.failure import CyclesToFailure
@@ -23,9 +24,7 @@ __all__ = ["ROPE_ROWS", "rope_values"]
 _S = ("specimen",)
 _P = ("held_pair",)
 _T = ("held_pair", "held_pair_point")
-_NO_YES = {"no": 0, "yes": 1}
 _MEAN_OF_CYCLES = "mean over the cycles of dynamic_stiffness; each cycle has an uncertainty"
-_OF_CHANNEL = "mean of readings: its uncertainty is that of the channel"
 _U = "_standard_uncertainty"
 _OVER = re.compile("_over_strength|^creep_compliance")
 
@@ -60,25 +59,25 @@ ROPE_ROWS: tuple[Variable, ...] = tuple(
         label("held_pair_specimen", _P),
         count("held_pair_low_hold", _P),
         count("held_pair_high_hold", _P),
-        stated("held_pair_low_tension", _P, _OF_CHANNEL),
-        stated("held_pair_high_tension", _P, _OF_CHANNEL),
-        stated("static_reference_time", _P, "setting"),
+        stated("held_pair_low_tension", _P, MEAN_READING),
+        stated("held_pair_high_tension", _P, MEAN_READING),
+        stated("static_reference_time", _P, SETTING),
         measured("static_stiffness", _P),
         measured("static_stiffness_over_strength", _P),
         measured("static_stiffness_per_decade", _P),
         measured("static_stiffness_per_decade_over_strength", _P),
         label("static_refusal", _P),
         count("held_pair_point", ("held_pair_point",)),
-        stated("static_elapsed_time", _T, "a reading of the clock"),
+        stated("static_elapsed_time", _T, CLOCK),
         stated(
             "static_stiffness_at_time", _T, "mean of readings: static_stiffness has their scatter"
         ),
         # creep
-        stated("creep_tension_over_strength", ("hold",), _OF_CHANNEL),
+        stated("creep_tension_over_strength", ("hold",), MEAN_READING),
         measured("creep_compliance_per_decade", ("hold",)),
         # cycles to failure
         count("cycles_to_failure", _S),
-        flag("cycles_are_run_out", _S, _NO_YES),
+        flag("cycles_are_run_out", _S, NO_YES),
         stated("failure_peak_tension", _S, "mean over the cycles; each cycle has an uncertainty"),
         stated("failure_valley_tension", _S, "mean over the cycles; each cycle has an uncertainty"),
         stated(
@@ -88,7 +87,7 @@ ROPE_ROWS: tuple[Variable, ...] = tuple(
         ),
         label("failure_judged_by", _S),
         # pulls to the end
-        flag("pull_is_break", _S, _NO_YES),
+        flag("pull_is_break", _S, NO_YES),
         measured("pull_peak_tension", _S),
         measured("pull_peak_tension_over_strength", _S),
         measured("pull_peak_strain", _S),

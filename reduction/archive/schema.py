@@ -58,6 +58,22 @@ from itertools import chain
 
 from reduction.archive.line import LINE_ROWS
 from reduction.archive.programme import ROPE_ROWS
+from reduction.archive.reasons import (
+    AXIS,
+    BOUND,
+    CHECK,
+    CLOCK,
+    CRITERION,
+    MEAN_READING,
+    MOVEMENT,
+    NO_YES,
+    READING,
+    SEE_PER_DECADE,
+    SETTING,
+    SPREAD,
+    STATED,
+    TWO_METHODS,
+)
 from reduction.archive.variable import Variable, count, flag, label, mask, measured, stated
 from reduction.record import Quality
 from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES
@@ -76,21 +92,7 @@ SCHEMA_VERSION = "1"
 """Changes when a name, dimension or meaning changes; additions leave it as it is."""
 
 QUALITY_MASKS = {(mask_.name or "").lower(): int(mask_) for mask_ in Quality}
-_NO_YES = {"no": 0, "yes": 1}
 STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
-
-READING = "a reading: its uncertainty is that of the channel"
-CLOCK = "a reading of the clock"
-BOUND = "bound"
-SETTING = "setting"
-STATED = "stated by the laboratory"
-AXIS = "axis of the curve"
-CHECK = "residual of a check"
-CRITERION = "criterion of a fit"
-MEAN_READING = "mean of readings: its uncertainty is that of the channel"
-MOVEMENT = "what the machine did; no number is made from it"
-TWO_METHODS = "two methods on the same marks: what they get wrong they share"
-SEE_PER_DECADE = "from a part of the cycles; peak_tension_per_decade has one, from all of them"
 
 COEFFICIENTS = {
     "relaxed_free_length": "relaxed_free_length",
@@ -194,7 +196,7 @@ _ROWS = chain(
     stated("standstill_end_time", ("standstill",), CLOCK),
     stated("standstill_position", ("standstill",), MEAN_READING),
     stated("standstill_tension", ("specimen", "standstill"), MEAN_READING),
-    flag("standstill_is_rest", ("standstill",), _NO_YES),
+    flag("standstill_is_rest", ("standstill",), NO_YES),
     stated("standstill_position_tolerance", (), SETTING),
     stated("hold_tension_tolerance", (), SETTING),
     stated("slack_tension", (), SETTING),
@@ -298,7 +300,7 @@ _ROWS = chain(
     measured("modulus_ratio", _R),
     stated("modulus_ratio_low", _R, BOUND),
     stated("modulus_ratio_high", _R, BOUND),
-    flag("modulus_ratio_is_different", _R, _NO_YES),
+    flag("modulus_ratio_is_different", _R, NO_YES),
     # slips
     count("n_slips", _S),
     label("slip_specimen", ("slip",)),
@@ -311,10 +313,10 @@ _ROWS = chain(
     # elastomer laws
     label("elastomer_specimen", ("elastomer_fit",)),
     label("elastomer_law", ("elastomer_fit",)),
-    stated("elastomer_rms_stress", ("elastomer_fit",), "is itself a measure of spread"),
+    stated("elastomer_rms_stress", ("elastomer_fit",), SPREAD),
     stated("elastomer_strain_low", ("elastomer_fit",), BOUND),
     stated("elastomer_strain_high", ("elastomer_fit",), BOUND),
-    flag("elastomer_is_stable", ("elastomer_fit",), _NO_YES),
+    flag("elastomer_is_stable", ("elastomer_fit",), NO_YES),
     stated("elastomer_aicc", ("elastomer_fit",), CRITERION),
     count("elastomer_parameter_fit", ("elastomer_parameter",)),
     label("elastomer_parameter_name", ("elastomer_parameter",)),

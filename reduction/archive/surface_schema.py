@@ -35,6 +35,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain
 
+from reduction.archive.reasons import (
+    BOUND,
+    CHECK,
+    CRITERION,
+    NO_YES,
+    PART,
+    SETTING,
+    SPREAD,
+    STATED,
+    STATISTIC,
+)
 from reduction.archive.variable import Variable, count, flag, label, measured, stated
 from reduction.surface.product import STATIONARY_KINDS
 from reduction.vocabulary import RESPONSES, SURFACE_NAMES
@@ -42,7 +53,6 @@ from reduction.vocabulary import RESPONSES, SURFACE_NAMES
 __all__ = ["STATIONARY_FLAGS", "SURFACE_SCHEMA", "rows_of_response"]
 
 STATIONARY_FLAGS = {name or "none": code for code, name in STATIONARY_KINDS.items()}
-_NO_YES = {"no": 0, "yes": 1}
 
 _E = ("experiment",)
 _T = ("experiment", "term")
@@ -55,16 +65,9 @@ _C = ("experiment", "stiffness_form", "stiffness_term")
 _X = ("experiment", "point")
 _D = ("experiment", "ridge_direction", "ridge_radius")
 
-_TEST = "a statistic of a test"
 _COUNT = "count"
-_SETTING = "setting"
 _LEVELS = "a property of the levels"
 _PLAN = "as planned"
-_BOUND = "bound"
-_SPREAD = "is itself a measure of spread"
-_CRITERION = "criterion of a fit"
-_PART = "is part of an uncertainty"
-_CHECK = "residual of a check"
 _BASIS = "a direction: see the covariance of the coefficients"
 _OF_RUN = "its uncertainty stands in the archive of the run"
 _NOT_EVALUATED = "not evaluated by this version"
@@ -88,24 +91,24 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
     yield from chain(
         measured(f"{name}_coefficient", _T),
         measured(f"{name}_coefficient_engineering", _T),
-        stated(f"{name}_t", _T, _TEST),
-        stated(f"{name}_p_value", _T, _TEST),
+        stated(f"{name}_t", _T, STATISTIC),
+        stated(f"{name}_p_value", _T, STATISTIC),
         stated(f"{name}_term_degrees_of_freedom", _T, _COUNT),
-        stated(f"{name}_covariance_factor", (*_T, "term_other"), _PART),
+        stated(f"{name}_covariance_factor", (*_T, "term_other"), PART),
         label(f"{name}_transform", _E),
         stated(f"{name}_transform_exponent", _E, "see the ends of its interval"),
-        stated(f"{name}_transform_exponent_low", _E, _BOUND),
-        stated(f"{name}_transform_exponent_high", _E, _BOUND),
+        stated(f"{name}_transform_exponent_low", _E, BOUND),
+        stated(f"{name}_transform_exponent_high", _E, BOUND),
         stated(f"{name}_n_runs", _E, _COUNT),
         label(f"{name}_refusal", _E),
-        stated(f"{name}_sigma", _E, _SPREAD),
+        stated(f"{name}_sigma", _E, SPREAD),
         stated(f"{name}_degrees_of_freedom", _E, _COUNT),
         *(
-            stated(f"{name}_{what}", _E, _CRITERION)
+            stated(f"{name}_{what}", _E, CRITERION)
             for what in ("r2", "adjusted_r2", "predicted_r2", "probability_plot_correlation")
         ),
         *(
-            stated(f"{name}_{what}", _E, _TEST)
+            stated(f"{name}_{what}", _E, STATISTIC)
             for what in (
                 "overall_f",
                 "overall_p_value",
@@ -119,71 +122,71 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
             stated(f"{name}_anova_{what}", _A, why)
             for what, why in (
                 ("degrees_of_freedom", _COUNT),
-                ("sum_of_squares", _SPREAD),
-                ("mean_square", _SPREAD),
-                ("f", _TEST),
-                ("p_value", _TEST),
+                ("sum_of_squares", SPREAD),
+                ("mean_square", SPREAD),
+                ("f", STATISTIC),
+                ("p_value", STATISTIC),
             )
         ),
         measured(f"{name}_stationary_point", _F),
         stated(f"{name}_stationary_point_engineering", _F, "see the coded one"),
-        flag(f"{name}_stationary_point_is_inside", _E, _NO_YES),
+        flag(f"{name}_stationary_point_is_inside", _E, NO_YES),
         stated(f"{name}_stationary_value", _E, _FROM_SURFACE),
         flag(f"{name}_stationary_kind", _E, STATIONARY_FLAGS),
         label(f"{name}_stationary_refusal", _E),
         measured(f"{name}_eigenvalue", ("experiment", "direction")),
         stated(f"{name}_eigenvector", ("experiment", "direction", "factor"), _BASIS),
         stated(f"{name}_fitted", _R, _FROM_SURFACE),
-        stated(f"{name}_residual", _R, _CHECK),
+        stated(f"{name}_residual", _R, CHECK),
         *(
             stated(f"{name}_{what}", _R, "says how much a run counts")
             for what in ("leverage", "cooks_distance")
         ),
         *(
-            stated(f"{name}_{what}", _R, _CHECK)
+            stated(f"{name}_{what}", _R, CHECK)
             for what in ("studentized_residual", "deleted_residual")
         ),
         measured(f"{name}_reduced_coefficient", _T),
         stated(f"{name}_reduced_coefficient_engineering", _T, "see the coded one"),
-        flag(f"{name}_reduced_is_kept", _T, _NO_YES),
-        stated(f"{name}_reduced_sigma", _E, _SPREAD),
-        stated(f"{name}_reduced_aicc", _E, _CRITERION),
-        stated(f"{name}_full_aicc", _E, _CRITERION),
+        flag(f"{name}_reduced_is_kept", _T, NO_YES),
+        stated(f"{name}_reduced_sigma", _E, SPREAD),
+        stated(f"{name}_reduced_aicc", _E, CRITERION),
+        stated(f"{name}_full_aicc", _E, CRITERION),
         stated(f"{name}_block_effect", ("experiment", "block"), _NOT_EVALUATED),
-        stated(f"{name}_block_standard_deviation", _E, _SPREAD),
-        flag(f"{name}_block_at_boundary", _E, _NO_YES),
+        stated(f"{name}_block_standard_deviation", _E, SPREAD),
+        flag(f"{name}_block_at_boundary", _E, NO_YES),
         stated(f"{name}_point_value", _X, "see its intervals")
         if is_transformed
         else measured(f"{name}_point_value", _X),
         *(
-            stated(f"{name}_point_{kind}_{end}", _X, _BOUND)
+            stated(f"{name}_point_{kind}_{end}", _X, BOUND)
             for kind in ("confidence", "prediction", "simultaneous")
             for end in ("low", "high")
         ),
         stated(f"{name}_point_mean_value", _X, "see the intervals of the value"),
         stated(f"{name}_point_variance_factor", _X, _LEVELS),
-        flag(f"{name}_point_is_above_leverage", _X, _NO_YES),
+        flag(f"{name}_point_is_above_leverage", _X, NO_YES),
         stated(f"{name}_ridge_coded_level", (*_D, "factor"), _NOT_EVALUATED),
         stated(f"{name}_ridge_level", (*_D, "factor"), _NOT_EVALUATED),
         # the runs chose the point, so that only what holds everywhere at once holds there
         stated(f"{name}_ridge_value", _D, "see its simultaneous interval"),
-        stated(f"{name}_ridge_simultaneous_low", _D, _BOUND),
-        stated(f"{name}_ridge_simultaneous_high", _D, _BOUND),
+        stated(f"{name}_ridge_simultaneous_low", _D, BOUND),
+        stated(f"{name}_ridge_simultaneous_high", _D, BOUND),
     )
     if is_transformed:
         return
     yield from chain(
         measured(f"{name}_measured", _R),
         measured(f"{name}_effect", _P, uncertainty_dims=_E),
-        stated(f"{name}_effect_t", _P, _TEST),
-        stated(f"{name}_effect_p_value", _P, _TEST),
-        flag(f"{name}_effect_is_significant", _P, _NO_YES),
+        stated(f"{name}_effect_t", _P, STATISTIC),
+        stated(f"{name}_effect_p_value", _P, STATISTIC),
+        flag(f"{name}_effect_is_significant", _P, NO_YES),
         label(f"{name}_effect_refusal", _E),
         stated(f"{name}_effect_size", _P, "that of the effect"),
         stated(f"{name}_effect_half_normal_quantile", _P, "a property of the order"),
         stated(f"{name}_mean", _E, _NOT_EVALUATED),
-        stated(f"{name}_minimum_significant_effect", _E, _BOUND),
-        stated(f"{name}_simultaneous_minimum_effect", _E, _BOUND),
+        stated(f"{name}_minimum_significant_effect", _E, BOUND),
+        stated(f"{name}_simultaneous_minimum_effect", _E, BOUND),
     )
 
 
@@ -207,13 +210,13 @@ _ROWS = chain(
     label("anova_error_term", _A),
     label("block_name", ("experiment", "block")),
     label("block_treatment", _E),
-    stated("replicate_tolerance", _E, _SETTING),
+    stated("replicate_tolerance", _E, SETTING),
     stated("condition_number", _E, _LEVELS),
     count("plan_column", ("plan_column",)),
     label("plan_column_name", _P),
     label("effect_error_from", _E),
     stated("effect_degrees_of_freedom", _E, _COUNT),
-    stated("effect_significance", _E, _SETTING),
+    stated("effect_significance", _E, SETTING),
     count("interaction", ("interaction",)),
     label("interaction_factor", ("experiment", "interaction")),
     label("interaction_other_factor", ("experiment", "interaction")),
@@ -226,7 +229,7 @@ _ROWS = chain(
     stated("point_level", (*_X, "factor"), _PLAN),
     label("ridge_direction", ("ridge_direction",)),
     stated("ridge_radius", ("ridge_radius",), "exact"),
-    stated("interval_confidence", _E, _SETTING),
+    stated("interval_confidence", _E, SETTING),
     # runs
     count("run", ("run",)),
     label("run_name", _R),
@@ -246,7 +249,7 @@ _ROWS = chain(
             "minimum_tension",
         )
     ),
-    stated("run_rated_break_strength", _R, "stated by the laboratory"),
+    stated("run_rated_break_strength", _R, STATED),
     count("run_cell", _R),
     stated("derived_dissipation_spring_constant", _R, _NOT_EVALUATED),
     stated("derived_relaxation_time", _R, _NOT_EVALUATED),
@@ -258,18 +261,18 @@ _ROWS = chain(
     label("stiffness_coefficient_name", _C),
     label("stiffness_coefficient_unit", _C),
     measured("stiffness_coefficient", _C),
-    stated("stiffness_coefficient_low", _C, _BOUND),
-    stated("stiffness_coefficient_high", _C, _BOUND),
-    stated("stiffness_p_value", _C, _TEST),
-    stated("stiffness_covariance", (*_C, "stiffness_term_other"), _PART),
-    stated("stiffness_confidence", _S, _SETTING),
-    stated("stiffness_mean_load_low", _S, _BOUND),
-    stated("stiffness_mean_load_high", _S, _BOUND),
+    stated("stiffness_coefficient_low", _C, BOUND),
+    stated("stiffness_coefficient_high", _C, BOUND),
+    stated("stiffness_p_value", _C, STATISTIC),
+    stated("stiffness_covariance", (*_C, "stiffness_term_other"), PART),
+    stated("stiffness_confidence", _S, SETTING),
+    stated("stiffness_mean_load_low", _S, BOUND),
+    stated("stiffness_mean_load_high", _S, BOUND),
     stated("stiffness_n_coefficients", _S, _COUNT),
-    stated("stiffness_sigma", _S, _SPREAD),
+    stated("stiffness_sigma", _S, SPREAD),
     stated("stiffness_degrees_of_freedom", _S, _COUNT),
     *(
-        stated(f"stiffness_{name}", _S, _CRITERION)
+        stated(f"stiffness_{name}", _S, CRITERION)
         for name in (
             "r2",
             "adjusted_r2",
@@ -280,24 +283,24 @@ _ROWS = chain(
     ),
     label("stiffness_refusal", _S),
     stated("stiffness_fitted", (*_S, "run"), _FROM_SURFACE),
-    stated("stiffness_residual", (*_S, "run"), _CHECK),
+    stated("stiffness_residual", (*_S, "run"), CHECK),
     # whether one relaxation time holds over frequency
     measured("single_time_exponent", _E),
-    stated("single_time_exponent_low", _E, _BOUND),
-    stated("single_time_exponent_high", _E, _BOUND),
-    stated("single_time_p_value_one_time", _E, _TEST),
-    stated("single_time_p_value_inverse_frequency", _E, _TEST),
+    stated("single_time_exponent_low", _E, BOUND),
+    stated("single_time_exponent_high", _E, BOUND),
+    stated("single_time_p_value_one_time", _E, STATISTIC),
+    stated("single_time_p_value_inverse_frequency", _E, STATISTIC),
     stated("single_time_ratio", _E, "see the ends of its interval"),
-    stated("single_time_ratio_low", _E, _BOUND),
-    stated("single_time_ratio_high", _E, _BOUND),
+    stated("single_time_ratio_low", _E, BOUND),
+    stated("single_time_ratio_high", _E, BOUND),
     stated("single_time_frequency_ratio", _E, _OF_RUN),
     stated("single_time_degrees_of_freedom", _E, _COUNT),
     stated("single_time_loss_exponent", _E, "see the ends of its interval"),
-    stated("single_time_loss_exponent_low", _E, _BOUND),
-    stated("single_time_loss_exponent_high", _E, _BOUND),
+    stated("single_time_loss_exponent_low", _E, BOUND),
+    stated("single_time_loss_exponent_high", _E, BOUND),
     label("single_time_verdict", _E),
-    stated("single_time_confidence", _E, _SETTING),
-    stated("single_time_tolerance", _E, _SETTING),
+    stated("single_time_confidence", _E, SETTING),
+    stated("single_time_tolerance", _E, SETTING),
     # responses
     chain.from_iterable(
         rows_of_response(name, is_transformed=name not in RESPONSES) for name in SURFACE_NAMES

@@ -1,0 +1,44 @@
+"""What several schemas say in the same words: why a variable has no uncertainty; yes and no.
+
+A reason stands in the archive beside the variable, as `reduction.archive.variable.stated` has it.
+"""
+
+from __future__ import annotations
+
+__all__ = [
+    "AXIS",
+    "BOUND",
+    "CHECK",
+    "CLOCK",
+    "CRITERION",
+    "MEAN_READING",
+    "MOVEMENT",
+    "NO_YES",
+    "PART",
+    "READING",
+    "SEE_PER_DECADE",
+    "SETTING",
+    "SPREAD",
+    "STATED",
+    "STATISTIC",
+    "TWO_METHODS",
+]
+
+READING = "a reading: its uncertainty is that of the channel"
+MEAN_READING = "mean of readings: its uncertainty is that of the channel"
+CLOCK = "a reading of the clock"
+BOUND = "bound"
+SETTING = "setting"
+STATED = "stated by the laboratory"
+AXIS = "axis of the curve"
+CHECK = "residual of a check"
+CRITERION = "criterion of a fit"
+STATISTIC = "a statistic of a test"
+SPREAD = "is itself a measure of spread"
+PART = "is part of an uncertainty"
+MOVEMENT = "what the machine did; no number is made from it"
+TWO_METHODS = "two methods on the same marks: what they get wrong they share"
+SEE_PER_DECADE = "from a part of the cycles; peak_tension_per_decade has one, from all of them"
+
+NO_YES = {"no": 0, "yes": 1}
+"""Meanings of a flag that answers a question."""
