@@ -79,6 +79,9 @@ class Specimen:
         constant-volume check. [1], [m]
     rated_break_strength : float or None
         Stated once for a specimen. [N]
+    linear_density, wet_linear_density : float or None
+        Mass a length in air, and less the water it displaces, where stated; the wet one of what
+        floats is negative. [kg m-1]
     gauge_length : float or None
         Distance between gauge marks at zero tension, where marked. [m]
     gauge_length_standard_uncertainty : float or None
@@ -103,6 +106,8 @@ class Specimen:
     gauge_length_standard_uncertainty: float | None = None
     earlier_cycles: int | None = None
     earlier_flex_cycles: int | None = None
+    linear_density: float | None = None
+    wet_linear_density: float | None = None
 
     @property
     def mean_diameter(self) -> float:

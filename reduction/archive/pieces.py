@@ -200,6 +200,8 @@ def source_of_tests(
         model=known[0] if known else None,
         diameter=_one_number(own, specimen, "diameter"),
         rated_break_strength=_one_number(own, specimen, "rated_break_strength"),
+        linear_density=_one_number(own, specimen, "linear_density"),
+        wet_linear_density=_one_number(own, specimen, "wet_linear_density"),
         sources=tuple(sources),
         notes=tuple(notes),
         is_synthetic=any(one.attrs.get("synthetic") == "yes" for one in own),
@@ -242,7 +244,7 @@ def _one_number(datasets: Sequence[xr.Dataset], specimen: str, name: str) -> flo
         return float("nan")
     value, where = known[0]
     for other, there in known[1:]:
-        if abs(other - value) > _SAME * value:
+        if abs(other - value) > _SAME * abs(value):
             raise SettingsError(
                 f"the archives state another {name.replace('_', ' ')} of '{specimen}'",
                 found=f"{value:.6g} in {where}, {other:.6g} in {there}",

@@ -159,6 +159,8 @@ _ROWS = chain(
     stated("area", _S, "from the diameter; see diameter_reading"),
     stated("rated_break_strength", _S, STATED),
     label("rated_break_strength_source", _S),
+    stated("linear_density", _S, STATED),
+    stated("wet_linear_density", _S, STATED),
     stated("declared_gauge_length", _S, STATED),
     label("earlier_tests", _S),
     stated("earlier_maximum_strain", _S, "bound: greatest value seen"),

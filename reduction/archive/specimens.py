@@ -39,7 +39,17 @@ def specimen_values(specimens: Sequence[Specimen]) -> Values:
             [one.rated_break_strength_source for one in specimens]
         ),
         "declared_gauge_length": numbers([one.gauge_length for one in specimens]),
+        **_linear_densities(specimens),
     }
+
+
+def _linear_densities(specimens: Sequence[Specimen]) -> Values:
+    """Mass a length in air and in water, where it is stated of one at least."""
+    values = {
+        "linear_density": numbers([one.linear_density for one in specimens]),
+        "wet_linear_density": numbers([one.wet_linear_density for one in specimens]),
+    }
+    return {name: found for name, found in values.items() if np.isfinite(found).any()}
 
 
 def history_values(history: History) -> Values:

@@ -100,6 +100,10 @@ class SpecimenSection(_Section):
     """Readings at a stretch, by stretch: ``{ "10 %" = ["0.997 in", "0.980 in"] }``."""
     rated_break_strength: str | None = None
     rated_break_strength_source: Text = ""
+    linear_density: str | None = None
+    """Mass a length in air."""
+    wet_linear_density: str | None = None
+    """The same less the water it displaces."""
     gauge_length: str | None = None
     gauge_length_standard_uncertainty: str | None = None
     earlier_cycles: int | None = Field(default=None, ge=0)

@@ -172,6 +172,8 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         "tested": (float(strain[0]), float(strain[-1])),
         "diameter": _number(archive, "diameter", place),
         "rated_break_strength": _number(archive, "rated_break_strength", place),
+        "linear_density": _number(archive, "linear_density", place),
+        "wet_linear_density": _number(archive, "wet_linear_density", place),
         "notes": tuple(notes),
     }
 

@@ -133,6 +133,8 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
     fields = {
         "diameter": source.diameter,
         "rated_break_strength": source.rated_break_strength,
+        "linear_density": source.linear_density,
+        "wet_linear_density": source.wet_linear_density,
     }
     return ExportLine(
         name=source.name,

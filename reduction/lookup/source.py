@@ -28,6 +28,8 @@ class PieceSource:
         How its length follows from strain and tension, where that is known.
     diameter, rated_break_strength : float
         NaN where not stated. [m], [N]
+    linear_density, wet_linear_density : float
+        In air, and less the displaced water; NaN where not stated. [kg m-1]
     sources : tuple of str
         Where each piece is from.
     notes : tuple of str
@@ -42,6 +44,8 @@ class PieceSource:
     model: StrainModel | None = None
     diameter: float = float("nan")
     rated_break_strength: float = float("nan")
+    linear_density: float = float("nan")
+    wet_linear_density: float = float("nan")
     sources: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     is_synthetic: bool = False

@@ -307,6 +307,8 @@ TABLES = (
             "area",
             "rated_break_strength",
             "rated_break_strength_source",
+            "linear_density",
+            "wet_linear_density",
             "declared_gauge_length",
         ),
         ("specimen_kind",),

@@ -52,6 +52,8 @@ OF_SPECIMENS = (
     Quantity("area", "m2", "cross-sectional area at zero tension"),
     Quantity("diameter", "m", "mean diameter before stretch"),
     Quantity("rated_break_strength", "N", "rated break strength", "003 Table 2"),
+    Quantity("linear_density", "kg m-1", "mass a length in air"),
+    Quantity("wet_linear_density", "kg m-1", "mass a length less that of the displaced water"),
     Quantity("earlier_maximum_strain", "1", "greatest strain in the specimen's earlier tests"),
     Quantity("earlier_maximum_tension", "N", "greatest tension in the specimen's earlier tests"),
     Quantity("earlier_cycles", "1", "cycles of the specimen before this test"),

@@ -102,11 +102,25 @@ def test_flexing_that_cannot_be_is_refused(folder, key, message):
         ('gauge_length_standard_uncertainty = "1 mm"', "stands alone"),
         ('gauge_length = "1 m"\ngauge_length_standard_uncertainty = "0 mm"', "not positive"),
         ("earlier_cycles = -1", r"specimens\.a\.earlier_cycles"),
+        ('linear_density = "0 kg/m"', r"specimens\.a\.linear_density is not positive"),
+        ('linear_density = "3 lbf"', r"specimens\.a\.linear_density"),
+        (
+            'linear_density = "0.1 kg/m"\nwet_linear_density = "0.1 kg/m"',
+            r"wet_linear_density is not below linear_density; found 0\.1 kg/m, 0\.1 kg/m",
+        ),
     ],
 )
 def test_a_specimen_that_cannot_be_so_is_refused(folder, keys, message):
     with pytest.raises(SettingsError, match=message):
         load(folder, BASE.replace("[layouts.l]", keys + "\n[layouts.l]") + TEST)
+
+
+def test_a_specimen_states_its_mass_a_length_in_air_and_in_water(folder):
+    keys = 'linear_density = "0.0672 lb/ft"\nwet_linear_density = "-10 g/m"\n'
+    found = load(folder, BASE.replace("[layouts.l]", keys + "[layouts.l]") + TEST).specimens["a"]
+    assert found.linear_density == pytest.approx(0.0672 * 0.45359237 / 0.3048)
+    assert found.wet_linear_density == pytest.approx(-0.01)  # it floats
+    assert load(folder, BASE + TEST).specimens["a"].linear_density is None
 
 
 def test_the_uncertainty_of_a_gauge_length_is_a_length(folder):

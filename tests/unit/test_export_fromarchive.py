@@ -141,3 +141,19 @@ def test_a_hose_is_a_prediction_up_to_its_break(tmp_path):
     assert found.curve == "predicted from construction, up to the break of the cords"
     with pytest.raises(SettingsError, match="a predicted hose has one curve"):
         line_from_archive(tmp_path / "predictions.nc", specimen="two", curve="mean")
+
+
+def test_mass_a_length_comes_from_the_archive_and_what_is_stated_goes_before(
+    tmp_path, test_archive
+):
+    with xr.open_dataset(test_archive()) as archive:
+        archive.load()
+    archive["linear_density"] = ("specimen", [0.6, np.nan])
+    archive["wet_linear_density"] = ("specimen", [0.05, np.nan])
+    archive.to_netcdf(tmp_path / "mass.nc", engine="netcdf4")
+    found = line_from_archive(tmp_path / "mass.nc", specimen="new")
+    assert (found.linear_density, found.wet_linear_density) == (0.6, 0.05)
+    assert line_from_archive(
+        tmp_path / "mass.nc", specimen="new", linear_density=0.7
+    ).linear_density == pytest.approx(0.7)
+    assert np.isnan(line_from_archive(tmp_path / "mass.nc", specimen="used").linear_density)
