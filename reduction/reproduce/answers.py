@@ -6,13 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from reduction.errors import DataError
 from reduction.published.cell import Cell, ReportId, number_of, printed_step
 from reduction.published.read import cells_of
+from reduction.record import Floats
 from reduction.reproduce.item import Item, judge, not_testable
 from reduction.reproduce.wording import judge_limit
 
-__all__ = ["Answer", "Answers", "Key", "item_of", "items_from"]
+__all__ = ["Answer", "Answers", "Key", "item_of", "items_from", "log_slope"]
 
 _ROUND_OFF = 1e-9
 
@@ -114,3 +117,14 @@ def item_of(cell: Cell, answers: Mapping[Key, Answer | str]) -> Item:
     elif tolerance is None and printed_step(cell.printed) == 0:
         tolerance = _ROUND_OFF  # a fraction is exact
     return judge(cell, answer.value, answer.how, tolerance=tolerance)
+
+
+def log_slope(variable: Floats | list[float], value: Floats | list[float]) -> float:
+    """Power with which a value grows with a variable, from the first point to the last.
+
+    Examples
+    --------
+    >>> round(log_slope([1.0, 3.0], [5.0, 45.0]), 12)
+    2.0
+    """
+    return float(np.log(value[-1] / value[0]) / np.log(variable[-1] / variable[0]))

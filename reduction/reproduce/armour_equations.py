@@ -20,7 +20,7 @@ from reduction.predict.armour import predict_armour
 from reduction.predict.armourdesign import ArmourDesign, ArmourTheory
 from reduction.predict.armouryield import layer_strength
 from reduction.record import Floats
-from reduction.reproduce.answers import Answer, Answers
+from reduction.reproduce.answers import Answer, Answers, log_slope
 
 __all__ = ["ELASTIC_MODULUS", "POISSON_RATIO", "armour", "equation_answers", "response"]
 
@@ -101,10 +101,6 @@ def _trigonometry(degrees: float = _DEGREES) -> tuple[float, float, float]:
     return float(np.sin(angle)), float(np.cos(angle)), float(np.tan(angle))
 
 
-def _power(variable: Floats, value: Floats) -> float:
-    return float(np.log(value[1] / value[0]) / np.log(variable[1] / variable[0]))
-
-
 def _geometry() -> Answers:
     angle = np.radians([30.0, 60.0])
     pitch, curvature = [], []
@@ -121,9 +117,9 @@ def _geometry() -> Answers:
     second_order = (ratio - (1 + _STRAIN - wire_strain)) / (wire_strain * (wire_strain - _STRAIN))
     return {
         ("sec 2", "thread pitch h", "power of tan(alpha)"): Answer(
-            _power(np.tan(angle), np.array(pitch)), helix, tolerance=1e-9),
+            log_slope(np.tan(angle), np.array(pitch)), helix, tolerance=1e-9),
         ("eq 2", "curvature", "power of sin(alpha)"): Answer(
-            _power(np.sin(angle), np.array(curvature)), helix),
+            log_slope(np.sin(angle), np.array(curvature)), helix),
         ("eq 9", "change of the winding angle", "sign of its definition, current less rest"):
             Answer((current - float(np.radians(_DEGREES))) / change, "exact helix", tolerance=1e-9),
         ("eq 10", "axial and rotation strain", "equations that are linearised, from"): Answer(
@@ -159,9 +155,9 @@ def _intermediate() -> Answers:
     share = moment * cosine**2 * tangent**2 / (1 + tangent**2)
     answers: Answers = {
         ("eq 12", "wire strain", "power of tan(alpha)"): Answer(
-            _power(tangents, 1 / strain - 1), how),
+            log_slope(tangents, 1 / strain - 1), how),
         ("eq 13", "change of the winding angle", "power of tan(alpha) in the divisor"): Answer(
-            _power(tangents, -1 / change - 1), how),
+            log_slope(tangents, -1 / change - 1), how),
         ("eq 14", "change of curvature", "factor"): Answer(
             curvature / (sine * cosine * common), how),
         ("eq 15", "change of torsion", "factor of the squared cosine"): Answer(
@@ -208,9 +204,10 @@ def _small() -> Answers:
     moments = [response(_DEGREES, "torsion_moment", theory="small", wire=one) for one in wires]
     return {
         ("eq 20", "wire strain, small angles", "power of cos(alpha)"): Answer(
-            _power(np.cos(np.radians(pair)), response(pair, "wire_strain", theory="small")), how),
+            log_slope(np.cos(np.radians(pair)), response(pair, "wire_strain", theory="small")),
+            how),
         ("eq 22", _BENDING, "factor"): Answer(bending * _HELIX / (sine * cosine * change), how),
-        ("eq 22", _TORSION, "power of R2"): Answer(_power(wires, np.array(moments)), how),
+        ("eq 22", _TORSION, "power of R2"): Answer(log_slope(wires, np.array(moments)), how),
         ("eq 22", _TORSION, "factor of the squared cosine, after 1"): Answer(
             (per_change + 1) / cosine**2, how),
     }  # fmt: skip
@@ -232,7 +229,8 @@ def _spring() -> Answers:
         ("eq 28", "stress of the axial force of the spring", "divisor"): Answer(
             size * cosine / (pi * _WIRE**2) / _at("axial_stress", "large"), how),
         ("sec 5.3", "strength of the layer F", "power of cos(alpha)"): Answer(
-            _power(cosines, strength), "part of the axial force along the cable", tolerance=1e-9),
+            log_slope(cosines, strength), "part of the axial force along the cable",
+            tolerance=1e-9),
     }  # fmt: skip
     for degrees in (20.0, 80.0):
         moment = _at("torsion_moment", "large", degrees)

@@ -8,7 +8,20 @@ from scipy.special import fdtri
 from reduction.line.model import apparent_spring_constant
 from reduction.published.cell import Cell
 from reduction.reproduce.cg_cells import Check, Pages, always
-from reduction.reproduce.cg_surfaces import CENTRE_LINES, centre_stiffness, change_of_mean
+from reduction.reproduce.cg_lines import (
+    CENTRE_LINES,
+    ENERGY,
+    K_1,
+    K_AP,
+    NYLON_BRAID,
+    NYLON_BRAIDS,
+    NYLON_PLAITED,
+    POLYESTER_BRAID,
+    POLYESTER_PLAITED,
+    TIME,
+    centre_stiffness,
+)  # fmt: skip
+from reduction.reproduce.cg_surfaces import change_of_mean
 from reduction.reproduce.item import Item, agree, beside, judge, not_testable
 from reduction.reproduce.wording import judge_round
 from reduction.surface.coding import coded_from_engineering
@@ -16,17 +29,6 @@ from reduction.surface.terms import model_matrix, quadratic_exponents
 
 __all__ = ["CLAIMS_OF_STIFFNESS"]
 
-K_AP, ENERGY, K_1, TIME = (
-    "apparent_spring_constant", "hysteresis_energy", "dissipation_spring_constant",
-    "relaxation_time",
-)  # fmt: skip
-NB, NP, PB, PP = (
-    f"{material} | {construction} | 1/2 in"
-    for material in ("nylon", "polyester") for construction in ("double braid", "8-strand plaited")
-)  # fmt: skip
-NYLON_BRAIDS = tuple(
-    f"nylon | double braid | {size} in | new" for size in ("1/2", "3/4", "1", "1 1/4")
-)
 COLUMN_LOST = "the column of the five-year line is lost in the text"
 
 
@@ -52,7 +54,9 @@ def _change(cell: Cell, pages: Pages) -> Item:
     quantity = cell.column.partition(" ")[0]
     if cell.column.endswith((" low", " high")):
         row, table = (
-            (f"{PB} | 5 years", "5") if cell.column.endswith("low") else (f"{PP} | 4 years", "5")
+            (f"{POLYESTER_BRAID} | 5 years", "5")
+            if cell.column.endswith("low")
+            else (f"{POLYESTER_PLAITED} | 4 years", "5")
         )
     else:
         row = cell.row
@@ -112,16 +116,24 @@ def _mean_ratio(pages: Pages, over: str, under: str) -> float:
 
 def _stiffer(cell: Cell, pages: Pages) -> Item:
     if cell.printed == "twice":
-        ratio = _mean_ratio(pages, PP, NP)
+        ratio = _mean_ratio(pages, POLYESTER_PLAITED, NYLON_PLAITED)
         return agree(cell, round(ratio) == 2, f"B1 of Table 3: {ratio:.2f}")
-    ratios = [_mean_ratio(pages, PB, PP), _mean_ratio(pages, NB, NP)]
+    ratios = [
+        _mean_ratio(pages, POLYESTER_BRAID, POLYESTER_PLAITED),
+        _mean_ratio(pages, NYLON_BRAID, NYLON_PLAITED),
+    ]
     return agree(
         cell, min(ratios) > 1, "B1 of Table 3: " + ", ".join(f"{one:.2f}" for one in ratios)
     )
 
 
 def _stiffness_of_materials(cell: Cell, pages: Pages) -> Item:
-    ratios = sorted([_mean_ratio(pages, PP, NP), _mean_ratio(pages, PB, NB)])
+    ratios = sorted(
+        [
+            _mean_ratio(pages, POLYESTER_PLAITED, NYLON_PLAITED),
+            _mean_ratio(pages, POLYESTER_BRAID, NYLON_BRAID),
+        ]
+    )
     return judge(cell, ratios[cell.column.endswith("high")], "B1 of Table 3, plaited and braid")
 
 
@@ -171,7 +183,9 @@ def _little_effect_on_spring(cell: Cell, pages: Pages) -> Item:
 
 
 def _spring_with_exposure(cell: Cell, pages: Pages) -> Item:
-    new, old = (pages.value("16", f"{PB} | {when}", f"{K_1} B1") for when in ("new", "5 years"))
+    new, old = (
+        pages.value("16", f"{POLYESTER_BRAID} | {when}", f"{K_1} B1") for when in ("new", "5 years")
+    )
     return agree(cell, old > new, f"Table 16: {old:g} and {new:g}, the one pair that is left")
 
 

@@ -6,15 +6,13 @@ from scipy.special import fdtr
 
 from reduction.published.cell import Cell
 from reduction.reproduce.cg_cells import Check, Pages, always, number
+from reduction.reproduce.cg_lines import K_AP, NYLON_BRAIDS, PLAITED, SCREEN, levels_of
 from reduction.reproduce.item import Item, agree, judge, not_testable
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import box_behnken, plackett_burman
 
 __all__ = ["CLAIMS_OF_SETTINGS"]
 
-PLAITED = "nylon | 8-strand plaited"
-SCREEN = f"screening | {PLAITED}"
-FIRST_LINE = "nylon | double braid | 1/2 in, 3/4 in | new"
 SETTING = "a setting of the tests"
 PRINTED_IN = {"sec 4.3": "sec 4.4.2", "sec 4.4.2": "sec 4.3", "sec 6.3.1": "App G",
               "App G": "sec 6.3.1"}  # fmt: skip
@@ -36,9 +34,7 @@ def _design(cell: Cell, pages: Pages) -> Item:
 
 def _two_samples(cell: Cell, pages: Pages) -> Item:
     counts = {
-        pages.printed(
-            "4", f"{PLAITED} | 1/2 in | {years}", "apparent_spring_constant number of lines"
-        )
+        pages.printed("4", f"{PLAITED} | 1/2 in | {years}", f"{K_AP} number of lines")
         for years in ("4 years", "5 years")
     }
     return agree(cell, counts == {2.0}, "Table 4")
@@ -71,7 +67,7 @@ def _levels(cell: Cell, pages: Pages) -> Item:
         column = "duration high" if cell.column == "cycles" else cell.column
         return judge(cell, pages.printed("A-1", SCREEN, column), "Table A-1")
     if cell.row == "design":
-        return judge(cell, pages.printed("1", FIRST_LINE, cell.column), "Table 1")
+        return judge(cell, pages.printed("1", levels_of(NYLON_BRAIDS[0]), cell.column), "Table 1")
     return not_testable(cell, SETTING)
 
 
@@ -88,9 +84,7 @@ def _period(cell: Cell, pages: Pages) -> Item:
 
 
 def _confidence(cell: Cell, pages: Pages) -> Item:
-    critical = pages.printed(
-        "3", FIRST_LINE.replace(", 3/4 in", ""), "apparent_spring_constant F-crit"
-    )
+    critical = pages.printed("3", NYLON_BRAIDS[0], f"{K_AP} F-crit")
     return judge(
         cell, 100 * float(fdtr(4, 10, critical)),
         f"{critical:g} of the tables with 4 and 10 degrees of freedom, which are transposed",

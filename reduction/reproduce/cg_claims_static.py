@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from reduction.published.cell import Cell
 from reduction.reproduce.cg_cells import Check, Pages
+from reduction.reproduce.cg_lines import (
+    NYLON_BRAID,
+    NYLON_BRAIDS,
+    NYLON_PLAITED,
+    POLYESTER_BRAID,
+    POLYESTER_PLAITED,
+)  # fmt: skip
 from reduction.reproduce.item import Item, agree, judge
 
 __all__ = ["CLAIMS_OF_PULLS"]
 
-NB, NP, PB, PP = (
-    f"{material} | {construction} | 1/2 in"
-    for material in ("nylon", "polyester") for construction in ("double braid", "8-strand plaited")
-)  # fmt: skip
-NYLON_BRAIDS = tuple(f"nylon | double braid | {size} in | new" for size in ("1/2", "3/4", "1"))
-# strength that 30 % refer to: of 7878 lb they are the range that Table 8 prints
 STRENGTH = {
-    NB: ("2", f"{NB} | all", "rated_break_strength"),
-    NP: ("10", f"{NP} | new", "tensile_strength mean"),
-    PB: ("10", f"{PB} | new", "tensile_strength mean"),
-    PP: ("10", f"{PP} | new", "tensile_strength mean"),
+    NYLON_BRAID: ("2", f"{NYLON_BRAID} | all", "rated_break_strength"),
+    NYLON_PLAITED: ("10", f"{NYLON_PLAITED} | new", "tensile_strength mean"),
+    POLYESTER_BRAID: ("10", f"{POLYESTER_BRAID} | new", "tensile_strength mean"),
+    POLYESTER_PLAITED: ("10", f"{POLYESTER_PLAITED} | new", "tensile_strength mean"),
 }
 
 
@@ -39,7 +40,10 @@ def _least_stiffness(cell: Cell, pages: Pages) -> Item:
 
 def _rest_with_exposure(cell: Cell, pages: Pages) -> Item:
     ratios = []
-    for line, tensions in ((NB, (768.0, 1344.0, 1920.0)), (NP, (691.2, 1209.6, 1728.0))):
+    for line, tensions in (
+        (NYLON_BRAID, (768.0, 1344.0, 1920.0)),
+        (NYLON_PLAITED, (691.2, 1209.6, 1728.0)),
+    ):
         for tension in tensions:
             new = pages.polynomial("7", f"{line} | new", tension)
             ratios.append(pages.slope("9", f"{line} | 5 years", tension) / new)
@@ -52,7 +56,9 @@ def _rest_with_exposure(cell: Cell, pages: Pages) -> Item:
 
 def _rest_of_polyester(cell: Cell, pages: Pages) -> Item:
     if cell.column.endswith("low loads"):
-        ratio = pages.polynomial("7", cell.row, 840.0) / pages.polynomial("7", f"{PB} | new", 840.0)
+        ratio = pages.polynomial("7", cell.row, 840.0) / pages.polynomial(
+            "7", f"{POLYESTER_BRAID} | new", 840.0
+        )
         return agree(
             cell,
             ratio < 0.5,
@@ -61,7 +67,8 @@ def _rest_of_polyester(cell: Cell, pages: Pages) -> Item:
     # of both prints of the new cubic, since it is open which one is right
     ratios = {
         table: sorted(
-            pages.slope("9", cell.row, load) / pages.slope(table, f"{PP} | new", load)
+            pages.slope("9", cell.row, load)
+            / pages.slope(table, f"{POLYESTER_PLAITED} | new", load)
             for load in (792.0, 1386.0, 1980.0)
         )
         for table in ("8", "9")
@@ -91,8 +98,8 @@ def _strain(cell: Cell, pages: Pages) -> Item:
 
 def _strain_of_materials(cell: Cell, pages: Pages) -> Item:
     ratios = sorted([
-        _strain_at_share(pages, NP) / _strain_at_share(pages, PP),
-        _strain_at_share(pages, NB) / _strain_at_share(pages, PB),
+        _strain_at_share(pages, NYLON_PLAITED) / _strain_at_share(pages, POLYESTER_PLAITED),
+        _strain_at_share(pages, NYLON_BRAID) / _strain_at_share(pages, POLYESTER_BRAID),
     ])  # fmt: skip
     return judge(
         cell,
@@ -116,7 +123,7 @@ def _strain_of_sizes(cell: Cell, pages: Pages) -> Item:
 
 
 def _rest(cell: Cell, pages: Pages) -> Item:
-    one = cell.row == f"{PP} | 4 years"
+    one = cell.row == f"{POLYESTER_PLAITED} | 4 years"
     return _rest_of_polyester(cell, pages) if one else _rest_with_exposure(cell, pages)
 
 

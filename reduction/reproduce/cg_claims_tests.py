@@ -9,16 +9,20 @@ from reduction.outcomes.exposure import fit_exposure_line
 from reduction.outcomes.life import ratio_of_lives
 from reduction.published.cell import Cell
 from reduction.reproduce.cg_cells import Check, Pages, always, number
+from reduction.reproduce.cg_lines import (
+    PLAITED,
+    POLYESTER_BRAID,
+    SCREEN,
+    STRAIN_AT_FAILURE,
+    STRENGTH,
+)  # fmt: skip
 from reduction.reproduce.cg_tests import change_of_table_10
 from reduction.reproduce.item import Item, agree, judge
 from reduction.reproduce.wording import judge_round
 
 __all__ = ["CLAIMS_OF_TESTS"]
 
-STRENGTH, STRAIN, CYCLES = "tensile_strength", "strain_at_failure", "abrasion_cycles"
-BRAID = "polyester | double braid | 1/2 in"
-PLAITED = "nylon | 8-strand plaited"
-SCREEN = f"screening | {PLAITED}"
+CYCLES = "abrasion_cycles"
 FIGURE_19 = "Figure 19 is not in the text"
 
 
@@ -42,15 +46,15 @@ def _linear(cell: Cell, pages: Pages) -> Item:
     line = fit_exposure_line(
         [0, 2, 3, 5],
         [
-            pages.value("10", f"{BRAID} | new", f"{STRENGTH} mean"),
-            pages.value("sec 6.3.2", f"{BRAID} | 2 years", STRENGTH),
-            pages.value("21", f"{BRAID} | 3 years", f"{STRENGTH} mean"),
-            pages.value("10", f"{BRAID} | 5 years", f"{STRENGTH} mean"),
+            pages.value("10", f"{POLYESTER_BRAID} | new", f"{STRENGTH} mean"),
+            pages.value("sec 6.3.2", f"{POLYESTER_BRAID} | 2 years", STRENGTH),
+            pages.value("21", f"{POLYESTER_BRAID} | 3 years", f"{STRENGTH} mean"),
+            pages.value("10", f"{POLYESTER_BRAID} | 5 years", f"{STRENGTH} mean"),
         ],
         [
-            pages.value("10", f"{BRAID} | new", f"{STRENGTH} standard deviation"),
+            pages.value("10", f"{POLYESTER_BRAID} | new", f"{STRENGTH} standard deviation"),
             np.nan,
-            pages.value("21", f"{BRAID} | 3 years", f"{STRENGTH} standard deviation"),
+            pages.value("21", f"{POLYESTER_BRAID} | 3 years", f"{STRENGTH} standard deviation"),
             np.nan,
         ],
         [16, 1, 4, 2],
@@ -132,18 +136,18 @@ def _over_polyester(cell: Cell, pages: Pages) -> Item:
 
 
 def _jacket(cell: Cell, pages: Pages) -> Item:
-    section, jacketed = "sec 6.2.2", f"{BRAID} | jacketed"
+    section, jacketed = "sec 6.2.2", f"{POLYESTER_BRAID} | jacketed"
     lives = np.array([
         pages.value(section, jacketed, f"{CYCLES} {one}") for one in ("first", "second", "third")
     ])  # fmt: skip
     plain = np.array([
-        pages.value(section, f"{BRAID} | new", f"{CYCLES} {one}")
+        pages.value(section, f"{POLYESTER_BRAID} | new", f"{CYCLES} {one}")
         for one in ("least", "mode", "greatest")
     ])  # fmt: skip
     of_mode = lives / plain[1]
     kind = ("mean", "standard deviation", "number of samples")
     mean, deviation, count = (
-        pages.value("20", f"{BRAID} | new", f"{CYCLES} {one}") for one in kind
+        pages.value("20", f"{POLYESTER_BRAID} | new", f"{CYCLES} {one}") for one in kind
     )
     ratio, low, high = ratio_to_published_life(
         lives, [False] * 3, reference_mean=mean, reference_standard_deviation=deviation,
@@ -164,8 +168,8 @@ CLAIMS_OF_TESTS: dict[str, Check] = {
     f"{STRENGTH} against years": _linear,
     f"{STRENGTH} mean": _repeated,
     f"{STRENGTH} change": _repeated,
-    f"{STRAIN} change": _repeated,
-    f"{STRAIN} rise": _half,
+    f"{STRAIN_AT_FAILURE} change": _repeated,
+    f"{STRAIN_AT_FAILURE} rise": _half,
     f"{STRENGTH} fall": lambda cell, pages: (_wet if cell.table == "sec A-4.6" else _half)(
         cell, pages
     ),
@@ -194,6 +198,6 @@ CLAIMS_OF_TESTS |= {
     f"{quantity} significant factors": _significant
     for quantity in (
         "apparent_spring_constant", "quasi_static_spring_constant", "dissipation_spring_constant",
-        "relaxation_time", "hysteresis_energy", STRENGTH, STRAIN,
+        "relaxation_time", "hysteresis_energy", STRENGTH, STRAIN_AT_FAILURE,
     )
 }  # fmt: skip

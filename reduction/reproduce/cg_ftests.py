@@ -7,16 +7,15 @@ from math import gcd
 from reduction.outcomes.compare import one_way
 from reduction.published.cell import Cell, printed_step
 from reduction.reproduce.cg_cells import Pages, number, rounding
+from reduction.reproduce.cg_lines import PLAITED, SCREEN, STRAIN_AT_FAILURE, STRENGTH
 from reduction.reproduce.item import Item, judge, not_testable
 
 __all__ = [
-    "AFTER", "DRY", "GROUPS", "HIGH", "LOW", "MEASURED", "PLAITED", "SAMPLES", "STRAIN", "STRENGTH",
-    "WET", "common_step", "item_of_f_test", "item_of_group",
+    "AFTER", "DRY", "GROUPS", "HIGH", "LOW", "MEASURED", "SAMPLES", "WET", "common_step",
+    "item_of_f_test", "item_of_group",
 ]  # fmt: skip
 
 MEASURED = "measured"
-PLAITED = "nylon | 8-strand plaited"
-STRENGTH, STRAIN = "tensile_strength", "strain_at_failure"
 DRY, WET, AFTER = "dry, not cycled", "wet, before cycling", "wet, after cycling"
 LOW, HIGH, UNCYCLED = (
     "wet, cycled, low mean load", "wet, cycled, high mean load", "wet, not cycled",
@@ -46,7 +45,7 @@ def common_step(pages: Pages, kind: str) -> int:
 def item_of_f_test(cell: Cell, pages: Pages, groups: tuple[str, str]) -> Item:
     """Verdict on F, its degrees of freedom or its critical value."""
     line = cell.row.rpartition(" | ")[0]
-    quantity = STRENGTH if cell.table == "A-3" else STRAIN
+    quantity = STRENGTH if cell.table == "A-3" else STRAIN_AT_FAILURE
     columns = (f"{quantity} mean", f"{quantity} standard deviation")
     places = [(cell.table, f"{line} | {group}", column) for column in columns for group in groups]
     counts = [SAMPLES[group] for group in groups]
@@ -88,7 +87,7 @@ def item_of_group(cell: Cell, pages: Pages) -> Item:
         )  # fmt: skip
     if cell.table == "A-3" and kind == "mean":
         if condition == AFTER:
-            effect = ("A-2", f"screening | {PLAITED}", f"{STRENGTH} effect of diameter")
+            effect = ("A-2", SCREEN, f"{STRENGTH} effect of diameter")
             other, sign = ("13/16", -1) if "| 1/2 in" in cell.row else ("1/2", 1)
             mean = pages.printed("A-3", f"{PLAITED} | {other} in | {AFTER}", f"{STRENGTH} mean")
             return judge(

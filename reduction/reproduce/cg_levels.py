@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from reduction.published.cell import Cell
 from reduction.reproduce.cg_cells import Pages
+from reduction.reproduce.cg_lines import K_AP
 from reduction.reproduce.item import Item, judge, not_testable
 
 __all__ = ["item_of_level"]
 
-STIFFNESS = "apparent_spring_constant"
 SETTING = "a setting that is printed once"
 BRAID = "nylon | double braid"
 # a line with these levels, the table of its range, the row of its strength
@@ -52,10 +52,10 @@ def item_of_level(cell: Cell, pages: Pages) -> Item:
         return judge(cell, sum(ends) / 2, "half way between the ends")
     table, line, strengths = OF_LEVELS[cell.row]
     if factor == "frequency":
-        found = pages.value(table, "every line", f"{STIFFNESS} frequency {end}")
+        found = pages.value(table, "every line", f"{K_AP} frequency {end}")
         return judge(cell, found, f"Table {table}")
     strength = pages.value(strengths, line, "rated_break_strength")
-    found = pages.value(table, line, f"{STIFFNESS} {cell.column}")
+    found = pages.value(table, line, f"{K_AP} {cell.column}")
     return judge(cell, 100 * found / strength, f"range of Table {table} over {strength:g} lb")
 
 
@@ -66,7 +66,7 @@ def _strength(cell: Cell, pages: Pages) -> Item:
         other = pages.printed("10", f"{line} | new", "tensile_strength mean")
         return judge(cell, other, "Table 10")
     percent = 22.0 if "| 1 in" in cell.row else 30.0
-    key = ("3", f"{line} | new", f"{STIFFNESS} mean_tension high")
+    key = ("3", f"{line} | new", f"{K_AP} mean_tension high")
     return judge(
         cell, 100 * pages.value(*key) / percent, f"upper mean load of Table 3 over {percent:g} %",
         tolerance=100 * pages.half(*key) / percent,

@@ -12,7 +12,7 @@ from reduction.line.pull import fit_pull
 from reduction.line.quasistatic import spring_constant_ratio
 from reduction.published.cell import Cell
 from reduction.reproduce.cg_cells import POLYNOMIAL_SCALES, Pages, number
-from reduction.reproduce.cg_surfaces import CENTRE_LINES
+from reduction.reproduce.cg_lines import CENTRE_LINES, levels_of
 from reduction.reproduce.item import Item, agree, beside, judge, not_testable
 
 __all__ = ["item_of_static"]
@@ -131,12 +131,9 @@ def _range(cell: Cell, pages: Pages) -> Item:
 
 def _levels(row: str, pages: Pages) -> list[float]:
     """Low, centre and high mean load [lb] of the design of a new line."""
-    large = "| 1 in" in row or "| 1 1/4 in" in row
-    sizes = "1 in, 1 1/4 in" if large else "1/2 in, 3/4 in"
     centre = CENTRE_LINES[row][1]
     shares = [
-        pages.value("1", f"nylon | double braid | {sizes} | new", f"mean_tension {end}")
-        for end in ("low", "centre", "high")
+        pages.value("1", levels_of(row), f"mean_tension {end}") for end in ("low", "centre", "high")
     ]
     return [centre * share / shares[1] for share in shares]
 

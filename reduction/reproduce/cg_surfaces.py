@@ -13,43 +13,28 @@ from reduction.line.identify import identify_by_amplitude
 from reduction.line.model import apparent_spring_constant, hysteresis_energy
 from reduction.published.cell import Cell, printed_step
 from reduction.reproduce.cg_cells import Pages, number, rounding
+from reduction.reproduce.cg_lines import (
+    CENTRE_LINES,
+    ENERGY,
+    K_1,
+    K_AP,
+    NYLON_PLAITED,
+    POLYESTER_BRAID,
+    TIME,
+    centre_stiffness,
+    levels_of,
+)  # fmt: skip
 from reduction.reproduce.item import Item, beside, judge, not_testable
 from reduction.surface.overall import statistics_from_r2
 from reduction.surface.terms import model_matrix, quadratic_exponents
 
-__all__ = ["CENTRE_LINES", "TABLES_OF", "centre_stiffness", "change_of_mean", "item_of_surface"]
+__all__ = ["TABLES_OF", "change_of_mean", "item_of_surface"]
 
-K_AP, ENERGY, K_1, TIME = (
-    "apparent_spring_constant", "hysteresis_energy", "dissipation_spring_constant",
-    "relaxation_time",
-)  # fmt: skip
 TABLES_OF = {
     K_AP: ("3", "4", "5"), ENERGY: ("11", "12", "13"), K_1: ("14", "15", "16"),
     TIME: ("17", "18", "19"),
 }  # fmt: skip
-NYLON_BRAID = "nylon | double braid | 1/2 in"
-POLYESTER_BRAID = "polyester | double braid | 1/2 in"
-NYLON_PLAITED = "nylon | 8-strand plaited | 1/2 in"
-POLYESTER_PLAITED = "polyester | 8-strand plaited | 1/2 in"
-# line at the centre: table of K_0, mean tension, amplitude [lb]; "slope" where no row of K_0 is
-CENTRE_LINES: dict[str, tuple[str, float, float]] = {
-    f"{POLYESTER_PLAITED} | new": ("slope", 1386, 561),
-    f"{POLYESTER_BRAID} | new": ("6", 1344, 544),
-    f"{NYLON_PLAITED} | new": ("7", 1209.6, 489.6),
-    f"{NYLON_BRAID} | new": ("7", 1344, 544),
-    "nylon | double braid | 3/4 in | new": ("6", 4011, 1623.5),
-    "nylon | double braid | 1 in | new": ("6", 5376, 2520),
-    "nylon | double braid | 1 1/4 in | new": ("6", 5376, 2520),
-}
 RUNS = "a regression over runs that are not printed"
-
-
-def centre_stiffness(pages: Pages, row: str) -> float:
-    """K_0 [lb] of a new line at the centre of its mean loads."""
-    table, tension, _ = CENTRE_LINES[row]
-    if table == "slope":
-        return pages.slope("8", row, tension)
-    return pages.polynomial(table, row, tension)
 
 
 def item_of_surface(cell: Cell, pages: Pages) -> Item:
@@ -128,7 +113,7 @@ def _centre(pages: Pages, row: str, quantity: str) -> float:
 
 def _energy_by_mean_load(pages: Pages, row: str) -> float:
     """Linear effect of mean load on H by eq. 4, from K_1, tau and the slow pull."""
-    level = "nylon | double braid | 1/2 in, 3/4 in | new"
+    level = levels_of(row)
     strength = pages.value("1", row, "rated_break_strength") / 100
     energy = []
     for end in ("low", "high"):
@@ -275,10 +260,7 @@ def change_of_mean(pages: Pages, table: str, row: str, quantity: str) -> tuple[f
 
 def _range(cell: Cell, pages: Pages) -> Item:
     _, what, end = cell.column.split(" ")
-    large = "1 in" in cell.row or "1 1/4 in" in cell.row
-    sizes = "1 in, 1 1/4 in" if large else "1/2 in, 3/4 in"
-    level = f"nylon | double braid | {sizes} | new"
-    share = pages.value("1", level, f"{what} {end}")
+    share = pages.value("1", levels_of(cell.row), f"{what} {end}")
     if what == "frequency":
         return judge(cell, share, "Table 1")
     strength, source = _strength(cell, pages)

@@ -16,15 +16,13 @@ from reduction.reproduce.cg_ftests import (
     HIGH,
     LOW,
     MEASURED,
-    PLAITED,
     SAMPLES,
-    STRAIN,
-    STRENGTH,
     WET,
     common_step,
     item_of_f_test,
     item_of_group,
 )
+from reduction.reproduce.cg_lines import PLAITED, STRAIN_AT_FAILURE, STRENGTH
 from reduction.reproduce.item import Item, judge, not_testable
 
 __all__ = ["change_of_table_10", "item_of_test"]
@@ -112,7 +110,7 @@ def _dry(cell: Cell, pages: Pages) -> tuple[float, float, str] | None:
     if quantity == STRENGTH:
         half = 0.5 * common_step(pages, kind)
         return pages.printed("A-3", dry, f"{STRENGTH} {kind}"), half, "Table A-3, in tens of pounds"
-    place = ("A-4", dry, f"{STRAIN} {kind}")
+    place = ("A-4", dry, f"{STRAIN_AT_FAILURE} {kind}")
     return pages.printed(*place) / 100, pages.half(*place) / 100, "Table A-4"
 
 
@@ -208,10 +206,13 @@ def _effect(cell: Cell, pages: Pages) -> Item:
         rows = [f"{PLAITED} | {size} in | {AFTER}" for size in ("1/2", "13/16")]
         small, large = (pages.printed("A-3", row, f"{STRENGTH} mean") for row in rows)
         return judge(cell, (large - small) / 1000, "means of Table A-3 after cycling, in 1000 lb")
-    if quantity != STRAIN or kind not in ("effect of diameter", "effect of mean_tension"):
+    if quantity != STRAIN_AT_FAILURE or kind not in (
+        "effect of diameter",
+        "effect of mean_tension",
+    ):
         return not_testable(cell, "the runs of the screening are not printed")
     places = [
-        ("A-4", f"{PLAITED} | {size} in | {load}", f"{STRAIN} mean")
+        ("A-4", f"{PLAITED} | {size} in | {load}", f"{STRAIN_AT_FAILURE} mean")
         for size in ("1/2", "13/16") for load in (LOW, HIGH)
     ]  # fmt: skip
     signs = (-1, -1, 1, 1) if kind == "effect of diameter" else (-1, 1, -1, 1)

@@ -19,7 +19,7 @@ from reduction.predict.hoseloads import numbers_of
 from reduction.predict.product import HoseDesign, HosePrediction
 from reduction.predict.rubber import rubber_tension
 from reduction.record import Floats
-from reduction.reproduce.answers import Answer, Answers
+from reduction.reproduce.answers import Answer, Answers, log_slope
 
 __all__ = ["equation_answers"]
 
@@ -62,14 +62,14 @@ def _kinematics() -> Answers:
     helix = "slope of a logarithm, of a helix on a cylinder that keeps its volume"
     return {
         ("eq 5", "wrap diameter dw", stretch): Answer(
-            _power([1, ratio], [1, ratio * tangent]), helix),
+            log_slope([1, ratio], [1, ratio * tangent]), helix),
         ("eq 7", "tangent of the wrap angle", stretch): Answer(
-            _power([1, ratio], [1, tangent]), helix),
+            log_slope([1, ratio], [1, tangent]), helix),
         ("sec 1.2.1", "identity between (7) and (8)",
          "angle under the cosine at 68 deg and stretch ratio 2"): Answer(
             float(identity), "angle of the stretched helix"),
         ("eq 8", "squared cord stretch ratio, first term", stretch): Answer(
-            _power([1.5, 2.0], squared), "slope of a logarithm, cords along the hose"),
+            log_slope([1.5, 2.0], squared), "slope of a logarithm, cords along the hose"),
         ("eq 10", "cut ribbon width wc", "equation number"): Answer(9.0, "the number after (8)"),
         ("eq 11", "number of cords N", "factor"): Answer(
             count / around, "two layers, each with its width of fabric around the hose"),
@@ -106,14 +106,14 @@ def _helix() -> Answers:
         speed = np.linalg.norm(first)
         radius.append(float(speed**3 / np.linalg.norm(np.cross(first, second))))
         length.append(float(2 * pi * speed))
-    slope = -_power(sine, radius)
+    slope = -log_slope(sine, radius)
     return {
         ("eq 15", "radius of curvature", "divisor"): Answer(
             float(2 / (radius[0] * sine[0] ** 2)), "curvature of a helix, from its derivatives"),
         ("eq 15", "radius of curvature", "power of the sine"): Answer(
             slope, "curvature of a helix, from its derivatives"),
         ("eq 15", "length of one helical wrap", "power of the sine"): Answer(
-            -_power(sine, length), "length of one turn of a helix, pi dw / sin"),
+            -log_slope(sine, length), "length of one turn of a helix, pi dw / sin"),
     }  # fmt: skip
 
 
@@ -137,10 +137,10 @@ def _pressure() -> Answers:
     return {
         ("eq 17", "pressure of one layer", "factor"): Answer(
             float(both[0] / sine[0] ** 2) / 2, statics + ", half of it"),
-        ("eq 17", "pressure of one layer", sines): Answer(_power(sine, both), statics),
+        ("eq 17", "pressure of one layer", sines): Answer(log_slope(sine, both), statics),
         ("eq 18", "pressure of two layers", "factor"): Answer(
             float(both[0] / sine[0] ** 2), statics),
-        ("eq 18", "pressure of two layers", sines): Answer(_power(sine, both), statics),
+        ("eq 18", "pressure of two layers", sines): Answer(log_slope(sine, both), statics),
         ("eq 19", "squared sine of the wrap angle",
          "power of wrap diameter over its rest value"): Answer(diameters[1], law),
         ("eq 19", "squared sine of the wrap angle", divided): Answer(-diameters[0], law),
@@ -150,11 +150,11 @@ def _pressure() -> Answers:
         ("eq 24", "fill_pressure", "factor"): Answer(
             float(rest[0] / np.sin(_ANGLE) ** 2), statics),
         ("eq 24", "fill_pressure", "power of the sine of the angle at rest"): Answer(
-            _power(np.sin(angles), other), statics),
+            log_slope(np.sin(angles), other), statics),
         ("eq 25", "fill_pressure", "power of hose stretch ratio under the root, first term"):
-            Answer(_power([1.5, 2.0], squared), "slope of a logarithm, cords along the hose"),
+            Answer(log_slope([1.5, 2.0], squared), "slope of a logarithm, cords along the hose"),
         ("eq 25", "fill_pressure", "power of wrap diameter and spacing in the divisor"): Answer(
-            -_power([_WRAP, 4.0], of_width), statics + " at two wrap diameters"),
+            -log_slope([_WRAP, 4.0], of_width), statics + " at two wrap diameters"),
     }  # fmt: skip
 
 
@@ -203,8 +203,3 @@ def _axial_load() -> Answers:
                 tolerance=1e-6,
             ),
     }  # fmt: skip
-
-
-def _power(variable: Floats | list[float], value: Floats | list[float]) -> float:
-    """Slope of the logarithms between the ends."""
-    return float(np.log(value[-1] / value[0]) / np.log(variable[-1] / variable[0]))

@@ -18,6 +18,7 @@ from reduction.moduli.secant import chord_modulus
 from reduction.moduli.stepwise import reduce_stepwise
 from reduction.published.cell import Cell
 from reduction.published.tethers import published_static_test
+from reduction.reproduce.answers import Key
 from reduction.reproduce.item import Item, agree, beside, judge
 from reduction.reproduce.tether_marks import static_gauge_length
 from reduction.reproduce.tether_moduli import HIGH, LOW, LOWER, MODULUS, UPPER
@@ -27,7 +28,6 @@ from reduction.units import scale_to_si
 
 __all__ = ["items_of_claims"]
 
-Key = tuple[str, str, str]
 _INCH = scale_to_si("inch", "length")[0]
 _PSI = scale_to_si("psi", "stress")[0]
 _NEAR = 0.1  # of strain: how far the line of a first segment is carried down to 100 %

@@ -21,12 +21,16 @@ from reduction.predict.morison import load_factors
 from reduction.predict.waves import airy_wave, stokes_wave
 from reduction.predict.zhang2015 import printed_section
 from reduction.reproduce.answers import Answer, Answers
+from reduction.reproduce.wave_settings import (
+    DEPTH,
+    FREQUENCY,
+    HEIGHT,
+    LENGTH,
+    NUMBER,
+    SPEED,
+)
 
 __all__ = ["equation_answers"]
-
-_LENGTH, _HEIGHT, _DEPTH = 20.0, 1.25, 6.0
-_NUMBER = 2 * pi / _LENGTH
-_PERIOD, _SPEED = 3.57, 5.6  # Table 4
 
 
 def equation_answers() -> Answers:
@@ -48,8 +52,8 @@ def _loads() -> Answers:
         section, drag_coefficient=drag, inertia_coefficient=inertia, water_density=density
     )
     load, morison = "horizontal wave load per length", "Morison's load of a whole cylinder"
-    frequency = 2 * pi / _PERIOD
-    length = 2 * pi * _SPEED / frequency
+    frequency = FREQUENCY
+    length = 2 * pi * SPEED / frequency
     return {
         ("eq 1", load, "factor of the drag term"): Answer(
             float(factors.classic_drag) / (drag * density * diameter), morison),
@@ -62,26 +66,26 @@ def _loads() -> Answers:
             "width of the submerged part, seen along a vertical flow"),
         ("eq 14", "wave number k", "divisor of 2 pi"): Answer(
             length, "speed over frequency of Table 4, c T, which are rounded",
-            tolerance=length * 0.05 / _SPEED),
+            tolerance=length * 0.05 / SPEED),
     }  # fmt: skip
 
 
 def _wave(depth: float, *, stokes: bool) -> WaveHarmonics:
     theory = stokes_wave if stokes else airy_wave
     return theory(
-        wave_height=_HEIGHT,
-        wave_period=float(wave_period_of(_NUMBER, depth)),
+        wave_height=HEIGHT,
+        wave_period=float(wave_period_of(NUMBER, depth)),
         water_depth=depth,
         elevation=0.0,
     )
 
 
 def _airy() -> Answers:
-    wave = _wave(_DEPTH, stokes=False)
+    wave = _wave(DEPTH, stokes=False)
     period = 2 * pi / wave.angular_frequency
-    slope = _HEIGHT * STANDARD_GRAVITY * _NUMBER / wave.angular_frequency
-    depth = _NUMBER * _DEPTH
-    acceleration = pi**2 * _HEIGHT / period**2
+    slope = HEIGHT * STANDARD_GRAVITY * NUMBER / wave.angular_frequency
+    depth = NUMBER * DEPTH
+    acceleration = pi**2 * HEIGHT / period**2
     how = "Airy wave of the package, at the mean level"
     along, upwards = wave.horizontal_velocity[0], wave.vertical_velocity[0]
     return {
@@ -109,14 +113,14 @@ def _stokes() -> Answers:
             wave = _wave(float(depth), stokes=True)
             period = 2 * pi / wave.angular_frequency
             velocity = getattr(wave, f"{direction}_velocity")[1]
-            unit = pi * _HEIGHT / period * pi * _HEIGHT / _LENGTH * wide(2 * _NUMBER * depth)
+            unit = pi * HEIGHT / period * pi * HEIGHT / LENGTH * wide(2 * NUMBER * depth)
             spread.append(float(velocity / unit))
-        sinh = np.sinh(_NUMBER * depths)
+        sinh = np.sinh(NUMBER * depths)
         power = -log(spread[1] / spread[0]) / log(sinh[1] / sinh[0])
         acceleration = getattr(wave, f"{direction}_acceleration")
-        first = pi**2 * _HEIGHT / period**2
-        second = first * pi * _HEIGHT / _LENGTH * wide(2 * _NUMBER * depth) / sinh[1] ** 4
-        first *= wide(_NUMBER * depth) / sinh[1]
+        first = pi**2 * HEIGHT / period**2
+        second = first * pi * HEIGHT / LENGTH * wide(2 * NUMBER * depth) / sinh[1] ** 4
+        first *= wide(NUMBER * depth) / sinh[1]
         row = f"Stokes {direction}"
         answers |= {
             (equation, f"{row} velocity, second harmonic", "factor"): Answer(

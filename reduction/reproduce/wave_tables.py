@@ -14,7 +14,7 @@ References
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi, tanh
+from math import tanh
 
 import numpy as np
 
@@ -29,14 +29,19 @@ from reduction.predict.zhang2015 import (
     printed_stokes_wave,
 )
 from reduction.published.cell import Cell
-from reduction.published.read import cells_of
 from reduction.record import Floats
 from reduction.reproduce.answers import Answer, Answers
+from reduction.reproduce.wave_settings import (
+    DEPTH,
+    FREQUENCY,
+    GRAVITY,
+    HEIGHT,
+    NUMBER,
+    cells_of_table,
+)
 
 __all__ = ["table_answers"]
 
-_PERIOD, _LENGTH, _HEIGHT, _DEPTH = 3.57, 20.0, 1.25, 6.0
-_GRAVITY = 9.8  # not printed
 _METHODS = {"Morison theory": "F0", "improved Morison theory": "F1"}
 _SETTINGS = "(1), (10) with 1030 kg/m3, z = 0, omega = 2 pi / 3.57 s, g = 9.8 m/s2"
 _WITH_15 = "velocity of (15) in both columns"
@@ -53,27 +58,21 @@ def table_answers() -> Answers:
     """
     answers: Answers = {}
     for table, last in (("5", 5.0), ("6", 10.0)):
-        for cell in _cells(table):
+        for cell in cells_of_table(table):
             answers[cell.key] = _extreme(cell, last)
-    for cell in _cells("7"):
+    for cell in cells_of_table("7"):
         answers[cell.key] = _load(cell)
-    for cell in _cells("8"):
+    for cell in cells_of_table("8"):
         answers[cell.key] = _ratio(cell)
     return answers
 
 
-def _cells(table: str) -> list[Cell]:
-    return [cell for cell in cells_of("Zhang-2015") if cell.table == table]
-
-
 def _wave(theory: str) -> WaveHarmonics:
-    frequency = 2 * pi / _PERIOD
     if theory.startswith("Stokes"):
-        return replace(printed_stokes_wave(), angular_frequency=frequency)
-    number = 2 * pi / _LENGTH
-    velocity = _HEIGHT * _GRAVITY * number / (2 * frequency) * tanh(number * _DEPTH)
+        return replace(printed_stokes_wave(), angular_frequency=FREQUENCY)
+    velocity = HEIGHT * GRAVITY * NUMBER / (2 * FREQUENCY) * tanh(NUMBER * DEPTH)
     return replace(
-        printed_airy_wave(), angular_frequency=frequency, vertical_velocity=np.array([velocity])
+        printed_airy_wave(), angular_frequency=FREQUENCY, vertical_velocity=np.array([velocity])
     )
 
 
@@ -126,7 +125,7 @@ def _ratio(cell: Cell) -> Answer:
     values = np.array(
         [
             one.value
-            for one in _cells("7")
+            for one in cells_of_table("7")
             if one.row.startswith(theory) and one.column == f"{direction} ratio P"
         ],
         dtype=np.float64,

@@ -21,11 +21,19 @@ from reduction.predict.breaking import breaking_height
 from reduction.predict.dispersion import STANDARD_GRAVITY, wave_period_of
 from reduction.predict.immersion import immerse_hose
 from reduction.predict.zhang2015 import DRAG_COEFFICIENT, INERTIA_COEFFICIENT, WATER_DENSITY
-from reduction.published.cell import Cell
-from reduction.published.read import cells_of, table_of
+from reduction.published.read import table_of
 from reduction.reproduce.answers import Answer, Answers, items_from
 from reduction.reproduce.item import Item
 from reduction.reproduce.wave_equations import equation_answers
+from reduction.reproduce.wave_settings import (
+    FREQUENCY,
+    GRAVITY,
+    HEIGHT,
+    LENGTH,
+    NUMBER,
+    PERIOD,
+    cells_of_table,
+)
 from reduction.reproduce.wave_tables import table_answers
 
 __all__ = ["answers", "items"]
@@ -45,9 +53,6 @@ _SYMBOLS = {
     "content_density": "rho3",
 }
 _IMMERSION = 95.1
-_LENGTH, _PERIOD, _SPEED, _HEIGHT = 20.0, 3.57, 5.6, 1.25
-_NUMBER, _FREQUENCY = 2 * pi / _LENGTH, 2 * pi / _PERIOD
-_GRAVITY = 9.8  # not printed
 _DIAMETER = 0.114
 _AIRY, _STOKES = "Airy wave theory", "Stokes wave theory"
 _EXAMPLES = {"example of the Airy theory": 6.0, "example of the Stokes theory": 3.0}
@@ -83,7 +88,7 @@ def _conditions() -> Answers:
     conical = "conical and solitary wave theory"
     neighbour = "the limit of the neighbouring theory"
     depth, end = "relative depth d/L, from", "relative depth d/L, to"
-    limit = float(breaking_height(_NUMBER, 0.2 * _LENGTH)) / _LENGTH
+    limit = float(breaking_height(NUMBER, 0.2 * LENGTH)) / LENGTH
     found: Answers = {
         ("1", _AIRY, depth): Answer(0.2, neighbour),
         ("1", _STOKES, end): Answer(0.2, neighbour),
@@ -94,13 +99,9 @@ def _conditions() -> Answers:
             limit, "the steepest wave there is before it breaks, at d/L = 0.2"
         ),
     }
-    for cell in _cells("1"):
+    for cell in cells_of_table("1"):
         found.setdefault(cell.key, quoted)
-    return found | {cell.key: "measured by others, and quoted" for cell in _cells("2")}
-
-
-def _cells(table: str) -> list[Cell]:
-    return [cell for cell in cells_of("Zhang-2015") if cell.table == table]
+    return found | {cell.key: "measured by others, and quoted" for cell in cells_of_table("2")}
 
 
 def _hose() -> Answers:
@@ -164,18 +165,18 @@ def _needed(name: str, immersion: float) -> float:
 def _waves() -> Answers:
     """Table 4."""
     waves = "level 4 waves"
-    at_6 = float(wave_period_of(_NUMBER, 6.0))
+    at_6 = float(wave_period_of(NUMBER, 6.0))
     return {
         ("4", waves, "wave_length L"): Answer(
-            STANDARD_GRAVITY * _PERIOD**2 / (2 * pi), "that of 3.57 s in deep water, g T2 / 2 pi"
+            STANDARD_GRAVITY * PERIOD**2 / (2 * pi), "that of 3.57 s in deep water, g T2 / 2 pi"
         ),
         ("4", waves, "wave_period T"): Answer(
             at_6, "linear dispersion of 20 m at 6 m depth; 4.17 s at 3 m; 20 m / 5.6 m/s is 3.57"
         ),
-        ("4", waves, "angular_frequency omega"): Answer(_FREQUENCY, "2 pi / 3.57 s"),
-        ("4", waves, "phase speed c"): Answer(_LENGTH / _PERIOD, "20 m / 3.57 s"),
+        ("4", waves, "angular_frequency omega"): Answer(FREQUENCY, "2 pi / 3.57 s"),
+        ("4", waves, "phase speed c"): Answer(LENGTH / PERIOD, "20 m / 3.57 s"),
         ("4", waves, "wave_height H"): Answer(
-            _HEIGHT * _load("Airy theory, t = 0.00 s", "vertical load F0") / -_inertia(),
+            HEIGHT * _load("Airy theory, t = 0.00 s", "vertical load F0") / -_inertia(),
             "vertical F0 at t = 0 in Table 7, where there is no drag",
         ),
     }
@@ -188,7 +189,7 @@ def _load(row: str, column: str) -> float:
 def _inertia() -> float:
     """Greatest vertical inertia load of the whole cylinder in an Airy wave. [N/m]."""
     area = pi * _DIAMETER**2 / 4
-    return INERTIA_COEFFICIENT * WATER_DENSITY * area * _HEIGHT * _FREQUENCY**2 / 2
+    return INERTIA_COEFFICIENT * WATER_DENSITY * area * HEIGHT * FREQUENCY**2 / 2
 
 
 def _drag(velocity: float) -> float:
@@ -197,14 +198,14 @@ def _drag(velocity: float) -> float:
 
 def _coefficients() -> Answers:
     """(12), and the level of the velocities, from Table 7 at t = 0: all drag or all inertia."""
-    crest = _HEIGHT * _GRAVITY * _NUMBER / (2 * _FREQUENCY)
+    crest = HEIGHT * GRAVITY * NUMBER / (2 * FREQUENCY)
     along = _load("Airy theory, t = 0.00 s", "horizontal load F0")
     upwards = _load("Airy theory, t = 0.00 s", "vertical load F0")
     share = float(np.sqrt(along / _drag(crest)))
-    deep = _NUMBER * 6.0
-    level = (float(np.arccosh(share * np.cosh(deep))) - deep) / _NUMBER
+    deep = NUMBER * 6.0
+    level = (float(np.arccosh(share * np.cosh(deep))) - deep) / NUMBER
     # a load goes with the squared velocity
-    slack = _HALF_DIGIT / (2 * along) / (_NUMBER * float(np.tanh(deep)))
+    slack = _HALF_DIGIT / (2 * along) / (NUMBER * float(np.tanh(deep)))
     return {
         ("eq 12", "all examples", "drag_coefficient C_D"): Answer(
             DRAG_COEFFICIENT * along / _drag(crest), "horizontal F0 at t = 0 in Table 7"
@@ -225,19 +226,19 @@ def _coefficients() -> Answers:
 def _depths() -> Answers:
     """Depths of the examples, from the inertia loads that depend on them."""
     time, load = 0.9, _load("Airy theory, t = 0.90 s", "horizontal load F0")
-    crest = _HEIGHT * _GRAVITY * _NUMBER / (2 * _FREQUENCY)
-    phase = -_FREQUENCY * time
+    crest = HEIGHT * GRAVITY * NUMBER / (2 * FREQUENCY)
+    phase = -FREQUENCY * time
     coth = (load - _drag(crest * float(np.cos(phase)))) / (_inertia() * float(np.sin(phase)))
     second = -_load("Stokes theory, t = 0.00 s", "vertical load F0") / _inertia() - 1
 
     def miss(depth: float) -> float:
-        deep = _NUMBER * depth
-        return float(1.5 * pi * _HEIGHT / _LENGTH * np.sinh(2 * deep) / np.sinh(deep) ** 4) - second
+        deep = NUMBER * depth
+        return float(1.5 * pi * HEIGHT / LENGTH * np.sinh(2 * deep) / np.sinh(deep) ** 4) - second
 
     airy, stokes = _EXAMPLES
     found: Answers = {
         ("sec 5.1", airy, "water_depth"): Answer(
-            float(np.arctanh(1 / coth)) / _NUMBER,
+            float(np.arctanh(1 / coth)) / NUMBER,
             "horizontal F0 at 0.90 s in Table 7, nearly all inertia",
         ),
         ("sec 5.2", stokes, "water_depth"): Answer(
@@ -252,15 +253,15 @@ def _depths() -> Answers:
 
 
 def _claims() -> Answers:
-    ratios = [cell.value or 0.0 for cell in _cells("7") if cell.column.endswith("ratio P")]
-    averages = [cell.value or 0.0 for cell in _cells("8") if cell.row == "average"]
+    ratios = [cell.value or 0.0 for cell in cells_of_table("7") if cell.column.endswith("ratio P")]
+    averages = [cell.value or 0.0 for cell in cells_of_table("8") if cell.row == "average"]
     table_1 = "a limit of d/L in Table 1 times the wave length of Table 4"
     return {
         ("sec 2", "Morison's equation", "greatest size of the structure over the wave length"):
             "a convention of the field; the hose has 0.006",
-        ("sec 5", "Airy theory", "water depth, from"): Answer(0.2 * _LENGTH, table_1),
-        ("sec 5", "Stokes theory", "water depth, from"): Answer(0.1 * _LENGTH, table_1),
-        ("sec 5", "Stokes theory", "water depth, to"): Answer(0.2 * _LENGTH, table_1),
+        ("sec 5", "Airy theory", "water depth, from"): Answer(0.2 * LENGTH, table_1),
+        ("sec 5", "Stokes theory", "water depth, from"): Answer(0.1 * LENGTH, table_1),
+        ("sec 5", "Stokes theory", "water depth, to"): Answer(0.2 * LENGTH, table_1),
         ("sec 5.3", "ratio P of all loads", "maximum"): Answer(
             max(ratios), "the greatest P of Table 7, Stokes theory at 4.00 s"),
         ("sec 5.3", "ratio P of all loads", "greatest average"): Answer(
