@@ -8,10 +8,10 @@ from typing import Annotated
 
 import typer
 
-from reduction.cli.options import Json, Quiet, Units
+from reduction.cli.options import Json, Quiet, SpecPath, Units
 from reduction.cli.outcome import Outcome, guarded
 
-__all__ = ["composite"]
+__all__ = ["assembly", "composite"]
 
 
 class CurveName(StrEnum):
@@ -62,3 +62,19 @@ def composite(
             out=out,
             outcome=outcome,
         )
+
+
+def assembly(
+    spec: SpecPath,
+    out: Annotated[
+        Path | None, typer.Option(help="Every node, as .csv, .json, .nc, .md or .tex.")
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Tethers as they are deployed: tension against length, stiffness, load of each tether."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.assembly import assemble_spec
+
+        assemble_spec(spec, out=out, outcome=outcome)

@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal, cast
 
+from reduction.cli.assembly import deployed_line
 from reduction.cli.compositesource import is_of_pieces, piece_source, rule_of
 from reduction.cli.numbers import plain
 from reduction.cli.outcome import Outcome
 from reduction.errors import SettingsError
 from reduction.export.fromarchive import CurveName, line_from_archive
+from reduction.export.fromassembly import line_from_assembly
 from reduction.export.fromcomposite import line_from_composite
 from reduction.export.fromlookup import line_from_lookup
 from reduction.export.product import ExportLine
@@ -119,6 +121,9 @@ def line_of(
         found = piece_source(sources, specimen=specimen, branch=curve)
         return line_from_composite(found, compose(found, rule), **stated)
     (source,) = sources
+    if source.endswith(".toml"):
+        chosen = {"--curve": curve, "--precedence": precedence, "--specimen": specimen}
+        return _of_assembly(Path(source), chosen, levels, stated)
     if precedence is not None:
         raise SettingsError(
             f"{source} is one curve: there are no pieces that could go before others",
@@ -158,6 +163,21 @@ def line_of(
     if levels:
         raise _levels_choose_nothing(levels, "an archive of one test")
     return line_from_archive(path, curve=curve, specimen=specimen, **stated)
+
+
+def _of_assembly(
+    path: Path, chosen: dict[str, str | None], levels: dict[str, str], stated: dict[str, Any]
+) -> ExportLine:
+    """The line of an assembly, whose specification says the rest."""
+    given = [f"{name} {value}" for name, value in chosen.items() if value is not None]
+    if given:
+        raise SettingsError(
+            "the specification of an assembly says of which curve it is",
+            found=", ".join(given), needed="[assembly.curve]",
+        )  # fmt: skip
+    if levels:
+        raise _levels_choose_nothing(levels, "an assembly")
+    return line_from_assembly(deployed_line(path), **stated)
 
 
 def _levels_choose_nothing(levels: dict[str, str], where: str) -> SettingsError:

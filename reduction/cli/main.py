@@ -12,7 +12,7 @@ import typer
 
 from reduction import __version__
 from reduction.cli.campaigncommands import check, init, report, run, schema, sniff
-from reduction.cli.curvecommands import composite
+from reduction.cli.curvecommands import assembly, composite
 from reduction.cli.experimentcommands import experiment, surface
 from reduction.cli.lookupcommand import lookup
 from reduction.cli.predictioncommands import compare, predict
@@ -56,6 +56,7 @@ app.command()(surface)
 app.command()(predict)
 app.command()(compare)
 app.command()(composite)
+app.command()(assembly)
 app.command()(export)
 app.command()(lookup)
 app.command()(report)

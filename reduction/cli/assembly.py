@@ -1,0 +1,275 @@
+"""The command assembly: tethers as they are deployed, from a specification."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from reduction.campaign.assemblyspec import AssemblyCase, load_assembly_case
+from reduction.campaign.faults import in_toml
+from reduction.cli.composite import table_format
+from reduction.cli.compositesource import piece_source
+from reduction.cli.numbers import plain, short, table_of
+from reduction.cli.outcome import Outcome
+from reduction.errors import DataError, ReductionError
+from reduction.export.fromassembly import DeployedLine, assembly_table
+from reduction.export.write import export_table
+from reduction.lookup.source import PieceSource, compose
+from reduction.lookup.splices import stated_model
+from reduction.pipeline.deployed import WorkingState, deploy
+from reduction.published.piecesource import published_piece_sources
+from reduction.strain.model import StrainModel
+from reduction.units import UnitSystem, display_unit
+
+__all__ = ["assemble_spec", "deployed_line"]
+
+_ROWS = 16
+
+
+def assemble_spec(path: Path, *, out: Path | None, outcome: Outcome) -> None:
+    """Print curve and work of the assembly of SPEC.toml; with ``out``, write every node."""
+    form = None if out is None else table_format(out)
+    line = deployed_line(path)
+    units = cast("UnitSystem", outcome.units)
+    _show(line, outcome, units)
+    if out is not None and form is not None:
+        export_table(assembly_table(line), form, out, units=units)
+        outcome.say(f"written: {out}")
+    outcome.answer(_document(line) | {"out": None if out is None else str(out)})
+
+
+def deployed_line(path: Path) -> DeployedLine:
+    """Read SPEC.toml, find its curve and its splices, and deploy it.
+
+    Raises
+    ------
+    SettingsError
+        If a key, a value or a source cannot be used.
+    DataError
+        If the assembly cannot be, or a level of its work is none.
+    ArchiveError
+        If an archive cannot be read.
+    """
+    case = load_assembly_case(path)
+    source = _source(path, case)
+    try:
+        curve = compose(source, case.rule)
+    except DataError as error:
+        raise _at(path, "assembly.curve", error) from error
+    model = _model(path, case, source)
+    stated = case.rated_break_strength
+    strength = stated if np.isfinite(stated) else source.rated_break_strength
+    try:
+        deployed = deploy(
+            curve,
+            model,
+            n_tethers=case.n_tethers,
+            free_lengths=case.free_lengths,
+            parts=case.parts,
+            levels=case.working,
+            tolerance=case.tolerance,
+            rated_break_strength=strength,
+        )
+    except DataError as error:
+        # a level brings its own place
+        raise _at(path, "assembly", error) from error
+    return DeployedLine(
+        name=case.name,
+        deployed=deployed,
+        source=source,
+        curve=curve,
+        splices=_splices_told(case, model),
+        parts=case.parts,
+    )
+
+
+def _at(path: Path, place: str, error: ReductionError) -> ReductionError:
+    """The same error with file and key in front."""
+    between = "." if error.problem.startswith("working.") else ": "
+    return type(error)(
+        f"{path}: {place}{between}{error.problem}", found=error.found, needed=error.needed,
+        hint=error.hint,
+    )  # fmt: skip
+
+
+def _source(path: Path, case: AssemblyCase) -> PieceSource:
+    """Pieces of the tethers; archives and folders stand beside the specification."""
+    published = published_piece_sources()
+    words = [word if word in published else str(path.parent / word) for word in case.sources]
+    try:
+        return piece_source(words, specimen=case.specimen, branch=case.branch)
+    except ReductionError as error:
+        raise _at(path, "assembly.curve", error) from error
+
+
+def _model(path: Path, case: AssemblyCase, source: PieceSource) -> StrainModel:
+    """How the length of a tether follows: as stated, else as tested."""
+    if case.splices is None:
+        if source.model is None or source.model.method == "extensometer":
+            raise in_toml(
+                path, f"assembly.splices: the tests of {source.name} do not know the splices",
+                found="no strain method with a length" if source.model is None
+                else "strain of an extensometer",
+                needed="[assembly.splices], with length = \"0 m\" where there are none",
+            )  # fmt: skip
+        return source.model
+    tested = float("nan") if source.model is None else source.model.relaxed_length
+    length = case.free_lengths[0] if case.free_lengths else tested
+    if not np.isfinite(length):
+        raise in_toml(
+            path, f"assembly.free_length: the tests of {source.name} do not know it",
+            needed="free_length, or free_lengths",
+        )  # fmt: skip
+    return stated_model(case.splices, length, name=source.name)
+
+
+def _splices_told(case: AssemblyCase, model: StrainModel) -> str:
+    where = "stated" if case.splices is not None else f"as tested ({model.marks_from})"
+    numbers = ", ".join(
+        f"{name.replace('_', ' ')} {value:.4g}" for name, value in model.coefficients.items()
+    )
+    return f"length of a tether by {model.method}, {where}: {numbers}"
+
+
+def _show(line: DeployedLine, outcome: Outcome, system: UnitSystem) -> None:
+    deployed, assembly = line.deployed, line.deployed.assembly
+    force, per_newton = display_unit("N", system)
+    length, per_metre = display_unit("m", system)
+    made = ", SYNTHETIC: nothing was tested" if line.source.is_synthetic else ""
+    outcome.say(f"assembly {line.name}: {line.words}{made}")
+    slack = assembly.slack_length
+    outcome.say(
+        f"slack below {per_metre * float(assembly.total_length[0]):.5g} {length}"
+        + (
+            f"; the longest tether below {per_metre * float(slack.max()):.5g} {length}"
+            if slack.max() > slack.min()
+            else ""
+        )
+    )
+    equal = line.is_equal
+    table = table_of(
+        f"length [{length}]", f"tension [{force}]", f"standard uncertainty [{force}]",
+        f"EA [{force}]", f"a tether [{force}]" if equal else f"greatest, least [{force}]",
+        "its strain [%]" if equal else "strains [%]", "remark", texts=0,
+    )  # fmt: skip
+    tension = assembly.tension
+    rows = np.searchsorted(tension, np.linspace(0.0, tension[-1], _ROWS))
+    for place in np.unique(np.clip(rows, 0, tension.size - 1)):
+        load, strain = assembly.tether_tension[:, place], assembly.tether_strain[:, place]
+        table.add_row(
+            short(per_metre * float(assembly.total_length[place])),
+            short(per_newton * float(tension[place])),
+            short(per_newton * float(assembly.standard_uncertainty[place]), 3),
+            short(per_newton * float(deployed.apparent_spring_constant[place]), 4),
+            _pair(per_newton * load, equal=equal),
+            _pair(100 * strain, equal=equal),
+            "" if assembly.is_tested[place] else "not tested",
+        )
+    outcome.show(table)
+    for number, state in enumerate(deployed.working, start=1):
+        _show_working(number, state, outcome, system)
+    for text in (*deployed.notes, *line.curve.notes, *line.source.notes):
+        outcome.say(f"note: {text}")
+    for text in (line.splices, *line.source.sources):
+        outcome.say(f"source: {text}")
+
+
+def _pair(values: Any, *, equal: bool) -> str:
+    """One number where the tethers are alike, the greatest and the least where they are not."""
+    if equal:
+        return short(float(values[0]), 4)
+    return f"{short(float(values.max()), 4)}, {short(float(values.min()), 4)}"
+
+
+def _show_working(number: int, state: WorkingState, outcome: Outcome, system: UnitSystem) -> None:
+    force, per_newton = display_unit("N", system)
+    length, per_metre = display_unit("m", system)
+    point = state.point
+    told = (
+        f"working.{number}: {per_newton * float(point.mean_tension):.4g} {force} "
+        f"+- {per_newton * state.standard_uncertainty:.3g} at "
+        f"{per_metre * float(point.total_length):.5g} {length}, strain of a tether "
+        f"{100 * float(state.strain.max()):.4g} %, EA "
+        f"{per_newton * float(point.apparent_spring_constant):.4g} {force}"
+    )
+    if state.level.tension_amplitude:
+        told += (
+            f"; cycles {per_newton * float(point.minimum_tension):.4g} to "
+            f"{per_newton * float(point.peak_tension):.4g} {force}, "
+            f"{per_metre * float(point.minimum_length):.5g} to "
+            f"{per_metre * float(point.peak_length):.5g} {length}"
+        )
+    share = float(point.peak_share.max())
+    told += (
+        f"; a tether carries up to {per_newton * float(point.peak_tether_tension.max()):.4g} "
+        f"{force}"
+    ) + (f", {100 * share:.3g} % of its strength" if np.isfinite(share) else "")
+    if state.sharing is not None:
+        told += (
+            f"; by the tolerance of the lengths "
+            f"{per_newton * float(state.sharing.least_load):.4g} to "
+            f"{per_newton * float(state.sharing.greatest_load):.4g} {force} at the mean"
+        )
+    outcome.say(told + ("" if point.is_tested else "; NOT TESTED there"))
+
+
+def _document(line: DeployedLine) -> dict[str, Any]:
+    """What ``--json`` says, in SI."""
+    deployed, assembly = line.deployed, line.deployed.assembly
+    return {
+        "name": line.name,
+        "n_tethers": assembly.n_tethers,
+        "free_length": plain(np.array(deployed.free_length)),
+        "slack_length": plain(assembly.slack_length),
+        "total_length": plain(assembly.total_length),
+        "tension": plain(assembly.tension),
+        "tension_standard_uncertainty": plain(assembly.standard_uncertainty),
+        "strain": plain(deployed.strain),
+        "apparent_spring_constant": plain(deployed.apparent_spring_constant),
+        "tether_length": plain(assembly.tether_length),
+        "tether_tension": plain(assembly.tether_tension),
+        "tether_strain": plain(assembly.tether_strain),
+        "is_tested": plain(assembly.is_tested),
+        "units": {
+            **dict.fromkeys(
+                ("free_length", "slack_length", "total_length", "tether_length", "peak_length",
+                 "minimum_length"), "m",
+            ),
+            **dict.fromkeys(
+                ("tension", "tension_standard_uncertainty", "apparent_spring_constant",
+                 "tether_tension", "mean_tension", "peak_tension", "minimum_tension",
+                 "peak_tether_tension", "minimum_tether_tension", "greatest_load", "least_load",
+                 "tension_at_slack"), "N",
+            ),
+            **dict.fromkeys(
+                ("strain", "tether_strain", "load_share", "peak_share", "minimum_share"), "1"
+            ),
+            "stiffness": "N m-1",
+        },
+        "working": [_state_document(state) for state in deployed.working],
+        "sources": [line.splices, *line.source.sources],
+        "notes": [*deployed.notes, *line.curve.notes, *line.source.notes],
+        "synthetic": line.source.is_synthetic,
+    }  # fmt: skip
+
+
+def _state_document(state: WorkingState) -> dict[str, Any]:
+    names = (
+        "mean_tension", "peak_tension", "minimum_tension", "total_length", "peak_length",
+        "minimum_length", "stiffness", "apparent_spring_constant", "tether_tension",
+        "peak_tether_tension", "minimum_tether_tension", "load_share", "peak_share",
+        "minimum_share", "is_tested",
+    )  # fmt: skip
+    sharing = None if state.sharing is None else {
+        name: plain(getattr(state.sharing, name))
+        for name in ("greatest_load", "least_load", "tension_at_slack")
+    }  # fmt: skip
+    return {
+        "given": state.level.quantity,
+        **{name: plain(getattr(state.point, name)) for name in names},
+        "tension_standard_uncertainty": state.standard_uncertainty,
+        "tether_strain": plain(state.strain),
+        "sharing": sharing,
+    }

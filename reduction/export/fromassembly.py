@@ -1,0 +1,175 @@
+"""A deployed assembly for export: every node of it as a table, and as one line of its own.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of
+   Rubber Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst.,
+   Woods Hole, MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from reduction.export.product import ExportLine
+from reduction.export.table import TableColumn, ValueTable
+from reduction.lookup.assembly import SeriesPart
+from reduction.lookup.composite import CompositeCurve
+from reduction.lookup.source import PieceSource
+from reduction.pipeline.deployed import DeployedAssembly
+
+__all__ = ["DeployedLine", "assembly_table", "line_from_assembly"]
+
+
+@dataclass(frozen=True)
+class DeployedLine:
+    """An assembly with what it was made of.
+
+    ``splices`` says by which law a tether has its length, in words.
+    """
+
+    name: str
+    deployed: DeployedAssembly
+    source: PieceSource
+    curve: CompositeCurve
+    splices: str
+    parts: tuple[SeriesPart, ...] = ()
+
+    @property
+    def is_equal(self) -> bool:
+        """Whether all tethers carry the same."""
+        return bool(np.ptp(self.deployed.assembly.slack_length) == 0)
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        lengths = self.deployed.free_length
+        free = [f"{length:.4g}" for length in dict.fromkeys(lengths)]
+        told = f"{len(lengths)} x {self.source.name}, free length {', '.join(free)} m"
+        named = ", ".join(f"{part.name} {part.length:.4g} m" for part in self.parts)
+        return f"{told}, in line with {named}" if named else told
+
+
+def assembly_table(line: DeployedLine) -> ValueTable:
+    """Return every node of an assembly: length, tension, stiffness, and what each tether carries.
+
+    Parameters
+    ----------
+    line : DeployedLine
+        The assembly.
+
+    Returns
+    -------
+    table : ValueTable
+        One column for all tethers where they are alike.
+    """
+    deployed, assembly = line.deployed, line.deployed.assembly
+    columns = [
+        TableColumn("total_length", "m", "end to end", np.array(assembly.total_length)),
+        TableColumn("tension", "N", "of the assembly", np.array(assembly.tension)),
+        TableColumn(
+            "tension_standard_uncertainty", "N", "of the curve, at one length",
+            np.array(assembly.standard_uncertainty),
+        ),
+        TableColumn(
+            "strain", "1", "of the length at which the assembly goes slack",
+            np.array(deployed.strain),
+        ),
+        TableColumn(
+            "apparent_spring_constant", "N", "EA, tangent, over that length",
+            np.array(deployed.apparent_spring_constant),
+        ),
+        TableColumn("tether_length", "m", "thimble to thimble", np.array(assembly.tether_length)),
+    ]  # fmt: skip
+    several = [(1, "")] if line.is_equal else [
+        (number, f"_{number}") for number in range(1, assembly.n_tethers + 1)
+    ]  # fmt: skip
+    for number, tail in several:
+        which = "of each tether" if line.is_equal else f"of tether {number}"
+        columns += [
+            TableColumn(
+                f"tether_tension{tail}", "N", f"{which}, zero where it is slack",
+                np.array(assembly.tether_tension[number - 1]),
+            ),
+            TableColumn(
+                f"tether_strain{tail}", "1", f"{which}, of its free length",
+                np.array(assembly.tether_strain[number - 1]),
+            ),
+        ]  # fmt: skip
+    columns.append(
+        TableColumn(
+            "is_tested", "", "every tether at a strain that a test reaches",
+            np.array(assembly.is_tested),
+        )
+    )  # fmt: skip
+    return ValueTable(
+        title=f"{line.name}: {line.words}",
+        columns=tuple(columns),
+        sources=(line.splices, *line.source.sources),
+        notes=(*deployed.notes, *line.curve.notes, *line.source.notes),
+        is_synthetic=line.source.is_synthetic,
+    )
+
+
+def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
+    """Make a line for export of an assembly: its strain is over the length at which it goes slack.
+
+    Parameters
+    ----------
+    line : DeployedLine
+        The assembly.
+    **stated
+        Fields of `ExportLine`; None and NaN are passed over.
+
+    Returns
+    -------
+    line : ExportLine
+        Whose unstretched length stands in its notes.
+
+    Raises
+    ------
+    SettingsError
+        If it cannot be named.
+
+    Notes
+    -----
+    Diameter and mass of several tethers side by side are not those of one, and are left to be
+    stated ([1]_ prints none).
+    """
+    given = {
+        name: value
+        for name, value in stated.items()
+        if value is not None and not (isinstance(value, float) and math.isnan(value))
+    }
+    deployed, assembly = line.deployed, line.deployed.assembly
+    reached = np.flatnonzero(assembly.is_tested)
+    tested = (
+        (float(deployed.strain[reached[0]]), float(deployed.strain[reached[-1]]))
+        if reached.size
+        else (math.nan, math.nan)
+    )
+    return ExportLine(
+        name=line.name,
+        strain=np.array(deployed.strain),
+        tension=np.array(assembly.tension),
+        curve=f"assembly of {line.words}; tension of all tethers together",
+        tested=tested,
+        sources=(
+            line.splices,
+            *line.source.sources,
+            *(f"{name.replace('_', ' ')}: stated at the export" for name in given),
+        ),
+        notes=(
+            f"strain is of the unstretched length of the whole assembly, "
+            f"{assembly.total_length[0]:.6g} m: this is the length of the line in the deck",
+            *deployed.notes,
+            *line.curve.notes,
+            *line.source.notes,
+        ),
+        is_synthetic=line.source.is_synthetic,
+        **given,
+    )

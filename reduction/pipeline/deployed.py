@@ -1,0 +1,230 @@
+"""A deployed assembly from its tethers to its curve, its stiffness and its work."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from reduction.errors import DataError
+from reduction.lookup.assembly import (
+    AssemblyCurve,
+    SeriesPart,
+    Tether,
+    assemble,
+    equal_tethers,
+    unequal_tethers,
+)
+from reduction.lookup.composite import CompositeCurve
+from reduction.lookup.splices import deployed_model
+from reduction.lookup.working import LoadSharing, WorkingPoint, working_point, worst_sharing
+from reduction.record import Floats, freeze_arrays
+from reduction.strain.model import StrainModel
+
+__all__ = ["DeployedAssembly", "WorkingLevel", "WorkingState", "deploy"]
+
+
+@dataclass(frozen=True)
+class WorkingLevel:
+    """Where an assembly stands: a tension [N], a total length [m], or a strain of its tethers [1].
+
+    ``tension_amplitude`` is half the range about it. [N]
+    """
+
+    quantity: Literal["tension", "total_length", "strain"]
+    value: float
+    tension_amplitude: float = 0.0
+
+
+@dataclass(frozen=True)
+class WorkingState:
+    """An assembly at one working level.
+
+    ``strain`` is that of the free length of each tether, shape (n_tethers,) [1];
+    ``standard_uncertainty`` that of the tension at this length [N]; ``sharing`` is there where
+    the lengths have a tolerance.
+    """
+
+    level: WorkingLevel
+    point: WorkingPoint
+    strain: Floats
+    standard_uncertainty: float
+    sharing: LoadSharing | None
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class DeployedAssembly:
+    """An assembly and its work; arrays have the shape (n,) of the nodes of its curve.
+
+    Parameters
+    ----------
+    assembly : AssemblyCurve
+        Tension against length.
+    strain : ndarray
+        Of the assembly: length over that at which it goes slack, less one. [1]
+    apparent_spring_constant : ndarray
+        EA, tangent: slope of tension on that strain. [N]
+    free_length : tuple of float
+        Of each tether, relaxed; NaN where its strain model knows none. [m]
+    working : tuple of WorkingState
+        One a level.
+    notes : tuple of str
+        What is not in it.
+    """
+
+    assembly: AssemblyCurve
+    strain: Floats
+    apparent_spring_constant: Floats
+    free_length: tuple[float, ...]
+    working: tuple[WorkingState, ...]
+    notes: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+def deploy(
+    curve: CompositeCurve,
+    model: StrainModel,
+    *,
+    n_tethers: int,
+    free_lengths: Sequence[float] = (),
+    parts: Sequence[SeriesPart] = (),
+    levels: Sequence[WorkingLevel] = (),
+    tolerance: float = float("nan"),
+    rated_break_strength: float = float("nan"),
+) -> DeployedAssembly:
+    """Put tethers side by side and parts in line, and work them.
+
+    Parameters
+    ----------
+    curve : CompositeCurve
+        Tension against strain of the free length of a tether. [SI]
+    model : StrainModel
+        How the length of a tether follows from strain and tension.
+    n_tethers : int
+        Side by side. [1]
+    free_lengths : sequence of float
+        Relaxed, one a tether; that of the model for all where it is empty. [m]
+    parts : sequence of SeriesPart
+        In line.
+    levels : sequence of WorkingLevel
+        Where the assembly stands.
+    tolerance : float
+        Of a free length, of tethers that are all alike; NaN where none is stated. [1]
+    rated_break_strength : float
+        Of one tether; NaN where not known. [N]
+
+    Returns
+    -------
+    deployed : DeployedAssembly
+        In SI.
+
+    Raises
+    ------
+    SettingsError
+        If there is no tether.
+    DataError
+        If tethers of these lengths cannot be, or a level is beyond the curve or lets a tether go
+        slack; names the level by its place, ``working.1`` the first.
+    """
+    first = free_lengths[0] if free_lengths else None
+    tether = Tether(curve, deployed_model(model, first))
+    alike = len(set(free_lengths)) < 2
+    tethers = equal_tethers(tether, n_tethers) if alike else unequal_tethers(tether, free_lengths)
+    assembly = assemble(tethers, parts)
+    slack = float(assembly.total_length[0])
+    lengths = tuple(one.model.relaxed_length for one in tethers)
+    states = []
+    for number, level in enumerate(levels, start=1):
+        try:
+            states.append(_state(assembly, tether, level, parts, tolerance, rated_break_strength))
+        except DataError as error:
+            raise DataError(
+                f"working.{number}: {error.problem}", found=error.found, needed=error.needed,
+                hint=error.hint,
+            ) from error  # fmt: skip
+    return DeployedAssembly(
+        assembly=assembly,
+        strain=assembly.total_length / slack - 1,
+        apparent_spring_constant=slack * np.gradient(assembly.tension, assembly.total_length),
+        free_length=lengths,
+        working=tuple(states),
+        notes=_notes(assembly, model),
+    )
+
+
+def _state(
+    assembly: AssemblyCurve,
+    tether: Tether,
+    level: WorkingLevel,
+    parts: Sequence[SeriesPart],
+    tolerance: float,
+    rated_break_strength: float,
+) -> WorkingState:
+    mean = _tension(assembly, level)
+    point = working_point(
+        assembly, mean, level.tension_amplitude, rated_break_strength=rated_break_strength
+    )
+    sharing = None
+    if np.isfinite(tolerance):
+        sharing = worst_sharing(
+            tether,
+            assembly.n_tethers,
+            mean,
+            free_length=tether.model.relaxed_length,
+            tolerance=tolerance,
+            parts=parts,
+        )
+    at = float(point.total_length)
+    return WorkingState(
+        level=level,
+        point=point,
+        strain=np.array(
+            [np.interp(at, assembly.total_length, row) for row in assembly.tether_strain]
+        ),
+        standard_uncertainty=float(
+            np.interp(at, assembly.total_length, assembly.standard_uncertainty)
+        ),
+        sharing=sharing,
+    )
+
+
+def _tension(assembly: AssemblyCurve, level: WorkingLevel) -> float:
+    """Tension at a level; refused where the assembly is slack or its curve ends. [N]."""
+    if level.quantity == "tension":
+        return level.value
+    axis = assembly.total_length if level.quantity == "total_length" else assembly.tether_strain[0]
+    low, high = float(axis[0]), float(axis[-1])
+    if not low < level.value <= high * (1 + 1e-12):
+        unit = "m" if level.quantity == "total_length" else "of the free length"
+        what = "slack" if level.value <= low else "beyond its curve"
+        raise DataError(
+            f"the assembly is {what} at this {level.quantity.replace('_', ' ')}",
+            found=f"{level.value:.5g} {unit}",
+            needed=f"above {low:.5g}, to {high:.5g} {unit}",
+        )
+    return float(np.interp(level.value, axis, assembly.tension))
+
+
+def _notes(assembly: AssemblyCurve, model: StrainModel) -> tuple[str, ...]:
+    notes = [
+        "weight, buoyancy, bending and twist of the assembly are not in it; its bridles stay "
+        "parallel",
+        "the uncertainty is that of the curve, which all tethers share; that of the splices and "
+        "of the lengths is not in it",
+    ]
+    high = float(assembly.tension[-1]) / assembly.n_tethers
+    if model.method == "tension-driven" and high > model.tension_high:
+        notes.append(
+            f"the splices were marked up to {model.tension_high:.4g} N a tether; above that their "
+            "law is extrapolated"
+        )
+    return tuple(notes)

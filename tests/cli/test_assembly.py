@@ -1,0 +1,281 @@
+"""The command assembly: the deployed moorings of WHOI-2005-10, and what is refused.
+
+What the report gives, and what is assumed, stands in `test_whoi_2005_10_assemblies`.
+"""
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+DOCS = Path(__file__).parents[2] / "docs" / "assemblies"
+LBF = 4.4482216152605
+SPEC = """
+[assembly]
+n_tethers = 2
+free_length = "8 m"
+[assembly.curve]
+source = "rubber-tether-used"
+"""
+
+
+def written(folder, text=SPEC):
+    path = folder / "spec.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def assembly(command, path):
+    done = command("assembly", path, "--json")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize(
+    ("name", "n_tethers", "stated"), [("new-hampshire", 4, 350), ("globec", 6, 500)]
+)
+def test_the_deployed_tension_is_the_stated_one_within_the_scatter(
+    command, name, n_tethers, stated
+):
+    found = assembly(command, DOCS / f"{name}.toml")
+    assert found["n_tethers"] == n_tethers
+    point = found["working"][0]
+    assert point["tether_strain"] == pytest.approx([1.0] * n_tethers)
+    spread = point["tension_standard_uncertainty"]
+    assert abs(point["mean_tension"] - stated * LBF) < spread
+    assert 0.12 < spread / point["mean_tension"] < 0.18  # 14 to 18 % between the tests
+    assert point["load_share"] == pytest.approx([1 / n_tethers] * n_tethers)
+    assert point["is_tested"] is True
+
+
+def test_under_way_the_tethers_stay_inside_the_tests_and_far_from_their_strength(command):
+    """400 to 800 lbf on four tethers; one breaks at something like 800 lbf (section 2.3.2)."""
+    found = assembly(command, DOCS / "new-hampshire.toml")
+    point = found["working"][1]
+    assert point["minimum_tension"] / LBF == pytest.approx(400)
+    assert point["peak_tether_tension"] == pytest.approx([200 * LBF] * 4)
+    assert point["peak_share"] == pytest.approx([0.25] * 4)
+    assert point["is_tested"] is True
+    sharing = point["sharing"]
+    assert sharing["least_load"] < 150 * LBF < sharing["greatest_load"]
+
+
+def test_length_is_that_of_the_rubber_its_splices_and_the_bridles(command):
+    """8.8 m and 1.1948 m of splices, which strain by 0.2177 of what the rubber does; 1 m rigid."""
+    found = assembly(command, DOCS / "new-hampshire.toml")
+    splices = 12.26 * 0.3048 - 8.34 * 0.3048
+    assert found["total_length"][0] == pytest.approx(8.8 + splices + 1.0)
+    at_100 = found["working"][0]["total_length"]
+    assert at_100 == pytest.approx(2 * 8.8 + splices * 1.21774 + 1.0, abs=1e-4)
+    slack = found["total_length"][0]
+    assert found["strain"] == pytest.approx(np.array(found["total_length"]) / slack - 1)
+    slope = np.gradient(found["tension"], found["total_length"])
+    assert found["apparent_spring_constant"] == pytest.approx(slack * slope)
+
+
+def test_tethers_of_a_campaign_have_the_splices_of_their_strain_correction(
+    command, synthetic, tmp_path
+):
+    files = [str(synthetic.processed / f"T-{number}.nc") for number in (1, 2)]
+    text = f"""
+[assembly]
+n_tethers = 3
+[assembly.curve]
+source = {json.dumps(files)}
+specimen = "new"
+branch = "ascending"
+precedence = ["cyclic"]
+[[assembly.working]]
+tension = "1200 N"
+"""
+    found = assembly(command, written(tmp_path, text))
+    assert found["synthetic"] is True
+    # the slack lengths of the tape: 2.5547 and 1.1821 m
+    assert found["slack_length"] == pytest.approx([3.7368] * 3, abs=1e-3)
+    assert "tension-driven" in found["sources"][0]
+    strain, length = found["working"][0]["tether_strain"][0], found["working"][0]["total_length"]
+    law = {name: float(value) for name, value in
+           re.findall(r"(splice compliance|splice exponent) ([\d.]+)", found["sources"][0])}  # fmt: skip
+    splices = 1.18212 * (1 + law["splice compliance"] * 400 ** law["splice exponent"])
+    assert length == pytest.approx(2.55473 * (1 + strain) + splices, abs=2e-3)
+
+
+def test_unequal_tethers_share_by_their_lengths(command, tmp_path):
+    text = SPEC.replace('n_tethers = 2\nfree_length = "8 m"', 'free_lengths = ["8 m", "8.4 m"]')
+    path = written(tmp_path, text + '[[assembly.working]]\ntension = "200 lbf"\n')
+    point = assembly(command, path)["working"][0]
+    assert point["tether_tension"][0] > point["tether_tension"][1]
+    assert sum(point["tether_tension"]) == pytest.approx(200 * LBF)
+    text = command("assembly", path, "--units", "us").stdout
+    assert "the longest tether below" in text
+    assert "greatest, least [lbf]" in text
+
+
+def test_stated_splices_stand_before_the_published_ones(command, tmp_path):
+    for law, splices in (
+        ("", 2.0),
+        ('strain_ratio = "50 %"', 2.0 * 1.5),
+        ('strain = "40 %"\nat_tension = "85 lbf"', None),
+    ):
+        text = f'{SPEC}[assembly.splices]\nlength = "2 m"\n{law}\n[[assembly.working]]\nstrain = "100 %"\n'
+        found = assembly(command, written(tmp_path, text))
+        assert found["slack_length"] == pytest.approx([10.0] * 2)
+        point = found["working"][0]
+        if splices is None:
+            splices = 2.0 * (1 + 0.4 * point["tether_tension"][0] / (85 * LBF))
+        assert point["total_length"] == pytest.approx(16.0 + splices, abs=1e-3)
+    bare = written(tmp_path, f'{SPEC}[assembly.splices]\nlength = "0 m"\n')
+    assert assembly(command, bare)["slack_length"] == pytest.approx([8.0] * 2)
+
+
+def test_a_spring_in_line_takes_its_share(command, tmp_path):
+    part = '[[assembly.parts]]\nname = "nylon"\nlength = "5 m"\nspring_constant = "10 kN"\n'
+    point = '[[assembly.working]]\ntension = "1 kN"\n'
+    alone = assembly(command, written(tmp_path, SPEC + point))["working"][0]
+    found = assembly(command, written(tmp_path, SPEC + part + point))["working"][0]
+    assert found["total_length"] - alone["total_length"] == pytest.approx(5.0 * 1.1)
+
+
+def test_every_node_is_written(command, tmp_path):
+    path = written(tmp_path)
+    done = command("assembly", path, "--out", tmp_path / "a.csv", "--units", "us")
+    assert done.returncode == 0, done.stderr
+    assert "slack below 30.167 ft" in done.stdout and "not tested" in done.stdout
+    with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as lines:
+        rows = list(csv.reader(lines))
+    assert rows[0][:3] == [
+        "total_length [ft]", "tension [lbf]", "tension_standard_uncertainty [lbf]",
+    ]  # fmt: skip
+    assert "tether_tension [lbf]" in rows[0] and "is_tested" in rows[0]
+    found = assembly(command, path)
+    tension = [float(row[1]) * LBF for row in rows[1:]]
+    assert tension == pytest.approx(found["tension"], rel=1e-9, abs=1e-9)
+    assert command("assembly", path, "--quiet").stdout == ""
+
+
+def test_an_assembly_is_exported_as_one_line(command, tmp_path):
+    path = written(tmp_path)
+    done = command("export", path, "--to", "json", "--out", tmp_path / "a.json", "--json")
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout)
+    found = assembly(command, path)
+    written_ = json.loads((tmp_path / "a.json").read_text())["values"]
+    assert written_["tension"] == pytest.approx(found["tension"])
+    assert written_["strain"] == pytest.approx(found["strain"])
+    assert answer["curve"].startswith("assembly of 2 x rubber-tether-used, free length 8 m")
+    assert any(f"unstretched length of the whole assembly, {found['total_length'][0]:.6g} m" in note
+               for note in answer["notes"])  # fmt: skip
+    deck = command(
+        "export", path, "--to", "moordyn", "--out", tmp_path / "a.dat", "--diameter", "60 mm",
+        "--linear-density", "2 kg/m",
+    )  # fmt: skip
+    assert deck.returncode == 0, deck.stderr
+    for arguments, told in (
+        (["--to", "moordyn"], "the diameter of spec is not known"),
+        (["--to", "csv", "--curve", "ascending"], "specification of an assembly says of which"),
+        (["--to", "csv", "--frequency", "0.1 Hz"], "choose nothing in an assembly"),
+    ):
+        done = command("export", path, *arguments, "--out", tmp_path / "x")
+        assert done.returncode == 2
+        assert told in done.stderr
+
+
+LEVEL = "[[assembly.working]]\n"
+
+
+@pytest.mark.parametrize(
+    ("replaced", "added", "status", "told"),
+    [
+        (("n_tethers = 2", "n_tethers = 0"), "", 2, "assembly.n_tethers"),
+        (("n_tethers = 2", "tethers = 2"), "", 2, "assembly.tethers: is not a known key"),
+        (("n_tethers = 2\n", ""), "", 2, "how many tethers there are is not said once; found neither"),
+        (("n_tethers = 2", 'n_tethers = 2\nfree_lengths = ["8 m"]'), "", 2, "not said once; found both"),
+        (("n_tethers = 2", 'free_lengths = ["8 m"]'), "", 2, "free_length and free_lengths stand"),
+        (('free_length = "8 m"', 'free_length = "-8 m"'), "", 2, "assembly.free_length is not positive"),
+        (('free_length = "8 m"', 'free_length = "8 lbf"'), "", 2, "assembly.free_length: unit 'lbf'"),
+        (('free_length = "8 m"', 'free_length = "?"'), "", 2, "1 value is still '?'"),
+        (('n_tethers = 2\nfree_length = "8 m"', 'free_lengths = ["8 m", "0 m"]'), "", 2,
+         "assembly.free_lengths.2 is not positive"),
+        (('n_tethers = 2\nfree_length = "8 m"', 'free_lengths = ["8 m", "80 m"]'), "", 4,
+         "assembly: a tether is at the end of its curve before another one is taut"),
+        (("n_tethers = 2", 'n_tethers = 2\ntolerance = "200 %"'), LEVEL + 'strain = "1"', 2,
+         "assembly.tolerance is no share of a length"),
+        (("n_tethers = 2", 'n_tethers = 1\ntolerance = "1 %"'), LEVEL + 'strain = "1"', 2,
+         "assembly.tolerance is of tethers that are all alike; found one tether"),
+        (("n_tethers = 2", 'n_tethers = 2\ntolerance = "1 %"'), "", 2, "assembly.tolerance has no tension"),
+        (("n_tethers = 2", 'n_tethers = 2\nrated_break_strength = "-5 lbf"'), "", 2,
+         "assembly.rated_break_strength is not positive"),
+        (('"rubber-tether-used"', '"rubber-tether-old"'), "", 2, "assembly.curve: there is nothing called"),
+        (('"rubber-tether-used"', '""'), "", 2, "assembly.curve.source is empty"),
+        (('"rubber-tether-used"', '"rubber-tether-used"\nbranch = "mean"'), "", 2,
+         "assembly.curve: rubber-tether-used has its ascending branch alone"),
+        (('"rubber-tether-used"', '"rubber-tether-used"\nbranch = "loop"'), "", 2, "assembly.curve.branch"),
+        (('"rubber-tether-used"', '"rubber-tether-used"\nprecedence = []'), "", 2,
+         "assembly.curve.precedence: the precedence names no kind"),
+        (('"rubber-tether-used"', '"rubber-tether-used"\nprecedence = ["static"]'), "", 4,
+         "assembly.curve: rubber-tether-used: no piece is of a kind"),
+        (None, '[[assembly.parts]]\nname = "chain"\nlength = "-1 m"', 2, "assembly.parts.chain: chain has no length"),
+        (None, '[[assembly.parts]]\nlength = "1 m"\nspring_constant = "0 N"', 2,
+         "assembly.parts.1: the spring constant of part 1 is not positive"),
+        (None, '[assembly.splices]\nlength = "-1 m"', 2, "assembly.splices.length is no number of a splice"),
+        (None, '[assembly.splices]\nlength = "1 m"\nstrain = 0.4', 2, "a strain belongs to a tension"),
+        (None, '[assembly.splices]\nlength = "1 m"\nat_tension = "9 N"', 2, "found at_tension alone"),
+        (None, '[assembly.splices]\nlength = "1 m"\nstrain_ratio = 0.2\nstrain = 0.4\nat_tension = "9 N"', 2,
+         "strain_ratio and strain are two laws"),
+        (None, '[assembly.splices]\nlength = "1 m"\nexponent = 3.0', 2, "exponent is no number of a splice"),
+        (None, LEVEL, 2, "assembly.working.1: where the assembly stands is not said once; found nothing"),
+        (None, LEVEL + 'strain = "1"\ntension = "9 N"', 2, "found tension, strain"),
+        (None, LEVEL + 'tension = "-9 N"', 2, "assembly.working.1.tension is not positive"),
+        (None, LEVEL + 'tension = "9 N"\ntension_amplitude = "-1 N"', 2, "tension_amplitude is negative"),
+        (None, LEVEL + 'tension = "90 kN"', 4, "assembly.working.1: the peak tension is beyond the curves"),
+        (None, LEVEL + 'tension = "100 N"\ntension_amplitude = "200 N"', 4, "assembly.working.1: "),
+        (None, LEVEL + 'total_length = "5 m"', 4, "the assembly is slack at this total length"),
+        (None, LEVEL + 'total_length = "99 m"', 4, "beyond its curve at this total length"),
+        (None, LEVEL + 'strain = "400 %"', 4, "beyond its curve at this strain"),
+        (('n_tethers = 2\nfree_length = "8 m"', 'free_lengths = ["8 m", "8.1 m"]'), LEVEL + 'strain = "1"', 2,
+         "assembly.working.1.strain: the tethers differ"),
+        (("[assembly]", "[tethers]"), "", 2, "spec.toml: "),
+    ],
+)  # fmt: skip
+def test_nonsense_is_refused_with_file_and_key(command, tmp_path, replaced, added, status, told):
+    text = SPEC if replaced is None else SPEC.replace(*replaced)
+    assert text != SPEC or added
+    path = written(tmp_path, text + added + "\n")
+    done = command("assembly", path)
+    assert done.returncode == status, done.stderr
+    assert told in done.stderr
+    assert str(path) in done.stderr
+    assert "internal error" not in done.stderr
+
+
+def test_a_specification_that_is_not_there_and_a_table_of_no_format(command, tmp_path):
+    done = command("assembly", tmp_path / "none.toml")
+    assert (done.returncode, "the assembly cannot be read" in done.stderr) == (2, True)
+    done = command("assembly", written(tmp_path), "--out", tmp_path / "a.xls")
+    assert (done.returncode, "ends in .csv" in done.stderr) == (2, True)
+
+
+def test_a_source_that_knows_no_splices_asks_for_them(command, static, tmp_path):
+    text = f'[assembly]\nn_tethers = 2\n[assembly.curve]\nsource = "{static.processed}"\n'
+    done = command("assembly", written(tmp_path, text))
+    assert done.returncode == 2
+    assert "assembly.splices: the tests of short-tether do not know the splices" in done.stderr
+    done = command("assembly", written(tmp_path, f'{text}[assembly.splices]\nlength = "0 m"\n'))
+    assert done.returncode == 2
+    assert "assembly.free_length: the tests of short-tether do not know it" in done.stderr
+    whole = text.replace("= 2\n", '= 2\nfree_length = "2 m"\n')
+    done = command("assembly", written(tmp_path, f'{whole}[assembly.splices]\nlength = "0 m"\n'))
+    assert done.returncode == 0, done.stderr
+
+
+def test_folders_are_looked_for_beside_the_specification(command, synthetic):
+    path = synthetic.processed.parent / "beside.toml"
+    path.write_text(
+        '[assembly]\nn_tethers = 1\n[assembly.curve]\nsource = "tmt-synthetic"\n', encoding="utf-8"
+    )
+    done = command("assembly", path)
+    assert done.returncode == 2
+    assert "assembly.curve: " in done.stderr and "several specimens; found new, used" in done.stderr

@@ -1,0 +1,48 @@
+import numpy as np
+import pytest
+
+from reduction.export.fromcomposite import composite_table, line_from_composite, ranges_of
+from reduction.lookup.composite import CompositeRule
+from reduction.lookup.pieces import CurvePiece
+from reduction.lookup.source import PieceSource, compose
+
+
+def piece(name, low, high, kind="cyclic"):
+    at = np.linspace(low, high, 21)
+    return CurvePiece(name, kind, "mean", at, 100 * at, np.full(21, 0.5))
+
+
+SOURCE = PieceSource(
+    "tether", "mean", (piece("T-1", 0.5, 1.0), piece("T-2", 0.8, 1.2), piece("T-3", 1.4, 2.0)),
+    diameter=0.02, sources=("archive a",), notes=("held is left out",), is_synthetic=True,
+)  # fmt: skip
+CURVE = compose(SOURCE, CompositeRule())
+
+
+def test_joins_and_gaps_are_ranges_of_strain():
+    gaps = ranges_of(CURVE, CURVE.is_gap)
+    assert np.array(gaps) == pytest.approx(np.array([[0.0, 0.5], [1.2, 1.4]]))
+    ((low, high),) = ranges_of(CURVE, CURVE.is_join)
+    assert 0.8 <= low < 0.82 and 0.98 < high <= 1.0
+    assert ranges_of(CURVE, CURVE.is_moved) == []
+
+
+def test_the_line_says_what_the_curve_is_made_of():
+    line = line_from_composite(SOURCE, CURVE, linear_density=0.6, diameter=None)
+    assert line.curve == "composite of 3 tests, mean of both branches; one curve, no loop"
+    assert line.tested == pytest.approx((0.5, 2.0))
+    assert (line.diameter, line.linear_density, line.is_synthetic) == (0.02, 0.6, True)
+    assert line.sources == ("archive a", "linear density: stated at the export")
+    told = " ".join(line.notes)
+    assert "no piece between strain 1.2 and 1.4" in told
+    assert "more than one piece has a say at strain 0.8" in told
+    assert line.notes[-1] == "held is left out"
+
+
+def test_the_table_flags_the_way_to_each_node():
+    columns = {one.name: one.values for one in composite_table(SOURCE, CURVE).columns}
+    at = np.array(columns["strain"])
+    flagged = at[columns["is_gap"]]
+    assert flagged == pytest.approx([0.25, 0.5, 1.3, 1.4])
+    assert np.isnan(columns["piece"][0]) and columns["piece"][-1] == 3
+    assert columns["tension"] == pytest.approx(100 * at)
