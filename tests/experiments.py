@@ -9,11 +9,8 @@ from reduction.surface.cautions import Caution
 from reduction.surface.designs import box_behnken, plackett_burman
 from reduction.surface.screening import screening_effects
 from reduction.surface.select import reduce_terms
-from reduction.surface.stiffness import (
-    compare_stiffness_forms,
-    fit_del_vecchio_stiffness,
-    fit_mean_load_stiffness,
-)
+from reduction.surface.stiffness import fit_del_vecchio_stiffness, fit_mean_load_stiffness
+from reduction.surface.stiffness_forms import compare_stiffness_forms
 from reduction.surface.surfaces import fit_surfaces
 from reduction.vocabulary import RESPONSES
 

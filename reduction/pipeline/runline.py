@@ -15,11 +15,8 @@ from reduction.line.single import VERDICTS, SingleTimeCheck, check_single_time
 from reduction.record import Floats
 from reduction.surface.anova import replicate_cells
 from reduction.surface.product import ResponseSurfaces
-from reduction.surface.stiffness import (
-    compare_stiffness_forms,
-    fit_del_vecchio_stiffness,
-    fit_mean_load_stiffness,
-)
+from reduction.surface.stiffness import fit_del_vecchio_stiffness, fit_mean_load_stiffness
+from reduction.surface.stiffness_forms import compare_stiffness_forms
 from reduction.surface.stiffness_product import FormQuality, StiffnessForm
 from reduction.surface.surfaces import fit_surfaces
 

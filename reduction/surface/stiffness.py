@@ -15,110 +15,27 @@ References
 .. [2] MoorPy, "Variable rope stiffness behavior" (line library keys EAd_MBL and EAd_MBL_Lm);
    MoorDyn, line type with ``EA|alphaMBL|vbeta``.
 .. [3] CG-D-39-80, eq. 5: the quadratic surface of the same runs.
-.. [4] C. M. Hurvich and C.-L. Tsai, "Regression and time series model selection in small
-   samples," Biometrika 76(2), 1989 (AICc).
 """
 
 from __future__ import annotations
-
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
-from reduction.checks import as_same_shape
-from reduction.errors import DataError, SettingsError
+from reduction.errors import SettingsError
 from reduction.record import Floats
 from reduction.surface.fit import fit_least_squares, two_sided_p
-from reduction.surface.stiffness_product import (
-    FormQuality,
-    StiffnessForm,
-    StiffnessFormName,
-    form_quality,
+from reduction.surface.stiffness_product import StiffnessForm, StiffnessFormName, form_quality
+from reduction.surface.stiffness_runs import (
+    LoadAmplitude,
+    checked_strength,
+    del_vecchio_matrix,
+    positive_levels,
+    relative_stiffness,
 )
-from reduction.surface.terms import model_matrix, quadratic_exponents
 
-__all__ = [
-    "LoadAmplitude",
-    "compare_stiffness_forms",
-    "fit_del_vecchio_stiffness",
-    "fit_mean_load_stiffness",
-]
-
-LoadAmplitude = Literal["half-range", "full-range"]
-
-FORMS = ("del-vecchio", "mean-load", "quadratic")
-
-
-def _strength(rated_break_strength: float | None) -> float:
-    if rated_break_strength is None:
-        raise SettingsError(
-            "stiffness over break strength has no break strength",
-            needed="the rated break strength of the line",
-            hint="Give rated_break_strength of the specimen.",
-        )
-    if not rated_break_strength > 0 or not np.isfinite(rated_break_strength):
-        raise SettingsError(
-            "the rated break strength cannot be",
-            found=f"{rated_break_strength:g}",
-            needed="a finite number above zero",
-        )
-    return float(rated_break_strength)
-
-
-def _above_zero(name: str, values: Floats) -> None:
-    bad = np.flatnonzero(values <= 0)
-    if bad.size:
-        raise DataError(
-            f"{bad.size} of {values.size} values of {name} are not above zero, "
-            f"first at index {int(bad[0])}",
-            found=f"{values[bad[0]]:g}",
-            needed="levels above zero, or NaN where the run is missing",
-        )
-
-
-def _del_vecchio_matrix(
-    mean: Floats, amplitude: Floats, frequency: Floats, strength: float, kind: LoadAmplitude
-) -> Floats:
-    """Columns of a, b, c, d: per cent of break strength, seconds."""
-    if kind not in ("half-range", "full-range"):
-        raise SettingsError(
-            "the load amplitude is one of two things",
-            found=kind,
-            needed="half-range or full-range",
-        )
-    wide = 2.0 if kind == "full-range" else 1.0
-    percent = 100 / strength
-    # -log10(period) is log10(frequency); its sign and that of c are those of the equation
-    columns = [np.ones_like(mean), percent * mean, -wide * percent * amplitude, np.log10(frequency)]
-    matrix: Floats = np.column_stack(columns)
-    return matrix
-
-
-def _levels(**named: ArrayLike) -> tuple[Floats, ...]:
-    arrays = as_same_shape(**named)
-    if arrays[0].ndim != 1:
-        raise DataError(
-            "the levels are not a series of runs", found=f"shape {arrays[0].shape}", needed="1-D"
-        )
-    for name, values in zip(named, arrays, strict=True):
-        _above_zero(name, values)
-    return arrays
-
-
-def _relative(
-    spring_constant: ArrayLike, strength: float, n_runs: int
-) -> tuple[Floats, tuple[int, ...]]:
-    """Stiffness over break strength as (n_responses, n_runs), and the shape before the runs."""
-    stiffness = np.asarray(spring_constant, dtype=np.float64)
-    if stiffness.ndim == 0 or stiffness.shape[-1] != n_runs:
-        raise DataError(
-            "the spring constants do not fit the runs",
-            found=f"shape {stiffness.shape}",
-            needed=f"{n_runs} runs on the last axis",
-        )
-    return stiffness.reshape(-1, n_runs) / strength, stiffness.shape[:-1]
+__all__ = ["fit_del_vecchio_stiffness", "fit_mean_load_stiffness"]
 
 
 def _form(
@@ -136,7 +53,7 @@ def _form(
         raise SettingsError(
             "the confidence is not a share", found=f"{confidence:g}", needed="between 0 and 1"
         )
-    relative, shape = _relative(spring_constant, strength, matrix.shape[0])
+    relative, shape = relative_stiffness(spring_constant, strength, matrix.shape[0])
     fit = fit_least_squares(matrix, relative)
     covariance = fit.covariance_factor[fit.pattern] * fit.sigma[:, None, None] ** 2
     uncertainty = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
@@ -229,8 +146,8 @@ def fit_del_vecchio_stiffness(
     >>> print(form.coefficient.round(6))
     [18.   0.3  0.2  1. ]
     """
-    strength = _strength(rated_break_strength)
-    mean, amplitude, rate = _levels(
+    strength = checked_strength(rated_break_strength)
+    mean, amplitude, rate = positive_levels(
         mean_tension=mean_tension, tension_amplitude=tension_amplitude, frequency=frequency
     )
     return _form(
@@ -239,7 +156,7 @@ def fit_del_vecchio_stiffness(
         f"{load_amplitude.replace('-', ' ')}, T in s",
         ("a", "b", "c", "d"),
         ("1", "1/%", "1/%", "1"),
-        _del_vecchio_matrix(mean, amplitude, rate, strength, load_amplitude),
+        del_vecchio_matrix(mean, amplitude, rate, strength, load_amplitude),
         spring_constant,
         mean,
         strength,
@@ -299,8 +216,8 @@ def fit_mean_load_stiffness(
     >>> print(form.coefficient.round(2))
     [-0.4  27.43]
     """
-    strength = _strength(rated_break_strength)
-    (mean,) = _levels(mean_tension=mean_tension)
+    strength = checked_strength(rated_break_strength)
+    (mean,) = positive_levels(mean_tension=mean_tension)
     return _form(
         "mean-load",
         "EA = alpha MBL + beta Tm; Tm is the mean tension",
@@ -312,80 +229,3 @@ def fit_mean_load_stiffness(
         strength,
         confidence,
     )
-
-
-def compare_stiffness_forms(
-    spring_constant: ArrayLike,
-    *,
-    mean_tension: ArrayLike,
-    tension_amplitude: ArrayLike,
-    frequency: ArrayLike,
-    coded: ArrayLike,
-    rated_break_strength: float | None,
-) -> FormQuality:
-    """Both forms beside the quadratic surface of the same runs.
-
-    Parameters
-    ----------
-    spring_constant : array_like, shape (..., n_runs)
-        Apparent (dynamic) spring constant EA of each run; NaN where a run is missing. [N]
-    mean_tension, tension_amplitude : array_like, shape (n_runs,)
-        As achieved; the amplitude is half the range. [N]
-    frequency : array_like, shape (n_runs,)
-        [Hz]
-    coded : array_like, shape (n_runs, n_factors)
-        Factors of the surface in coded units. [1]
-    rated_break_strength : float or None
-        MBL; None is refused. [N]
-
-    Returns
-    -------
-    quality : FormQuality
-        ``del-vecchio``, ``mean-load`` and ``quadratic``, all of EA / MBL.
-
-    Raises
-    ------
-    SettingsError
-        If the break strength is missing or cannot be.
-    DataError
-        If the levels are not above zero or the shapes do not fit.
-
-    Notes
-    -----
-    A run without one of its levels is left out of all three.  What the amplitude is makes
-    no difference here: it scales the coefficient c alone.  AICc [4]_ counts the scatter as
-    a parameter: on fifteen runs ten terms pay 110 for their number, four pay 17 and two
-    8, so that a form may win by it though its r2 is less.
-
-    Examples
-    --------
-    A stiffness that follows the mean load alone needs no more than that form.
-
-    >>> from reduction.surface.designs import box_behnken
-    >>> coded = box_behnken(3).coded
-    >>> mean, half, f = 1344 + 576 * coded[:, 1], 544 + 224 * coded[:, 2], 0.3 + 0.2 * coded[:, 0]
-    >>> noise = 100 * np.random.default_rng(1).standard_normal(15)
-    >>> quality = compare_stiffness_forms(5e3 + 20 * mean + noise, mean_tension=mean,
-    ...     tension_amplitude=half, frequency=f, coded=coded, rated_break_strength=6400)
-    >>> quality.forms[int(np.argmin(quality.aicc))]
-    'mean-load'
-    """
-    strength = _strength(rated_break_strength)
-    mean, amplitude, rate = _levels(
-        mean_tension=mean_tension, tension_amplitude=tension_amplitude, frequency=frequency
-    )
-    levels = np.asarray(coded, dtype=np.float64)
-    if levels.ndim != 2 or levels.shape[0] != mean.size:
-        raise DataError(
-            "the coded levels do not fit the runs",
-            found=f"shape {levels.shape}",
-            needed=f"{mean.size} rows, one column a factor",
-        )
-    relative, shape = _relative(spring_constant, strength, mean.size)
-    first = _del_vecchio_matrix(mean, amplitude, rate, strength, "half-range")
-    whole = np.isfinite(first).all(axis=1) & np.isfinite(levels).all(axis=1)
-    surface = np.full((mean.size, quadratic_exponents(levels.shape[1]).shape[0]), np.nan)
-    surface[whole] = model_matrix(levels[whole], quadratic_exponents(levels.shape[1]))
-    known = np.where(whole, relative, np.nan)
-    matrices = (first, first[:, :2], surface)
-    return form_quality(FORMS, [fit_least_squares(matrix, known) for matrix in matrices], shape)

@@ -6,11 +6,8 @@ import statsmodels.api as sm
 
 from reduction.errors import DataError, SettingsError
 from reduction.surface.designs import box_behnken
-from reduction.surface.stiffness import (
-    compare_stiffness_forms,
-    fit_del_vecchio_stiffness,
-    fit_mean_load_stiffness,
-)
+from reduction.surface.stiffness import fit_del_vecchio_stiffness, fit_mean_load_stiffness
+from reduction.surface.stiffness_forms import compare_stiffness_forms
 
 STRENGTH = 28_470.0  # 6400 lbf
 CODED = box_behnken(3).coded
