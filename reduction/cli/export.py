@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Literal, cast
 
 from reduction.cli.assembly import deployed_line
 from reduction.cli.compositesource import is_of_pieces, piece_source, rule_of
+from reduction.cli.hydrodynamics import stated_hydrodynamics
 from reduction.cli.numbers import plain
 from reduction.cli.outcome import Outcome
 from reduction.errors import SettingsError
@@ -46,6 +48,7 @@ def export_source(
     precedence: str | None,
     specimen: str | None,
     stated: dict[str, str | None],
+    water: tuple[str | None, str | None, str | None],
     levels: dict[str, str | None],
     extrapolate: str,
     outcome: Outcome,
@@ -59,7 +62,7 @@ def export_source(
         raise SettingsError(
             "--curve is not known", found=repr(curve), needed="mean, ascending or descending"
         )
-    values = {
+    values: dict[str, Any] = {
         name: parse_quantity(text, _DIMENSIONS[name])
         for name, text in stated.items()
         if text is not None
@@ -69,7 +72,7 @@ def export_source(
         cast("CurveName | None", curve),
         precedence=precedence,
         specimen=specimen,
-        stated=values,
+        stated=values | stated_hydrodynamics(*water),
         levels={name: text for name, text in levels.items() if text is not None},
         extrapolate=cast('Literal["refuse", "flag"]', extrapolate),
     )
@@ -91,6 +94,7 @@ def export_source(
             "sources": list(line.sources),
             "notes": list(line.notes),
             "synthetic": line.is_synthetic,
+            "hydrodynamics": asdict(line.hydrodynamics),
             **{
                 name: {"value": plain(getattr(line, name)), "unit": unit}
                 for name, unit in (

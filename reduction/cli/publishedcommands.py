@@ -50,6 +50,13 @@ def export(
         str | None, typer.Option(help="Less the water it displaces.")
     ] = None,
     rated_break_strength: Annotated[str | None, typer.Option(help='"28 kN".')] = None,
+    drag: Annotated[
+        str | None, typer.Option(help='Across and along the line, "1.6, 0.02"; else a cylinder.')
+    ] = None,
+    added_mass: Annotated[str | None, typer.Option(help='The same, "1, 0".')] = None,
+    hydrodynamics_source: Annotated[
+        str | None, typer.Option(help="Where these are from, for the header.")
+    ] = None,
     frequency: Annotated[str | None, typer.Option(help='Of the stiffness, "0.3 Hz".')] = None,
     mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
     tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
@@ -78,6 +85,7 @@ def export(
                 "wet_linear_density": wet_linear_density,
                 "rated_break_strength": rated_break_strength,
             },
+            water=(drag, added_mass, hydrodynamics_source),
             levels={
                 "frequency": frequency,
                 "mean_tension": mean_tension,

@@ -82,10 +82,12 @@ def whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> s
     mass, water = line.needed("linear_density"), line.hydrodynamics
     wet = (mass - SEA_WATER * math.pi / 4 * volume**2) * _GRAVITY
     strength = line.rated_break_strength
+    along = water.axial_added_mass
     head = header_lines(
         line,
         curve,
         *remarks,
+        f"added mass along the line, {along:g}, left out: Cable has none" if along else "",
         words,
         f"hydrodynamic coefficients: {water.source}",
         f"EI and GJ {_SMALL:g}: not measured; wet in N/m in water of {SEA_WATER:g} kg/m3",
