@@ -2,20 +2,29 @@
 
 import importlib.util
 import json
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from export_lines import constant, growing, line, syrope
 from export_readers import moordyn_sections, moordyn_table
 
+from reduction.cli.assembly import deployed_line
+from reduction.export.fromassembly import line_from_assembly
+from reduction.export.fromcomposite import line_from_composite
 from reduction.export.moordyn import moordyn_files
 from reduction.export.write import export_line
+from reduction.lookup.composite import CompositeRule
+from reduction.lookup.source import compose
+from reduction.published.piecesource import published_piece_sources
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("moordyn") is None, reason="moordyn is not installed"
 )
+ASSEMBLIES = Path(__file__).parents[2] / "docs" / "assemblies"
 DRIVER = """
 import json, math, sys
 import moordyn
@@ -172,3 +181,23 @@ def test_the_deck_states_a_step_because_that_of_moordyn_is_wrong_for_tables(tmp_
     (step,) = [row[0] for row in moordyn_sections(files[""])["OPTIONS"] if row[1] == "dtM"]
     write(tmp_path, files | {"": files[""].replace(f"{step} dtM", "0.5 CFL")})
     assert run(tmp_path, strains=[0.1, 0.2], step=0.1, rest=30)[0].returncode != 0
+
+
+@pytest.mark.parametrize("name", ["composite", "new-hampshire"])
+def test_composites_and_assemblies_give_back_their_tension_at_14_strains(tmp_path, name):
+    """A tether of all its windows, and four of them with their splices and bridles."""
+    stated = {"diameter": 0.06, "linear_density": 2.0}
+    if name == "composite":
+        source = published_piece_sources()["rubber-tether-used"]
+        made = line_from_composite(source, compose(source, CompositeRule()), **stated)
+    else:
+        made = line_from_assembly(deployed_line(ASSEMBLIES / f"{name}.toml"), **stated)
+    export_line(made, "moordyn", tmp_path / "deck.dat")
+    strains = np.linspace(0.1, 0.98, 14) * made.strain[-1]
+    table = moordyn_table((tmp_path / "deck_table.txt").read_text())
+    tension = at_rest(tmp_path, strains)
+    np.testing.assert_allclose(tension, np.interp(strains, *table), rtol=1e-6)
+    # what 30 rows miss of the curve stands in the header
+    missed = np.abs(tension - np.interp(strains, made.strain, made.tension)).max()
+    told = re.search(r"greatest error ([\d.e+-]+) N", (tmp_path / "deck.dat").read_text())
+    assert missed <= float(told[1]) * (1 + 1e-3)
