@@ -70,7 +70,7 @@ def _wires_csv(found: PredictedArmour) -> str:
 
 def _layers_csv(found: PredictedArmour) -> str:
     header = [
-        "layer", "fill_factor [1]", "wire_gap [m]",
+        "layer", "fill_factor [1]", "wire_gap [m]", "thinning_loss [1]",
         *(f"{name} [{unit}]" for name, unit in _OF_LAYER.items()),
     ]  # fmt: skip
     return csv_text(
@@ -80,6 +80,7 @@ def _layers_csv(found: PredictedArmour) -> str:
                 name,
                 float(found.fill[place]),
                 float(found.gap[place]),
+                float(found.thinning_loss[place]),
                 *(float(getattr(found.together, one)[place, 0]) for one in _OF_LAYER),
             ]
             for place, name in enumerate(found.layer_names)
@@ -107,7 +108,8 @@ def _show(found: PredictedArmour, outcome: Outcome, system: UnitSystem) -> None:
     outcome.show(table)
     table = table_of(
         "layer", f"tension [{force}]", "torque [N m]", f"pressure [{stress}]",
-        f"von Mises [{stress}]", "filled [%]", "gap [mm]", title="Layers, theory conjugate",
+        f"von Mises [{stress}]", "filled [%]", "gap [mm]", "thinning [%]",
+        title="Layers, theory conjugate",
     )  # fmt: skip
     for place, name in enumerate(found.layer_names):
         together = found.together
@@ -119,6 +121,7 @@ def _show(found: PredictedArmour, outcome: Outcome, system: UnitSystem) -> None:
             short(per_pascal * float(together.wire_stress[place, 0])),
             short(100 * float(found.fill[place]), 4),
             short(1e3 * float(found.gap[place]), 4),
+            short(100 * float(found.thinning_loss[place]), 2),
         )
     outcome.show(table)
     held, free = found.axial_stiffness
@@ -163,6 +166,7 @@ def document(found: PredictedArmour) -> dict[str, Any]:
                 "name": name,
                 "fill_factor": plain(found.fill[place]),
                 "wire_gap": plain(found.gap[place]),
+                "thinning_loss": plain(found.thinning_loss[place]),
                 **{one: plain(getattr(found.together, one)[place, 0]) for one in _OF_LAYER},
                 "holds": list(found.use[place].statement),
             }

@@ -14,7 +14,13 @@ from reduction.predict.armourdesign import (
     ArmourResponse,
     ArmourTheory,
 )
-from reduction.predict.armourerror import AnglesOfUse, TheoryErrors, angles_of_use, theory_errors
+from reduction.predict.armourerror import (
+    AnglesOfUse,
+    TheoryErrors,
+    angles_of_use,
+    theory_errors,
+    thinning_loss,
+)
 from reduction.predict.armourlayers import (
     ArmourLayers,
     LayersResponse,
@@ -37,7 +43,8 @@ class PredictedArmour:
 
     ``responses`` are of one wire of each layer by theory, shape (n_layers, 1); ``use`` is
     of each layer, at the ``tolerance`` [1]; ``axial_stiffness`` is of the cable held from
-    turning, and free to [N].
+    turning, and free to [N]; ``thinning_loss`` is the share of its strain that a wire of each
+    layer loses as it thins, which no theory has in it [1].
     """
 
     layer_names: tuple[str, ...]
@@ -52,6 +59,7 @@ class PredictedArmour:
     strength: CableStrength | None
     fill: Floats
     gap: Floats
+    thinning_loss: Floats
     notes: tuple[str, ...]
 
 
@@ -116,6 +124,7 @@ def predict_armour_case(
         strength=cable_strength(layers) if known.all() else None,
         fill=fill_factor(design),
         gap=wire_gap(design),
+        thinning_loss=thinning_loss(design),
         notes=tuple(notes),
     )
 

@@ -70,6 +70,7 @@ def layers_table(found: PredictedArmour, units: UnitSystem) -> Table:
                 words(is_yielding if np.isfinite(limit) else ""),
                 number(float(found.fill[place]), _PERCENT),
                 number(float(found.gap[place]), small, digits=3),
+                number(float(found.thinning_loss[place]), _PERCENT, digits=2),
             ]
         )
     return make_table(
@@ -79,10 +80,12 @@ def layers_table(found: PredictedArmour, units: UnitSystem) -> Table:
             stress.label("pressure of the layer"), stress.label("pressure with all outside"),
             stress.label("von Mises stress"), stress.label("yield stress"), "yields",
             "circumference filled [%]", small.label("room between wires"),
+            "lost by thinning [%]",
         ),
         rows, synthetic=False, is_compact=True,
         remarks=["Torque: above zero of right-handed wires. The cable is held from turning; its"
-                 " core is rigid; friction between layers is left out."],
+                 " core is rigid; friction between layers is left out. Lost by thinning: by which"
+                 " strain and tension are too high, since a wire that thins sinks to the core."],
     )  # fmt: skip
 
 

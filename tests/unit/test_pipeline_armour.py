@@ -67,6 +67,12 @@ def test_the_inner_core_bears_both_layers(predict):
     )
 
 
+def test_a_wire_that_thins_sinks_to_the_core_and_is_strained_less(predict):
+    """It comes closer to the axis by nu R2 of its strain, which shortens the helix."""
+    shorter = 0.3 * WIRE / HELIX * np.sin(ANGLE) ** 2
+    np.testing.assert_allclose(predict().thinning_loss, shorter / (1 + shorter))
+
+
 def test_the_circumference_is_filled_as_on_the_unrolled_cylinder(predict):
     found = predict()
     np.testing.assert_allclose(found.fill, COUNT * WIRE / (np.pi * HELIX * np.cos(ANGLE)))
