@@ -11,8 +11,6 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
@@ -21,7 +19,7 @@ from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError
 from reduction.outcomes.product import OneWay, RatioOfMeans, reason_codes
 
-__all__ = ["one_way", "one_way_of_values", "ratio_of_means"]
+__all__ = ["one_way", "ratio_of_means"]
 
 
 def ratio_of_means(
@@ -204,41 +202,4 @@ def one_way(
         welch_p_value=np.asarray(stats.f.sf(welch, k - 1, welch_within), dtype=np.float64),
         significance=significance,
         reason=reason_codes(within.shape, [(~(pooled > 0), 4)]),
-    )
-
-
-def one_way_of_values(values: Sequence[ArrayLike], *, significance: float = 0.05) -> OneWay:
-    """One-way F of groups of which every value is known.
-
-    Parameters
-    ----------
-    values : sequence of array_like
-        One series a group, in one unit. [N, 1]
-    significance : float
-        For the critical value. [1]
-
-    Returns
-    -------
-    analysis : OneWay
-        Without axes.
-
-    Raises
-    ------
-    DataError
-        If there are fewer than two groups, or one is empty or not finite.
-
-    Examples
-    --------
-    >>> analysis = one_way_of_values([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
-    >>> print(analysis.f_statistic.round(2), analysis.p_value.round(4))
-    13.5 0.0213
-    """
-    groups = [as_finite("values", group).ravel() for group in values]
-    if any(group.size == 0 for group in groups):
-        raise DataError("a group has no value", needed="one value or more in each group")
-    return one_way(
-        [group.mean() for group in groups],
-        [group.std(ddof=1) if group.size > 1 else np.nan for group in groups],
-        [group.size for group in groups],
-        significance=significance,
     )

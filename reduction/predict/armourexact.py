@@ -50,7 +50,7 @@ from reduction.predict.armourdesign import ArmourDesign, ArmourResponse, Deforme
 from reduction.predict.cord import cord_stretch_ratio
 from reduction.record import Floats
 
-__all__ = ["predict_conjugate", "predict_exact", "wire_energy"]
+__all__ = ["predict_conjugate", "predict_exact"]
 
 
 def _deform(wire: Wire, strain: Floats, *, torsion_per_rest_length: bool) -> Deformed:
@@ -152,47 +152,3 @@ def predict_conjugate(design: ArmourDesign, strain: Floats) -> ArmourResponse:
     eccentric = rest_curvature * wire.bending_stiffness * is_as.curvature_change
     axial_force = wire.axial_stiffness * is_as.wire_strain - eccentric
     return respond(wire, "conjugate", strain, is_as, axial_force)
-
-
-def wire_energy(design: ArmourDesign, response: ArmourResponse) -> Floats:
-    r"""Energy of one wire for a rest length of cable, from its strains.
-
-    .. math:: (EA\zeta^2 + EI\Delta\kappa'^2 + GJ\Delta\tau^2) / (2\cos\alpha)
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-    response : ArmourResponse
-        Of this design.
-
-    Returns
-    -------
-    wire_energy : ndarray, shape (..., n_strain)
-        Per length of cable at rest. [J m-1]
-
-    Raises
-    ------
-    SettingsError
-        By the design.
-
-    Notes
-    -----
-    Its derivative by the strain is the tension of ``conjugate``; that of ``exact`` differs from
-    its own as the module's text says.  Moments after [1]_, eq. (4).
-
-    Examples
-    --------
-    >>> design = ArmourDesign(np.radians(45.0), 2.5e-3, 25e-3, 210e9)
-    >>> wire = predict_conjugate(design, np.array([0.999e-3, 1e-3, 1.001e-3]))
-    >>> energy = wire_energy(design, wire)
-    >>> bool(abs((energy[2] - energy[0]) / 2e-6 / wire.tension[1] - 1) < 1e-6)
-    True
-    """
-    wire = Wire.of(design)
-    twice = (
-        wire.axial_stiffness * response.wire_strain**2
-        + wire.bending_stiffness * response.curvature_change**2
-        + wire.torsion_stiffness * response.torsion_change**2
-    )
-    return np.asarray(twice / (2 * wire.cosine))

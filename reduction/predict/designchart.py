@@ -1,4 +1,4 @@
-r"""Charts to choose a wrap angle by: cord strain over hose strain, and stretch over angle.
+r"""Chart to choose a wrap angle by: cord strain over hose strain.
 
 References
 ----------
@@ -19,14 +19,12 @@ from reduction.errors import DataError
 from reduction.predict.cord import (
     NEUTRAL_ANGLE,
     cord_stretch_ratio,
-    hose_stretch_ratio,
     pick_up_stretch_ratio,
     slackest_stretch_ratio,
 )
-from reduction.predict.cordrates import stretch_ratio_per_angle, stretch_ratio_per_cord_stretch
 from reduction.record import Floats, freeze_arrays
 
-__all__ = ["CordStrainChart", "WorkingStrainChart", "cord_strain_chart", "working_strain_chart"]
+__all__ = ["CordStrainChart", "cord_strain_chart"]
 
 
 @dataclass(frozen=True)
@@ -58,41 +56,6 @@ class CordStrainChart:
     slackest_cord_strain: Floats
     pick_up_strain: Floats
     neutral_angle: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
-
-@dataclass(frozen=True)
-class WorkingStrainChart:
-    """Hose strain at the working load over wrap angle, with the band of the cord strain.
-
-    Arrays have the shape (n_angles,); hose strains are of the whole relaxed length.
-
-    Parameters
-    ----------
-    wrap_angle : ndarray
-        At rest, from the axis. [rad]
-    strain : ndarray
-        Of the hose where the cords have their strain at the working load. [1]
-    low, high : ndarray
-        The same with cord strains at the ends of their band. [1]
-    pick_up_strain : ndarray
-        Of the hose where the cords pick up: none is to work below it. [1]
-    strain_per_angle : ndarray
-        Slope at held cord strain. [rad-1]
-    strain_per_cord_strain : ndarray
-        Slope at held angle. [1]
-    """
-
-    wrap_angle: Floats
-    strain: Floats
-    low: Floats
-    high: Floats
-    pick_up_strain: Floats
-    strain_per_angle: Floats
-    strain_per_cord_strain: Floats
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -151,77 +114,6 @@ def cord_strain_chart(
         slackest_cord_strain=cord_stretch_ratio(slackest, angle) - 1,
         pick_up_strain=free * (pick_up_stretch_ratio(angle) - 1),
         neutral_angle=NEUTRAL_ANGLE,
-    )
-
-
-def working_strain_chart(
-    wrap_angle: ArrayLike,
-    cord_strain: float,
-    *,
-    half_width: float = 0.0,
-    dead_length_share: float = 0.0,
-) -> WorkingStrainChart:
-    """Hose strain at the working load over wrap angle, with its band.
-
-    Parameters
-    ----------
-    wrap_angle : array_like, shape (n_angles,)
-        At rest, from the hose axis. [rad]
-    cord_strain : float
-        Of the cords at the working load. [1]
-    half_width : float
-        By which the cord strain may be lower or higher. [1]
-    dead_length_share : float
-        Part of the relaxed length that does not stretch. [1]
-
-    Returns
-    -------
-    chart : WorkingStrainChart
-        Strain, its band (not linearised) and its slopes.
-
-    Raises
-    ------
-    SettingsError
-        If an angle is not between 0 and 90 deg.
-    DataError
-        If a cord strain of the band is below zero, an input is no series, or the share is none.
-
-    Notes
-    -----
-    Eq. 8 of [1]_ (module), solved for the hose.  In points of stretch the band widens little
-    with the angle, so an uncertain cord matters most in a hose that is to stretch little; the
-    slope over the angle grows.
-
-    Examples
-    --------
-    A nylon cord with 9.5 +- 2 % at its working load.
-
-    >>> chart = working_strain_chart(np.radians([46.9, 64.0, 68.0]), 0.095, half_width=0.02)
-    >>> for row in (chart.low, chart.strain, chart.high):
-    ...     print((100 * row).round(1))
-    [ 25. 97. 137.9]
-    [ 30. 104.6 146.1]
-    [ 34.7 111.8 153.9]
-    """
-    angle, free = _series("wrap_angle", wrap_angle), _free(dead_length_share)
-    if not (half_width >= 0 and cord_strain - half_width >= 0):
-        raise DataError(
-            "the band of the cord strain goes below zero",
-            found=f"{cord_strain:g} +- {half_width:g}",
-            needed="a cord that bears load",
-        )
-    low, middle, high = (
-        free * (hose_stretch_ratio(1 + one, angle) - 1)
-        for one in (cord_strain - half_width, cord_strain, cord_strain + half_width)
-    )
-    return WorkingStrainChart(
-        wrap_angle=np.array(angle),
-        strain=middle,
-        low=low,
-        high=high,
-        pick_up_strain=free * (pick_up_stretch_ratio(angle) - 1),
-        strain_per_angle=free * stretch_ratio_per_angle(1 + cord_strain, angle),
-        strain_per_cord_strain=free * stretch_ratio_per_cord_stretch(1 + cord_strain, angle),
     )
 
 

@@ -121,8 +121,8 @@ def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> HoseSensitivity:
     -----
     Eq. 8, 24 and 26 of [1]_ (module) differentiated.  A row ``layer_diameter`` moves both
     layers by the same length.  Every row holds the others: a layer diameter that comes out
-    large *with its ribbon as cut* moves the wrap angle too
-    (`reduction.predict.fabric.angle_per_relative_width`).
+    large *with its ribbon as cut* moves the wrap angle too, by the cotangent of the angle times
+    the relative error (eq. 10).
 
     At pick-up the derivatives jump: a cord strain of exactly zero counts as slack, also of a
     hose below 54.7356 degrees at rest.  There the cords pick up at rest at any angle, and the

@@ -130,8 +130,8 @@ def propagate_hose(
     First order, [1]_ (module) 5.1.2, with the derivatives of
     `reduction.predict.sensitivity.hose_sensitivity`; the sources are taken as independent.
     They are not where one cause moves two of them: a layer that comes out large with its ribbon
-    as cut is steeper as well (`reduction.predict.fabric.angle_per_relative_width`), and every
-    diameter follows that of the mandrel.  ``layer_diameter`` stands for both layers together.
+    as cut is steeper as well (by the cotangent of the angle times the relative error: eq. 10), and
+    every diameter follows that of the mandrel.  ``layer_diameter`` stands for both layers together.
 
     Linear propagation fails at the kinks of the curve.  Within a standard uncertainty of the
     strain at pick-up the cords of some hoses are slack and of others not: below pick-up the

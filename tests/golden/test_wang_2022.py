@@ -12,11 +12,11 @@ they are not reproducible, and no test asks for them.
 
 import numpy as np
 import pytest
+from wire_energy import wire_energy
 
 from reduction.predict.armour import predict_armour
 from reduction.predict.armourdesign import ArmourDesign
 from reduction.predict.armourerror import theory_errors
-from reduction.predict.armourexact import wire_energy
 from reduction.predict.armouryield import layer_strength
 
 ELASTIC_MODULUS, POISSON_RATIO = 210_000e6, 0.3  # Table 1

@@ -13,9 +13,10 @@ import pytest
 
 from reduction.predict.cord import hose_stretch_ratio, wrap_angle_for
 from reduction.predict.cordcurve import CordCurve
-from reduction.predict.designchart import cord_strain_chart, working_strain_chart
+from reduction.predict.cordrates import stretch_ratio_per_angle
+from reduction.predict.designchart import cord_strain_chart
 from reduction.predict.events import find_events
-from reduction.predict.fabric import angle_per_relative_width, number_of_cords, ribbon_width
+from reduction.predict.fabric import number_of_cords, ribbon_width
 from reduction.predict.helicallayers import greatest_layer_angle, layer_range, least_layer_angle
 from reduction.predict.hosedesign import design_angle
 from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
@@ -66,8 +67,7 @@ def test_a_degree_of_wrap_angle_is_eight_to_twelve_points_of_stretch(hose, cord_
         stretch_by_bisection(degrees + 0.1, cord_strain)
         - stretch_by_bisection(degrees - 0.1, cord_strain)
     )
-    chart = working_strain_chart([np.radians(degrees)], cord_strain)
-    found = 100 * np.radians(chart.strain_per_angle[0])
+    found = 100 * np.radians(stretch_ratio_per_angle(1 + cord_strain, np.radians(degrees)))
     assert found == pytest.approx(by_hand, abs=0.001)
     assert found == pytest.approx(points, abs=0.005)
 
@@ -99,8 +99,8 @@ def test_no_one_cause_moves_both_hoses_to_what_was_reported():
     # by the angle alone: 3.5 and 1.4 degrees less than specified
     built = np.degrees(wrap_angle_for(1 + STRETCH, 1 + WORKING))
     assert DEGREES - built == pytest.approx([3.5, 1.4], abs=HALF_OF_A_TENTH)
-    # by a ribbon on a smaller diameter than it was cut for: to first order
-    shrunk = np.radians(DEGREES - built) / angle_per_relative_width(np.radians(DEGREES))
+    # by a ribbon on a smaller diameter than it was cut for, w = pi d cos a: to first order
+    shrunk = np.radians(DEGREES - built) * np.tan(np.radians(DEGREES))
     assert 100 * shrunk == pytest.approx([12.4, 5.9], abs=HALF_OF_A_TENTH)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError
-from reduction.outcomes.compare import one_way, one_way_of_values, ratio_of_means
+from reduction.outcomes.compare import one_way, ratio_of_means
 
 
 def ratio(mean=50.0, deviation=2.0, n=5, reference=(100.0, 4.0, 10), **options):
@@ -86,8 +86,3 @@ def test_one_group_is_refused():
 def test_a_deviation_that_is_missing_is_refused():
     with pytest.raises(DataError, match="a group of several values has no deviation; needed"):
         one_way([1.0, 2.0], [1.0, np.nan], [3, 3])
-
-
-def test_an_empty_group_is_refused():
-    with pytest.raises(DataError, match="a group has no value; needed one value or more"):
-        one_way_of_values([[1.0, 2.0], []])

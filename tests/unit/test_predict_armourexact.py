@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.predict.armourdesign import ArmourDesign
-from reduction.predict.armourexact import predict_conjugate, predict_exact, wire_energy
+from reduction.predict.armourexact import predict_conjugate, predict_exact
 
 STRAIN = np.array([-0.3, 1e-9, 1e-3, 0.5])
 DESIGN = ArmourDesign(np.radians([[20.0], [50.0], [80.0]]), 1.0, np.array([9.0, 19.0]), 1 / np.pi)
@@ -62,9 +62,3 @@ def test_conjugate_axial_force_has_the_eccentricity_of_a_curved_bar():
     wire = predict_conjugate(DESIGN, STRAIN)
     rest = np.sin(ANGLE) ** 2 / RADIUS
     assert wire.axial_force == pytest.approx(wire.wire_strain - rest * wire.bending_moment)
-
-
-def test_energy_is_that_of_stretch_bending_and_torsion():
-    wire = predict_conjugate(DESIGN, STRAIN)
-    twice = wire.wire_strain**2 + wire.curvature_change**2 / 4 + wire.torsion_change**2 / 5.2
-    assert wire_energy(DESIGN, wire) == pytest.approx(twice / (2 * np.cos(ANGLE)))

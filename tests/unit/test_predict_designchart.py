@@ -5,7 +5,7 @@ import pytest
 
 from reduction.errors import DataError
 from reduction.predict.cord import NEUTRAL_ANGLE
-from reduction.predict.designchart import cord_strain_chart, working_strain_chart
+from reduction.predict.designchart import cord_strain_chart
 
 ANGLE = np.radians([40.0, 54.0, 60.0, 64.0, 68.0, 72.0])
 
@@ -29,36 +29,12 @@ def test_no_cord_is_slack_at_or_below_the_neutral_angle():
     assert np.all((chart.slackest_cord_strain < -1e-12) == (angle > chart.neutral_angle))
 
 
-def test_the_band_is_that_of_the_cord_and_its_middle_the_prediction():
-    chart = working_strain_chart(ANGLE, 0.095, half_width=0.02, dead_length_share=0.1)
-    for strain, cord_strain in ((chart.low, 0.075), (chart.strain, 0.095), (chart.high, 0.115)):
-        found = np.diag(cord_strain_chart(ANGLE, strain, dead_length_share=0.1).cord_strain)
-        assert found == pytest.approx(cord_strain, abs=1e-13)
-    assert np.all(chart.low > chart.pick_up_strain)
-
-
-def test_the_slopes_are_those_of_the_chart():
-    step = 1e-6
-    chart = working_strain_chart(ANGLE, 0.095, half_width=step, dead_length_share=0.1)
-    assert (chart.high - chart.low) / (2 * step) == pytest.approx(
-        chart.strain_per_cord_strain, rel=1e-6
-    )
-    high, low = (
-        working_strain_chart(ANGLE + turn, 0.095, dead_length_share=0.1) for turn in (step, -step)
-    )
-    assert (high.strain - low.strain) / (2 * step) == pytest.approx(
-        chart.strain_per_angle, rel=1e-6
-    )
-
-
 @pytest.mark.parametrize(
     ("call", "message"),
     [
         (lambda: cord_strain_chart(1.0, [0.1]), "wrap_angle is not a series; found shape ()"),
         (lambda: cord_strain_chart([1.0], [[0.1]]), "strain is not a series"),
         (lambda: cord_strain_chart([1.0], [0.1], dead_length_share=1.0), "dead_length_share is no share; found 1"),
-        (lambda: working_strain_chart([1.0], 0.01, half_width=0.02), r"the band of the cord strain goes below zero; found 0.01 \+- 0.02"),
-        (lambda: working_strain_chart([1.0], 0.01, half_width=np.nan), "goes below zero"),
     ],
 )  # fmt: skip
 def test_what_is_no_chart_is_refused(call, message):
