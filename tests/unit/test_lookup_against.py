@@ -45,6 +45,7 @@ def pair(lines, kind, years, quantity):
         (f"polyester-{PLAIT}", 4, 8.252 / 6.317),
         (f"polyester-{BRAID}", 4, 11.55 / 9.457),
         (f"polyester-{BRAID}", 5, 10.317 / 9.457),
+        (f"nylon-{PLAIT}", 5, 3.668 / 3.088),
     ],
 )
 def test_ratios_of_old_to_new_are_those_of_the_tables(lines, kind, years, ratio):
@@ -54,7 +55,7 @@ def test_ratios_of_old_to_new_are_those_of_the_tables(lines, kind, years, ratio)
     assert found.is_inside
 
 
-def test_the_sentences_on_exposed_polyester_come_back(lines):
+def test_the_sentences_on_exposed_lines_come_back(lines):
     # sec. 4.4.1: 30 % in four years; braid 17 %, of four lines of four years and two of five
     plait = pair(lines, f"polyester-{PLAIT}", 4, "apparent_spring_constant")
     assert round(100 * float(plait.ratio) - 100, -1) == 30
@@ -63,6 +64,10 @@ def test_the_sentences_on_exposed_polyester_come_back(lines):
     )
     pooled = (4 * four.ratio + 2 * five.ratio) / 6
     assert 100 * pooled - 100 == pytest.approx(17, abs=1)
+    # sec. 3.3: plaited nylon 18 %
+    nylon = pair(lines, f"nylon-{PLAIT}", 5, "apparent_spring_constant")
+    assert 100 * nylon.ratio - 100 == pytest.approx(18, abs=1)
+    assert not nylon.is_different
 
 
 def test_nylon_braid_of_five_years_is_lost_and_says_so(lines):
