@@ -23,7 +23,7 @@ from reduction.reproduce.cg_lines import (
 )  # fmt: skip
 from reduction.reproduce.cg_surfaces import change_of_mean
 from reduction.reproduce.item import Item, agree, beside, judge, not_testable
-from reduction.reproduce.wording import judge_round
+from reduction.reproduce.wording import judge_round, judge_word
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.terms import model_matrix, quadratic_exponents
 
@@ -115,9 +115,9 @@ def _mean_ratio(pages: Pages, over: str, under: str) -> float:
 
 
 def _stiffer(cell: Cell, pages: Pages) -> Item:
-    if cell.printed == "twice":
+    if cell.row.startswith("polyester over nylon"):
         ratio = _mean_ratio(pages, POLYESTER_PLAITED, NYLON_PLAITED)
-        return agree(cell, round(ratio) == 2, f"B1 of Table 3: {ratio:.2f}")
+        return judge_word(cell, ratio, "B1 of Table 3")
     ratios = [
         _mean_ratio(pages, POLYESTER_BRAID, POLYESTER_PLAITED),
         _mean_ratio(pages, NYLON_BRAID, NYLON_PLAITED),

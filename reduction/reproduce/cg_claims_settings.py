@@ -8,6 +8,7 @@ from reduction.published.cell import Cell
 from reduction.reproduce.cg_cells import Check, Pages, always, number
 from reduction.reproduce.cg_lines import K_AP, NYLON_BRAIDS, PLAITED, SCREEN, levels_of
 from reduction.reproduce.item import Item, agree, judge, not_testable
+from reduction.reproduce.wording import judge_word
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import box_behnken, plackett_burman
 
@@ -21,10 +22,7 @@ PRINTED_IN = {"sec 4.3": "sec 4.4.2", "sec 4.4.2": "sec 4.3", "sec 6.3.1": "App 
 
 def _design(cell: Cell, pages: Pages) -> Item:
     if cell.row == "screening":
-        runs = plackett_burman(5).n_runs
-        return agree(
-            cell, runs == 12 and cell.printed == "twelve", "Plackett-Burman of five factors"
-        )
+        return judge_word(cell, plackett_burman(5).n_runs, "Plackett-Burman of five factors")
     full = cell.column == "runs of a full factorial"
     design = box_behnken(3)
     return judge(
@@ -32,24 +30,24 @@ def _design(cell: Cell, pages: Pages) -> Item:
     )
 
 
-def _two_samples(cell: Cell, pages: Pages) -> Item:
+def _exposed_samples(cell: Cell, pages: Pages) -> Item:
     counts = {
         pages.printed("4", f"{PLAITED} | 1/2 in | {years}", f"{K_AP} number of lines")
         for years in ("4 years", "5 years")
     }
-    return agree(cell, counts == {2.0}, "Table 4")
+    return judge_word(cell, max(counts), "greater count of Table 4")
 
 
 def _samples(cell: Cell, pages: Pages) -> Item:
-    if cell.printed == "two samples each":
-        return _two_samples(cell, pages)
+    if cell.table == "sec 4.4.1":
+        return _exposed_samples(cell, pages)
     if cell.table == "sec A-2.1":
         within = pages.value(
             "A-3", f"{PLAITED} | 13/16 in | wet, before against after cycling",
             "degrees of freedom within",
         )  # fmt: skip
-        return agree(
-            cell, within + 2 - 6 == 9, "degrees of freedom of Table A-3, six after cycling"
+        return judge_word(
+            cell, within + 2 - 6, "degrees of freedom of Table A-3, six after cycling"
         )
     if cell.table == "sec 6.2.2":
         return not_testable(cell, "measured")
@@ -58,7 +56,7 @@ def _samples(cell: Cell, pages: Pages) -> Item:
         if key[0] in ("4", "5", "12", "13") and key[1].endswith("new")
         and key[2].endswith("number of lines")
     ]  # fmt: skip
-    return agree(cell, set(counts) == {4.0}, "Tables 4, 5, 12 and 13 count three or four")
+    return judge_word(cell, min(counts), "least count of Tables 4, 5, 12 and 13: three or four")
 
 
 def _levels(cell: Cell, pages: Pages) -> Item:
@@ -79,8 +77,7 @@ def _period(cell: Cell, pages: Pages) -> Item:
     """The reciprocal of the other end of the frequencies, in words."""
     other = "high" if cell.column.endswith("low") else "low"
     period = 1 / pages.printed("A-1", SCREEN, f"frequency {other}")
-    said = {"one": 1.0, "five": 5.0}.get(cell.printed)
-    return agree(cell, said is not None and abs(period - said) < 1e-9, f"{period:g} s, Table A-1")
+    return judge_word(cell, period, "reciprocal of a frequency of Table A-1")
 
 
 def _confidence(cell: Cell, pages: Pages) -> Item:

@@ -14,6 +14,7 @@ from reduction.published.cell import Cell
 from reduction.reproduce.cg_cells import POLYNOMIAL_SCALES, Pages, number
 from reduction.reproduce.cg_lines import CENTRE_LINES, levels_of
 from reduction.reproduce.item import Item, agree, beside, judge, not_testable
+from reduction.reproduce.wording import judge_as
 
 __all__ = ["item_of_static"]
 
@@ -98,10 +99,10 @@ def _head(cell: Cell, pages: Pages, term: str) -> Item:
     row, tension = "nylon | double braid | 1/2 in | new", 1344.0
     if term == "power of ten":
         ratio = pages.slope("8", row, tension) / (pages.polynomial("7", row, tension) / 1e4)
-        power = round(np.log10(ratio))
-        if cell.table == "7":
-            return agree(cell, power == 4, "K_0 of Table 8 over the polynomial is 10^4")
-        return judge(cell, float(power), "K_0 of Table 8 over the polynomial, as a power of ten")
+        base, _, exponent = cell.printed.partition("^")
+        how = "K_0 of Table 8 over the polynomial, as a power of ten"
+        text = exponent.strip("{}") if base == "10" else ""
+        return judge_as(cell, text, round(np.log10(ratio)), how)
     expected = "ABCD".index(term[-1])
     if cell.printed == "T_m":
         return agree(cell, expected == 1, "Table 7 meets the slopes of Table 8")

@@ -1,11 +1,18 @@
-"""Printed numbers whose words say how near they are meant to be: about, below, over."""
+"""Printed numbers in words, or whose words say how near they are meant: about, below, over."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 from reduction.published.cell import Cell, number_of, printed_step
 from reduction.reproduce.item import Item, judge
 
-__all__ = ["judge_limit", "judge_round", "last_counted_place"]
+__all__ = ["judge_as", "judge_limit", "judge_round", "judge_word", "last_counted_place"]
+
+_WORDS = {
+    "one": 1.0, "one-and-a-half": 1.5, "two": 2.0, "twice": 2.0, "three": 3.0, "four": 4.0,
+    "five": 5.0, "six": 6.0, "nine": 9.0, "twelve": 12.0,
+}  # fmt: skip
 
 
 def last_counted_place(text: str) -> float:
@@ -79,3 +86,55 @@ def judge_limit(cell: Cell, recomputed: float, how: str, *, is_upper: bool) -> I
         side = "below" if is_upper else "above"
         return Item(cell, recomputed, "reproduced", f"{how}; {side} the limit")
     return judge(cell, recomputed, how)
+
+
+def judge_as(
+    cell: Cell, text: str, recomputed: float, how: str, *, tolerance: float | None = None
+) -> Item:
+    """Hold another writing of a printed number against what it ought to be.
+
+    Parameters
+    ----------
+    cell : Cell
+        As printed.
+    text : str
+        Its number in digits.
+    recomputed : float
+        What it ought to be.
+    how : str
+        From what it was computed.
+    tolerance : float, optional
+        As of `judge`.
+
+    Returns
+    -------
+    item : Item
+        By `judge`; of the cell as printed.
+    """
+    item = judge(replace(cell, printed=text), recomputed, how, tolerance=tolerance)
+    return replace(item, cell=cell)
+
+
+def judge_word(cell: Cell, recomputed: float, how: str, *, step: float = 1.0) -> Item:
+    """Hold a number in words against what it ought to be.
+
+    Parameters
+    ----------
+    cell : Cell
+        Printed as ``twice``, ``two samples each``.
+    recomputed : float
+        What it ought to be.
+    how : str
+        From what it was computed.
+    step : float
+        In which it is said: 0.5 for ``one-and-a-half``.
+
+    Returns
+    -------
+    item : Item
+        By `judge`, within half a step; words that are no number are never reproduced.
+    """
+    said = next((_WORDS[word] for word in cell.printed.lower().split() if word in _WORDS), None)
+    if said is None:
+        return judge(cell, recomputed, how)
+    return judge_as(cell, f"{said:g}", recomputed, how, tolerance=0.5 * step)

@@ -145,6 +145,27 @@ def test_a_wrong_digit_of_a_reproduced_number_is_noticed():
     ]  # fmt: skip
 
 
+NEXT_WORD = {
+    "one": "two", "one-and-a-half": "twice", "two": "three", "twice": "three", "three": "four",
+    "five": "six", "nine": "twelve", "twelve": "nine",
+}  # fmt: skip
+
+
+def test_a_wrong_number_in_words_is_noticed():
+    pages = Pages(CELLS)
+    changed = []
+    for item in ITEMS:
+        words = [NEXT_WORD.get(word, word) for word in item.cell.printed.split()]
+        if item.verdict != "reproduced" or " ".join(words) == item.cell.printed:
+            continue
+        wrong = replace(item.cell, printed=" ".join(words))
+        assert item_of(wrong, pages).verdict == "unexplained", item.cell.key
+        changed.append(item.cell.printed)
+    assert sorted(changed) == [
+        "five", "nine", "one", "one-and-a-half", "twelve", "twice", "twice", "two samples each",
+    ]  # fmt: skip
+
+
 def test_one_wrong_digit_is_unexplained_in_the_whole():
     row, column = "polyester | 8-strand plaited | 1/2 in | new", "apparent_spring_constant B1"
     cells = [

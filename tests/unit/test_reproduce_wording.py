@@ -1,9 +1,15 @@
-"""About, below and over: how near a round number or a limit is meant to be."""
+"""About, below, over and in words: how near a number is meant to be, and which it is."""
 
 import pytest
 
 from reduction.published.cell import Cell
-from reduction.reproduce.wording import judge_limit, judge_round, last_counted_place
+from reduction.reproduce.wording import (
+    judge_as,
+    judge_limit,
+    judge_round,
+    judge_word,
+    last_counted_place,
+)
 
 
 def cell(printed, **known):
@@ -51,3 +57,28 @@ def test_a_limit_that_is_known_to_be_wrong_is_an_erratum():
 
 def test_a_text_without_a_number_is_no_limit():
     assert judge_limit(cell("near zero"), 52.0, "x", is_upper=True).verdict == "unexplained"
+
+
+@pytest.mark.parametrize(
+    ("words", "value", "step", "verdict"),
+    [
+        ("twice", 2.05, 1.0, "reproduced"),
+        ("twice", 2.51, 1.0, "unexplained"),
+        ("two samples each", 2.0, 1.0, "reproduced"),
+        ("Three minutes", 3.0, 1.0, "reproduced"),
+        ("one-and-a-half", 1.67, 0.5, "reproduced"),
+        ("one-and-a-half", 1.76, 0.5, "unexplained"),
+        ("stiffer", 2.0, 1.0, "unexplained"),
+    ],
+)
+def test_a_number_in_words_is_held_in_the_steps_in_which_it_is_said(words, value, step, verdict):
+    item = judge_word(cell(words), value, "from a table", step=step)
+    assert (item.verdict, item.recomputed, item.cell.printed) == (verdict, value, words)
+
+
+def test_another_writing_of_a_number_is_judged_by_its_own_digits():
+    power = cell("10^{-4}", corrected=4.0, erratum="CG-7", confidence="certain")
+    assert judge_as(power, "-4", -4.0, "x").verdict == "reproduced"
+    assert judge_as(power, "-4", 4.0, "x").verdict == "erratum"
+    assert judge_as(power, "-4", 3.0, "x").verdict == "unexplained"
+    assert judge_as(power, "-4", 4.0, "x").cell is power
