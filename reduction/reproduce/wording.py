@@ -137,4 +137,4 @@ def judge_word(cell: Cell, recomputed: float, how: str, *, step: float = 1.0) ->
     said = next((_WORDS[word] for word in cell.printed.lower().split() if word in _WORDS), None)
     if said is None:
         return judge(cell, recomputed, how)
-    return judge_as(cell, f"{said:g}", recomputed, how, tolerance=0.5 * step)
+    return judge_as(cell, f"{said:.1f}", recomputed, how, tolerance=0.5 * step)

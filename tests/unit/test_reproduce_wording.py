@@ -68,6 +68,7 @@ def test_a_text_without_a_number_is_no_limit():
         ("Three minutes", 3.0, 1.0, "reproduced"),
         ("one-and-a-half", 1.67, 0.5, "reproduced"),
         ("one-and-a-half", 1.76, 0.5, "unexplained"),
+        ("twice", 1.67, 0.5, "unexplained"),
         ("stiffer", 2.0, 1.0, "unexplained"),
     ],
 )
