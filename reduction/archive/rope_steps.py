@@ -69,14 +69,22 @@ def _first_rise(dataset: xr.Dataset, row: int) -> FirstRise | None:
     if name not in dataset:
         return None
     tension = dataset[name].values[row, 0]
-    known = np.isfinite(tension)
+    grid = dataset["first_loading_strain_bin"].values
+    known = np.isfinite(tension) & (grid <= _first_peak(dataset, row))
     if np.count_nonzero(known) < 2:
         return None
-    grid = dataset["first_loading_strain_bin"].values
     spread = dataset[f"{name}{_U}"].values[row, 0]
     return FirstRise(
         grid[known], tension[known], np.nan_to_num(spread[known]), float(np.diff(grid).min())
     )
+
+
+def _first_peak(dataset: xr.Dataset, row: int) -> float:
+    """Greatest strain until the first cycle is over: what lies beyond is of later cycles."""
+    if "cycle_last_sample" not in dataset:
+        return float("inf")
+    last = int(dataset["cycle_last_sample"].values[0])
+    return float(np.nanmax(dataset["strain"].values[row, : last + 1]))
 
 
 def _bedding(dataset: xr.Dataset, row: int) -> BeddingCycles | None:

@@ -39,6 +39,11 @@ __all__ = ["change_in_length"]
 _NAN = float("nan")
 # strains further apart than this, over the grid's spacing, have a gap between them
 _GAP = 1.5
+_HELD = "the rise was held on its way: what it gained meanwhile is in it"
+_NO_RISE = (
+    "the first step has no curve of its first rise, which a log that begins slack gives, of "
+    "another step than bedding-in with a diameter"
+)
 _NO_ORDER = "the order of the tests is not stated"
 
 
@@ -141,9 +146,10 @@ def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
             standard_uncertainty=float(np.hypot(spread[0], spread[-1])) / gain,
             low_tension=float(tension[0]),
             high_tension=float(tension[-1]),
+            reason=_HELD if float(np.diff(strain).max()) > _GAP * first.first_rise.spacing else "",
         )
     if first.bedding is None:
-        return replace(absent, reason="the first step has no first rise")
+        return replace(absent, reason=_NO_RISE)
     return replace(
         absent,
         value=first.bedding.first_stiffness,
@@ -152,7 +158,7 @@ def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
         high_tension=first.bedding.first_peak_tension,
         reason=(
             "of the first cycle: there is no curve of the first rise, which a log that begins "
-            "slack and a diameter give"
+            "slack gives"
         ),
     )
 

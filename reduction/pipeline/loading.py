@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -10,11 +10,11 @@ import numpy as np
 from reduction.errors import DataError, FitError
 from reduction.moduli.elastomer import fit_elastomers
 from reduction.moduli.first_loading import first_loading_curves
-from reduction.moduli.product import ElastomerFit
+from reduction.moduli.product import ElastomerFit, ModulusCurves
 from reduction.moduli.stress_at import stress_at_strain
 from reduction.pipeline.locate import Located
 from reduction.product import History
-from reduction.record import Floats, Specimen, areas_of
+from reduction.record import Bools, Floats, Specimen, areas_of
 from reduction.settings import ReductionSettings
 from reduction.workers import run_blocks
 
@@ -54,6 +54,17 @@ def _is_new(history: History, index: int) -> bool:
     return not (history.earlier_tests[index] or history.earlier_cycles[index] > 0)
 
 
+def _without_modulus(curves: ModulusCurves, lacks_area: Bools) -> ModulusCurves:
+    """Leave the tension alone to specimens without an area."""
+    moduli = [item.name for item in fields(curves) if item.name.startswith("tangent_modulus")]
+    emptied = {}
+    for name in moduli:
+        values = getattr(curves, name).copy()
+        values[lacks_area] = 0 if values.dtype.kind == "i" else np.nan
+        emptied[name] = values
+    return replace(curves, **emptied)
+
+
 def parts_of_first_loading(
     located: Located,
     strain: Floats,
@@ -61,19 +72,27 @@ def parts_of_first_loading(
     specimens: tuple[Specimen, ...],
     settings: ReductionSettings,
     history: History | None,
+    *,
+    kind: str,
 ) -> dict[str, Any]:
-    """The first rise of a record that begins slack: curve; of rubber, stress and laws too."""
+    """The first rise of a record that begins slack: curve; of rubber, stress and laws too.
+
+    Without an area there is one of a bedding-in alone: its tension, and no modulus.
+    """
     begins = [force[np.isfinite(force).argmax()] for force in tension]
     if all(start > located.standstills.slack_tension for start in begins):
         return {}
     area = areas_of(specimens)
-    if np.isnan(area).any():
+    has_area = np.isfinite(area)
+    if not has_area.all() and kind != "bedding-in":
         return {}  # the slow pull of a rope or hose is `reduction.line`'s, without an area
     curves = first_loading_curves(
-        strain, tension, area=area, settings=settings.modulus, standstills=located.standstills
-    )
+        strain, tension, area=np.where(has_area, area, 1.0), settings=settings.modulus,
+        standstills=located.standstills,
+    )  # fmt: skip
     if curves is None or curves.strain_bin.size < 2:
         return {}
+    curves = _without_modulus(curves, ~has_area)
     rise = curves.branch_tension[:, 0]
     names = located.record.specimens
     parts: dict[str, Any] = {"first_loading": curves}

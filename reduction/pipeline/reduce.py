@@ -104,7 +104,9 @@ def reduce_test(
     parts = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings
     )
-    parts |= parts_of_first_loading(located, strain, tension, specimens, settings, history)
+    parts |= parts_of_first_loading(
+        located, strain, tension, specimens, settings, history, kind=description.kind
+    )
     parts |= _stress(record, tension, specimens)
     if pulls is not None and "loops" in parts:
         parts |= parts_of_line(parts["loops"], pulls, settings.cycles)
@@ -178,9 +180,7 @@ def reduce_test(
         return test
     return replace(
         test,
-        contributions=contributions_of_test(
-            test, instruments, cycles=settings.cycles, pulls=pulls
-        ),
+        contributions=contributions_of_test(test, instruments, cycles=settings.cycles, pulls=pulls),
         shared_uncertainty_of_cycles=shared_uncertainty_of_cycles(
             test, instruments, cycles=settings.cycles
         ),

@@ -133,7 +133,8 @@ def _of_specimen(
         yield of_curves(test.curves, "", index, errors, model, area, rate)
         if test.segments is not None:
             yield of_segments(test.curves, test.segments, index, errors, model, area, rate)
-    if test.first_loading is not None:
+    # without an area the curve is one of tension, of which the slope is not kept
+    if test.first_loading is not None and np.isfinite(area):
         still = np.zeros((2, 2, test.first_loading.strain_bin.size))
         yield of_curves(test.first_loading, "_first_loading", index, errors, model, area, still)
     if summary is not None and test.cycles is not None:

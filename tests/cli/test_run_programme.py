@@ -191,10 +191,19 @@ def test_every_property_of_the_rope_is_a_row_with_a_number_or_a_reason(whole):
     assert (found["synthetic"] == "yes").all()
 
 
+def chord_of_first_rise(one):
+    """Of the law that made the log: to 5 % of the strength at 0.01, then the first cycle."""
+    low, high = one["property_low_tension"], one["property_high_tension"]
+    valley, at_valley = 0.05 * made.STRENGTH, 0.01
+    assert low < valley < high
+    strain = at_valley + (high - valley) / made.bedding_stiffness(1) - at_valley * low / valley
+    return (high - low) / strain
+
+
 def test_properties_are_those_of_the_law_that_made_the_log(whole):
     (original,) = properties(whole, "original stiffness")
-    near(original, "property_stiffness", made.bedding_stiffness(1))
-    assert "of the first cycle" in original["property_remark"]
+    near(original, "property_stiffness", chord_of_first_rise(original))
+    assert "held on its way" in original["property_remark"]
     (static,), (working,) = (
         properties(whole, "static stiffness"),
         properties(whole, "working strain"),
@@ -352,19 +361,33 @@ def test_a_rope_that_was_loaded_before_has_no_original_stiffness(log, tmp_path):
     assert "P-7.creep not reduced yet" in found.loc["polymer strain", "property_remark"]
 
 
-def test_with_a_diameter_the_original_stiffness_is_the_chord_of_the_first_rise(log, tmp_path):
+def test_a_bedding_in_that_begins_above_slack_gives_the_first_cycle(log, tmp_path):
     made.write(log, tmp_path / "P-7.csv")
-    path = made.write_campaign(tmp_path, made.ONE_LOG, made.steps_of(log))
-    text = path.read_text().replace("[specimens.R-2]", 'diameter = ["20 mm"]\n[specimens.R-2]')
-    path.write_text(text)
-    result = run_campaign(
-        load_campaign(path), processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0,
-        tests=["P-7.bedding-in"],
+    begin, end = log.steps["bedding-in"]
+    result = run(
+        tmp_path, made.ONE_LOG, "[[tests.P-7.steps]]", 'name = "bedding-in"',
+        f'from = "{begin + 25:g} s"', f'to = "{end:g} s"', 'kind = "bedding-in"',
     )  # fmt: skip
-    (one,) = properties(result, "original stiffness")
-    assert pd.isna(one["property_remark"])
-    low, high = one["property_low_tension"], one["property_high_tension"]
-    valley, at_valley = 0.05 * made.STRENGTH, 0.01
-    assert low < valley < high
-    strain = at_valley + (high - valley) / made.bedding_stiffness(1) - at_valley * low / valley
-    near(one, "property_stiffness", (high - low) / strain)
+    (original,) = properties(result, "original stiffness")
+    near(original, "property_stiffness", made.bedding_stiffness(1))
+    assert "of the first cycle" in original["property_remark"]
+
+
+def test_a_step_that_failed_is_named_where_its_property_is_missing(log, tmp_path):
+    made.write(log, tmp_path / "P-7.csv")
+    head, *lines = (tmp_path / "P-7.csv").read_text().splitlines()
+    begin, end = log.steps["dynamic 1"]
+    kept = [line for line in lines if begin <= float(line.partition(",")[0]) <= end]
+    (tmp_path / "new.csv").write_text(f"{head}\nnot, a, number, at all\n")
+    (tmp_path / "later.csv").write_text("\n".join([head, *kept]) + "\n")
+    result = run(
+        tmp_path, made.single("new", "bedding-in", "order = 1"),
+        made.single("later", "cyclic", "order = 2"),
+    )  # fmt: skip
+    assert result.exit_status != 0
+    found = table(result, "change_in_length").set_index("property_name")
+    assert (
+        "new came first, and gave no product" in found.loc["original stiffness", "property_remark"]
+    )
+    assert found.loc["construction strain", "property_remark"].endswith("; new failed")
+    assert found.loc["dynamic stiffness", "property_stiffness"] > 0

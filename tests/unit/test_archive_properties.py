@@ -136,3 +136,21 @@ def test_a_first_rise_of_one_strain_is_none():
     found = step_of_archive(rise(5.0, np.nan, 9.0), "R-1").first_rise
     assert found.tension.tolist() == [5.0, 9.0]
     assert found.spacing == 0.01
+
+
+def test_the_first_rise_ends_where_the_first_cycle_turns():
+    # the peaks of later cycles go further at the same tension: they are no part of the rise
+    dims = ("specimen", "branch_name", "first_loading_strain_bin")
+    load = np.full((2, 2, 4), np.nan)
+    load[0, 0] = [10.0, 20.0, 30.0, 30.0]
+    found = step_of_archive(
+        step(
+            first_loading_strain_bin=(dims[2], [0.01, 0.02, 0.03, 0.05]),
+            branch_tension_first_loading=(dims, load),
+            branch_tension_first_loading_standard_uncertainty=(dims, 0 * load),
+            cycle_last_sample=("cycle", [2, 4]),
+            strain=(("specimen", "sample"), [[0.0, 0.032, 0.01, 0.055, 0.02], [0.0] * 5]),
+        ),
+        "R-1",
+    ).first_rise
+    assert found.tension.tolist() == [10.0, 20.0, 30.0]

@@ -129,13 +129,21 @@ def test_original_stiffness_is_the_chord_of_the_first_rise_end_to_end():
     assert (one.low_tension, one.high_tension) == (20.0, 80.0)
 
 
+def test_a_rise_that_was_held_on_its_way_says_so():
+    (one,) = named([bedding(first_rise=rise(20, np.nan, 60, 80))], "original stiffness")
+    assert one.value == pytest.approx(2000.0)
+    assert "held on its way" in one.reason
+    (whole,) = named([bedding(first_rise=rise(20, 40, 60, 80))], "original stiffness")
+    assert whole.reason == ""
+
+
 def test_original_stiffness_falls_back_to_the_first_cycle():
     (cycle,) = named([bedding()], "original stiffness")
     assert (cycle.value, cycle.standard_uncertainty) == (1000.0, 2.0)
     assert "of the first cycle" in cycle.reason
     assert (cycle.low_tension, cycle.high_tension) == (40.0, 75.0)
     (none,) = named([step("C", holds=(HOLD,))], "original stiffness")
-    assert none.reason == "the first step has no first rise"
+    assert "the first step has no curve of its first rise" in none.reason
     (empty,) = named([], "original stiffness")
     assert empty.reason == "there is no step"
 
