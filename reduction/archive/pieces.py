@@ -138,7 +138,7 @@ def source_of_tests(
     datasets : sequence of xarray.Dataset
         Archives of reduced tests.
     specimen : str
-        Its name, the same in all of them; archives without it are passed over.
+        Its name, the same in all of them; archives without it are told in a note.
     branch : {"ascending", "descending", "mean"}
         As `pieces_of_test`.
 
@@ -155,6 +155,7 @@ def source_of_tests(
         If no test gives a piece.
     """
     own = [one for one in datasets if specimen in specimens_of(one)]
+    others = sorted(_id(one) for one in datasets if specimen not in specimens_of(one))
     own.sort(key=lambda one: (_order(one), _id(one)))
     ids = [_id(one) for one in own]
     twice = next((one for one in ids if ids.count(one) > 1), None)
@@ -163,7 +164,8 @@ def source_of_tests(
     wholes = {str(one.attrs.get("test", "")) for one in own}
     one_campaign = len({str(one.attrs.get("campaign", "")) for one in own}) == 1
     pieces: list[CurvePiece] = []
-    sources, notes = [], []
+    sources = []
+    notes = [f"of other specimens: {', '.join(others)}"] if others else []
     for one in own:
         test = str(one.attrs.get("test", "")) if one_campaign else _id(one)
         whole = str(one.attrs.get("part_of", ""))

@@ -83,9 +83,18 @@ def piece_source(
     if any(one in published for one in sources):
         return _published(sources, specimen, branch)
     paths = [path for one in sources for path in _archives(one)]
+    named = {Path(one) for one in sources}
     with ExitStack() as opened:
         datasets = [opened.enter_context(open_archive(path)) for path in paths]
         name = _specimen(datasets, sources, specimen)
+        for path, one in zip(paths, datasets, strict=True):
+            # of a folder some are of other specimens; what was named was meant
+            if path in named and name not in specimens_of(one):
+                raise SettingsError(
+                    f"{path} has no specimen '{name}'",
+                    found=", ".join(specimens_of(one)) or "no archive of a test",
+                    needed="tests of one specimen",
+                )
         return source_of_tests(datasets, name, branch=branch or "mean")
 
 

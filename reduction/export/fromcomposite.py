@@ -129,6 +129,8 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
         if value is not None and not (isinstance(value, float) and math.isnan(value))
     }
     first = int(np.argmax(curve.piece >= 0))
+    n_tests = len(set(curve.piece_names))
+    tests = f"{n_tests} tests" if n_tests > 1 else "1 test"
     joins = [f"{low:.4g} to {high:.4g}" for low, high in ranges_of(curve, curve.is_join)]
     fields = {
         "diameter": source.diameter,
@@ -140,8 +142,7 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
         name=source.name,
         strain=np.array(curve.strain),
         tension=np.array(curve.tension),
-        curve=f"composite of {len(set(curve.piece_names))} tests, {_WAYS[source.branch]}; one "
-        "curve, no loop",
+        curve=f"composite of {tests}, {_WAYS[source.branch]}; one curve, no loop",
         tested=(float(curve.strain[first]), float(curve.strain[-1])),
         sources=(
             *source.sources,

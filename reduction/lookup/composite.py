@@ -300,6 +300,15 @@ def _notes(
             f"{np.sqrt(np.mean(change**2)):.4g} N rms, most by {change[worst]:+.4g} N "
             f"({share[worst]:+.1%}) at strain {strain[worst]:.4g}"
         )
+        # of all tension: near slack a share says nothing
+        off = float(np.sqrt(np.sum(change**2) / np.sum(blend.tension**2)))
+        apart = next(iter(between.values()), np.inf)
+        if off > apart:
+            notes.append(
+                f"the curve is {off:.1%} off the mean of its pieces, which differ by {apart:.1%} "
+                "where they overlap: they are no pieces of one curve, as loops of a rope and its "
+                "slow pull are none; name the kinds that are wanted"
+            )
     return tuple(notes)
 
 

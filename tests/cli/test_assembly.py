@@ -9,9 +9,11 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 DOCS = Path(__file__).parents[2] / "docs" / "assemblies"
+RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 LBF = 4.4482216152605
 SPEC = """
 [assembly]
@@ -101,6 +103,30 @@ tension = "1200 N"
            re.findall(r"(splice compliance|splice exponent) ([\d.]+)", found["sources"][0])}  # fmt: skip
     splices = 1.18212 * (1 + law["splice compliance"] * 400 ** law["splice exponent"])
     assert length == pytest.approx(2.55473 * (1 + strain) + splices, abs=2e-3)
+
+
+def test_one_tether_is_its_own_log(command, synthetic, tmp_path):
+    """Crosshead and load of the raw log of T-2, as it rises in its last eight cycles."""
+    text = f"""
+[assembly]
+n_tethers = 1
+[assembly.curve]
+source = {json.dumps(str(synthetic.processed / "T-2.nc"))}
+specimen = "used"
+branch = "ascending"
+precedence = ["cyclic"]
+"""
+    found = assembly(command, written(tmp_path, text))
+    raw = pd.read_csv(RAW / "T-2.csv", comment="#")
+    length, load = 0.3048 * raw.crosshead_ft.to_numpy(), LBF * raw.load_used_lb.to_numpy()
+    rising = np.gradient(length) > 0.02  # 1 ft/s at 10 Hz is 0.03 m a sample
+    late = np.arange(length.size) > np.flatnonzero(length > 8.0)[0] + 300
+    inner = rising & late & (length > 5.8) & (length < 7.6)
+    assert np.count_nonzero(inner) > 400
+    level = np.interp(length[inner], found["total_length"], found["tension"])
+    # cycles differ by 2 to 3 %, the first one most
+    assert np.median(load[inner] / level - 1) == pytest.approx(0, abs=0.01)
+    assert np.abs(load[inner] / level - 1).max() < 0.06
 
 
 def test_unequal_tethers_share_by_their_lengths(command, tmp_path):

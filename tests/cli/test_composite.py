@@ -8,6 +8,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from reduction.archive.open import open_archive
+from reduction.archive.strainmodel import strain_model_of
+from reduction.strain.inverse import position_by_model
+
 LBF = 4.4482216152605
 
 
@@ -43,6 +47,18 @@ def test_the_windows_are_inside_its_uncertainty(command, synthetic):
             for name in ("tension", "tension_standard_uncertainty")
         )
         assert (np.abs(load[inner] - level) < 3 * spread).all()
+
+
+@pytest.mark.parametrize("specimen", [0, 1])
+def test_the_strain_model_of_an_archive_gives_its_crosshead_back(synthetic, specimen):
+    with open_archive(synthetic.processed / "T-4.nc") as archive:
+        model = strain_model_of(archive, specimen)
+        strain, tension = (archive[name].values[specimen] for name in ("strain", "tension"))
+        crosshead = archive["crosshead_position"].values
+    found = position_by_model(model, strain=strain, tension=tension)
+    known = np.isfinite(found)
+    assert known.mean() > 0.99
+    assert found[known] == pytest.approx(crosshead[known], abs=1e-9)
 
 
 def test_one_window_comes_back_as_it_is(command, synthetic):
@@ -139,7 +155,7 @@ def test_bad_input_is_named(command, tmp_path, arguments, status, told):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_bad_archives_are_named(command, synthetic, tmp_path):
+def test_bad_archives_are_named(command, synthetic, static, tmp_path):
     folder = synthetic.processed
     for arguments, status, told in (
         ([folder], 2, "several specimens; found new, used"),
@@ -148,6 +164,11 @@ def test_bad_archives_are_named(command, synthetic, tmp_path):
         ([folder / "overnight-hold.nc", "--specimen", "new"], 4, "no test of 'new' gives a mean"),
         ([folder / "status.csv"], 6, "is not a netCDF file"),
         ([tmp_path], 2, "holds no archive of a test"),
+        (
+            [folder / "T-1.nc", static.processed / "static.nc", "--specimen", "new"],
+            2,
+            "static.nc has no specimen 'new'; found short-tether",
+        ),
     ):
         done = command("composite", *arguments)
         assert done.returncode == status, done.stderr

@@ -133,7 +133,9 @@ def test_archives_without_the_specimen_are_passed_over():
     tests = [cyclic(), cyclic("T-2", 2, specimens=("used",))]
     assert specimens_of(tests[1]) == ("used",)
     assert specimens_of(xr.Dataset()) == ()
-    assert {one.name for one in source_of_tests(tests, "new", branch="mean").pieces} == {"T-1"}
+    found = source_of_tests(tests, "new", branch="mean")
+    assert {one.name for one in found.pieces} == {"T-1"}
+    assert found.notes == ("of other specimens: c/T-2",)
 
 
 def test_one_test_twice_is_refused():

@@ -214,3 +214,25 @@ def test_rises_from_slack_that_differ_leave_the_cycles_as_certain_as_they_were()
 def test_a_kind_that_stands_twice_is_refused():
     with pytest.raises(SettingsError, match="names a kind twice"):
         CompositeRule(precedence=("cyclic", "cyclic"))
+
+
+def test_stiff_loops_along_a_soft_pull_are_told_to_be_no_pieces_of_one_curve():
+    """Loops of 500 N per unit strain about a pull of 100, each pair of loops alike to 2 %."""
+    at = np.linspace(0.05, 1.0, 60)
+    pull = CurvePiece("Q", "static", "ascending", at, 100 * at, 0 * at + 0.1)
+    loops = []
+    for centre in (0.3, 0.5, 0.7):
+        over = np.linspace(centre - 0.04, centre + 0.04, 20)
+        loops += [
+            CurvePiece(
+                f"R{centre}{name}", "cyclic", "mean", over,
+                factor * (100 * centre + 500 * (over - centre)), 0 * over + 0.1,
+            )
+            for name, factor in (("a", 1.0), ("b", 1.02))
+        ]  # fmt: skip
+    told = "they are no pieces of one curve"
+    assert any(told in note for note in composite_curve([*loops, pull]).notes)
+    alone = composite_curve([*loops, pull], rule=CompositeRule(precedence=("static",)))
+    assert not any(told in note for note in alone.notes)
+    windows = [piece(0.5, 1.2, "T-1"), piece(1.0, 2.0, "T-2", factor=1.1)]
+    assert not any(told in note for note in composite_curve(windows).notes)
