@@ -18,11 +18,24 @@ from reduction.surface.terms import model_matrix
 from reduction.surface.variance import variance_factor
 from reduction.vocabulary import RESPONSES, quantity
 
-__all__ = ["Facts", "facts_of_specimens", "line_of_experiment", "line_of_test", "specimens_of"]
+__all__ = [
+    "CURVES",
+    "Facts",
+    "facts_of_specimens",
+    "line_of_experiment",
+    "line_of_test",
+    "specimens_of",
+]
 
 _SCALES = ("log_", "box_cox_", "")
 """A surface on a scale that was asked for stands before the one of the quantity itself."""
 _OVER_STRAIN = ("tangent_modulus", "branch_tension")
+_OVER_TENSION = {
+    "quasi_static_spring_constant": ("quasi_static_spring_constant", "mean_tension"),
+    "quasi_static_strain": ("strain", "tension"),
+}
+CURVES = (*_OVER_STRAIN, *_OVER_TENSION)
+"""Variables of a reduced test that are looked up as curves."""
 _TEXTS = {
     "kind": "specimen_kind",
     "material": "specimen_material",
@@ -191,7 +204,8 @@ def line_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
     Returns
     -------
     line : LineSource
-        Tangent modulus and tension over strain on each branch.
+        Tangent modulus and tension over strain on each branch; of a slow pull K_0 over the mean
+        tension and strain over tension.
 
     Raises
     ------
@@ -205,16 +219,19 @@ def line_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
         )
     place = known.index(specimen)
     strength = "rated_break_strength"
-    curves = tuple(
-        curve
-        for name in _OVER_STRAIN
-        if name in dataset
-        for curve in _branches(dataset, name, place)
+    curves = (
+        *(
+            curve
+            for name in _OVER_STRAIN
+            if name in dataset
+            for curve in _branches(dataset, name, place)
+        ),
+        *_of_pull(dataset, place),
     )
     if not curves:
         raise ArchiveError(
-            f"the archive of test {dataset.attrs.get('test', '')} has no curve over strain",
-            needed="a cyclic test",
+            f"the archive of test {dataset.attrs.get('test', '')} has no curve",
+            needed="a cyclic test, or a slow pull",
         )
 
     return LineSource(
@@ -255,6 +272,28 @@ def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
             )
         )
     return curves
+
+
+def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
+    """K_0 and strain of a slow pull, by its cubic, over its range of use."""
+    if "pull_strain_coefficient" not in dataset:
+        return []
+    coefficient = np.array(dataset["pull_strain_coefficient"].values[place])
+    if not np.isfinite(coefficient).all():
+        return []
+    return [
+        LineCurve(
+            quantity=name,
+            variable=variable,
+            low=float(dataset["pull_tension_low"].values[place]),
+            high=float(dataset["pull_tension_high"].values[place]),
+            coefficient=coefficient,
+            is_inverse_slope=name != "strain",
+            at=np.array(dataset["tension_grid"].values),
+            standard_uncertainty=np.array(dataset[f"{stored}_standard_uncertainty"].values[place]),
+        )
+        for stored, (name, variable) in _OVER_TENSION.items()
+    ]
 
 
 def _synthetic(dataset: xr.Dataset) -> tuple[str, ...]:

@@ -87,7 +87,7 @@ def look_up_values(source: str, wanted: Wanted, *, outcome: Outcome) -> None:
     """Print design values; several values of a level, parted by commas, make a grid."""
     form = None if wanted.out is None else format_of_file(wanted.out)
     line = one_of(find_lines(lines_of(source), **wanted.search), wanted.quantity, wanted.name)
-    points, left_out = points_of(wanted, line)
+    (points,), left_out = points_of(wanted, line)
     if left_out:
         outcome.say("combinations whose amplitude is above the mean tension are left out")
     found = look_up(

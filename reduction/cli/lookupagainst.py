@@ -29,8 +29,7 @@ def look_up_against(source: str, other: str, wanted: Wanted, *, outcome: Outcome
     lines = lines_of(source)
     first = one_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
     second = _other(lines, other, wanted.quantity)
-    points, left_out = points_of(wanted, first, second)
-    others = _at_own_shares(wanted, points, first, second)
+    (points, others), left_out = points_of(wanted, first, second)
     if left_out:
         outcome.say("combinations whose amplitude is above the mean tension are left out")
     values = [
@@ -49,18 +48,6 @@ def _other(lines: list[LineSource], name: str, quantity: str) -> LineSource:
     """The second line: one of SOURCE by its name, else what the name means by itself."""
     of_source = [line for line in lines if line.name == name]
     return one_of(of_source or lines_of(name), quantity, None)
-
-
-def _at_own_shares(
-    wanted: Wanted, points: Mapping[str, Floats], first: LineSource, second: LineSource
-) -> dict[str, Floats]:
-    """Points of the second line: a level in %RBS is a share of its own break strength."""
-    ratio = second.rated_break_strength / first.rated_break_strength
-    return {
-        # an unknown strength of the second leaves NaN, which the look-up refuses
-        name: values * ratio if "RBS" in wanted.levels.get(name, "") else values
-        for name, values in points.items()
-    }
 
 
 def _show(

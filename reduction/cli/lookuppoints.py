@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
@@ -64,23 +64,21 @@ def parsed_search(
 
 
 def points_of(
-    wanted: Wanted, line: LineSource, other: LineSource | None = None
-) -> tuple[dict[str, Floats], bool]:
-    """Points at which a line is looked up, by level, and whether slack ones were left out.
+    wanted: Wanted, line: LineSource, *others: LineSource
+) -> tuple[list[dict[str, Floats]], bool]:
+    """Points at which lines are looked up, by level, and whether slack ones were left out.
 
     Parameters
     ----------
     wanted : Wanted
-        Levels as texts; %RBS is of the break strength of ``line``.
-    line : LineSource
-        Whose box fills a grid.
-    other : LineSource, optional
-        A line to hold against it: a grid is filled over what both boxes have in common.
+        Levels as texts; %RBS is of the break strength of each line.
+    line, *others : LineSource
+        A grid is filled over what their boxes have in common.
 
     Returns
     -------
-    points : dict of str to ndarray, shape (n_points,)
-        By level. [SI]
+    points : list of dict of str to ndarray, shape (n_points,)
+        One a line, by level. [SI]
     left_out : bool
         A grid has combinations whose amplitude is above the mean; they are not among the points.
 
@@ -89,48 +87,51 @@ def points_of(
     SettingsError
         If a level has no or a wrong unit, or several values without a grid.
     DataError
-        If two boxes have nothing in common.
+        If the boxes have nothing in common.
     """
-    given = {level: _numbers(level, text, line) for level, text in wanted.levels.items()}
-    if not wanted.grid and any(values.size > 1 for values in given.values()):
-        raise SettingsError("several values of a level make a grid", needed="--table with them")
-    if wanted.grid:
-        given = _filled(wanted, given, line, other)
-    axes = np.meshgrid(*given.values(), indexing="ij") if given else []
-    points = {level: axis.ravel() for level, axis in zip(given, axes, strict=True)}
-    if not (wanted.grid and {"mean_tension", "tension_amplitude"} <= points.keys()):
-        return points, False
-    taut = points["tension_amplitude"] <= points["mean_tension"] * (1 + _ROUNDING)
-    return {level: values[taut] for level, values in points.items()}, not taut.all()
-
-
-def _filled(
-    wanted: Wanted, given: Mapping[str, Floats], line: LineSource, other: LineSource | None
-) -> dict[str, Floats]:
-    """Levels that are not given get low, centre and high of what was tested."""
-    ends = _ends(wanted, line, given)
-    of_other = {} if other is None else _ends(wanted, other, given)
-    filled = dict(given)
-    for name, (low, high) in ends.items():
-        if name in given:
-            continue
-        if other is not None and name in of_other:
-            low, high = max(low, of_other[name][0]), min(high, of_other[name][1])
-            if low > high:
-                raise DataError(
-                    f"what was tested of {wanted.quantity} of {line.name} and {other.name} has no "
-                    f"{name.replace('_', ' ')} in common",
-                    found=f"one from {low:.5g}, one to {high:.5g} (SI)",
-                    hint=f"Give --{name.replace('_', '-')}, and --extrapolate flag.",
-                )
-        filled[name] = np.array([low, (low + high) / 2, high])
+    lines = (line, *others)
+    filled = _filled(wanted, lines) if wanted.grid else {}
     # in the order of the factors, whatever was said first
-    return {name: filled[name] for name in dict.fromkeys([*ends, *filled])}
+    names = list(dict.fromkeys([*filled, *wanted.levels]))
+    points = []
+    for one in lines:
+        levels = [
+            _numbers(name, wanted.levels[name], one) if name in wanted.levels else filled[name]
+            for name in names
+        ]
+        if not wanted.grid and any(values.size > 1 for values in levels):
+            raise SettingsError("several values of a level make a grid", needed="--table with them")
+        axes = np.meshgrid(*levels, indexing="ij") if levels else []
+        points.append({name: axis.ravel() for name, axis in zip(names, axes, strict=True)})
+    if not (wanted.grid and {"mean_tension", "tension_amplitude"} <= set(names)):
+        return points, False
+    taut = np.all(
+        [at["tension_amplitude"] <= at["mean_tension"] * (1 + _ROUNDING) for at in points], axis=0
+    )
+    kept = [{name: values[taut] for name, values in at.items()} for at in points]
+    return kept, not taut.all()
 
 
-def _ends(
-    wanted: Wanted, line: LineSource, given: Mapping[str, Floats]
-) -> dict[str, tuple[float, float]]:
+def _filled(wanted: Wanted, lines: Sequence[LineSource]) -> dict[str, Floats]:
+    """Low, centre and high of what was tested of all lines, by level; those that are given too."""
+    ends = [_ends(wanted, line) for line in lines]
+    filled = {}
+    for name in ends[0]:
+        low = max(one[name][0] for one in ends if name in one)
+        high = min(one[name][1] for one in ends if name in one)
+        if low > high and name not in wanted.levels:
+            raise DataError(
+                f"what was tested of {wanted.quantity} of "
+                f"{' and '.join(line.name for line in lines)} has no {name.replace('_', ' ')} in "
+                "common",
+                found=f"one from {low:.5g}, one to {high:.5g} (SI)",
+                hint=f"Give --{name.replace('_', '-')}, and --extrapolate flag.",
+            )
+        filled[name] = np.array([low, (low + high) / 2, high])
+    return filled
+
+
+def _ends(wanted: Wanted, line: LineSource) -> dict[str, tuple[float, float]]:
     """Range of each variable that was tested; of a damping that of the spring in it."""
     is_dashpot = wanted.quantity == "dashpot_coefficient" and line.has_dashpot
     name = "dissipation_spring_constant" if is_dashpot else wanted.quantity
@@ -141,7 +142,7 @@ def _ends(
             for place, name in enumerate(line.factor_names)
         }
     for curve in line.curves:
-        is_meant = not given or curve.variable in given
+        is_meant = not wanted.levels or curve.variable in wanted.levels
         if curve.quantity == name and curve.branch in ("", wanted.branch) and is_meant:
             return {curve.variable: (curve.low, curve.high)}
     return {}

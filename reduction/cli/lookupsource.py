@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from reduction.archive.linesource import (
+    CURVES,
     Facts,
     facts_of_specimens,
     line_of_experiment,
@@ -89,7 +90,7 @@ def lines_of_archive(path: Path) -> list[LineSource]:
                 for name, kind in zip(names, kinds, strict=True)
                 if kind == "box-behnken"
             ]
-        if "tangent_modulus" not in archive and "branch_tension" not in archive:
+        if not any(name in archive for name in CURVES):
             return []
         names = archive["specimen"].values.astype(str).tolist()
         return [line_of_test(archive, name) for name in names]
@@ -110,12 +111,12 @@ def one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> Line
     Returns
     -------
     line : LineSource
-        It may not have the quantity; the look-up says why.
+        One that is alone may not have the quantity; the look-up says why.
 
     Raises
     ------
     SettingsError
-        If no line has the name, or several have the quantity.
+        If no line has the name, several have the quantity, or none of several has it.
     """
     named = [line for line in lines if name in (None, line.name)]
     if not named:
@@ -124,6 +125,12 @@ def one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> Line
             needed=", ".join(dict.fromkeys(line.name for line in lines)),
         )
     having = [line for line in named if quantity in line.quantities]
+    if not having and len(named) > 1:
+        raise SettingsError(
+            f"none of {len(named)} lines has {quantity}",
+            needed="one of "
+            + ", ".join(dict.fromkeys(name for line in named for name in line.quantities)),
+        )
     if len(having) > 1:
         raise SettingsError(
             f"several lines have {quantity}",

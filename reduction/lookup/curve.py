@@ -62,13 +62,13 @@ def evaluate_curve(curve: LineCurve, at: ArrayLike) -> tuple[Floats, Floats, Boo
     points = np.asarray(at, dtype=np.float64)
     width = _EDGE * max(abs(curve.low), abs(curve.high))
     inside = (points >= curve.low - width) & (points <= curve.high + width)
-    unknown: Floats = np.full(points.shape, np.nan)
-    if curve.is_inverse_slope:
-        return slope_of_cubic(points, curve.coefficient), unknown, inside
-    if curve.coefficient.size:
-        value = np.polynomial.polynomial.polyval(points, curve.coefficient)
-        return np.asarray(value, dtype=np.float64), unknown, inside
-    value = np.interp(points, curve.at, curve.value, left=np.nan, right=np.nan)
+    spread: Floats = np.full(points.shape, np.nan)
     if curve.standard_uncertainty.size:
-        unknown = np.interp(points, curve.at, curve.standard_uncertainty, left=np.nan, right=np.nan)
-    return value, unknown, inside
+        spread = np.interp(points, curve.at, curve.standard_uncertainty, left=np.nan, right=np.nan)
+    if curve.is_inverse_slope:
+        value = slope_of_cubic(points, curve.coefficient)
+    elif curve.coefficient.size:
+        value = np.asarray(np.polynomial.polynomial.polyval(points, curve.coefficient))
+    else:
+        value = np.interp(points, curve.at, curve.value, left=np.nan, right=np.nan)
+    return value, spread, inside

@@ -109,7 +109,7 @@ class LineCurve:
     at, value : ndarray, shape (n_points,)
         Points, rising; straight lines between them. [SI]
     standard_uncertainty : ndarray, shape (n_points,)
-        Of the points; empty where not known. [SI]
+        At the points, of a polynomial too; empty where not known. [SI]
     branch : {"", "ascending", "descending"}
         Of a cycle, where the quantity differs.
     is_inverse_slope : bool

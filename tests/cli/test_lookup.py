@@ -117,6 +117,13 @@ def test_shares_are_of_each_lines_own_strength_and_tensions_are_one(command):
     assert "of each line's own break strength: 6400 lbf and 7000 lbf" in text
     shares = json.loads(command(*pair, *LEVELS, "--json").stdout)
     assert shares["ratio"] == pytest.approx(11.55 / 9.457)  # B1 of Table 5
+    # %MBL is the same word, in each of several values
+    words = ("--frequency", "0.3 Hz", "--mean-tension", "21 %MBL,1400 lbf", "--tension-amplitude",
+             "8.5 %MBS")  # fmt: skip
+    mixed = json.loads(command(*pair, *words, "--table", "--json").stdout)
+    first, second = (mixed[side]["levels"]["mean_tension"] for side in ("first", "second"))
+    assert first == pytest.approx([1344 * LBF, 1400 * LBF])
+    assert second == pytest.approx([1470 * LBF, 1400 * LBF])
     forces = (
         "--frequency", "0.3 Hz", "--mean-tension", "1344 lbf", "--tension-amplitude", "544 lbf",
     )  # fmt: skip
@@ -237,6 +244,10 @@ def test_what_there_is(command):
             "no line is called 'nylon-braid'",
         ),
         ((NYLON, "--quantity", "strain", "--tension", "9 kN"), 4, "outside what was tested"),
+        (
+            ("published", "--material", "nylon", "--quantity", "loss_factor"), 2,
+            "none of 9 lines has loss_factor; needed one of apparent_spring_constant",
+        ),
         ((NYLON, "--quantity", "strain", "--line", "x", "--tension", "1 kN"), 2, "no line 'x'"),
     ],
 )  # fmt: skip

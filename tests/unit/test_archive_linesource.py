@@ -85,6 +85,36 @@ def test_curves_of_a_test_are_by_branch(folder):
         line_of_test(archive, "other")
 
 
+def test_a_slow_pull_gives_rest_stiffness_and_strain_over_tension(folder):
+    (line,) = lines_of(str(folder / "Q01.nc"))
+    assert line.quantities == ("quasi_static_spring_constant", "strain")
+    with open_archive(folder / "Q01.nc") as archive:
+        grid = archive["tension_grid"].to_numpy()
+        expected = {
+            name: archive[name].to_numpy()[0]
+            for name in (
+                "quasi_static_spring_constant", "quasi_static_strain",
+                "quasi_static_spring_constant_standard_uncertainty",
+            )
+        }  # fmt: skip
+    rest = look_up(line, "quasi_static_spring_constant", mean_tension=grid)
+    assert rest.value == pytest.approx(expected["quasi_static_spring_constant"], rel=1e-9)
+    half = 1.96 * expected["quasi_static_spring_constant_standard_uncertainty"]
+    assert rest.high - rest.value == pytest.approx(half, rel=1e-6)
+    strain = look_up(line, "strain", tension=grid)
+    assert strain.value == pytest.approx(expected["quasi_static_strain"], rel=1e-9)
+    assert strain.peak_tension == pytest.approx(grid)
+    # K_0 is the slope of tension over strain, between the nodes too
+    middle = (grid[1:] + grid[:-1]) / 2
+    step = 0.1
+    ends = [look_up(line, "strain", tension=middle + half).value for half in (-step, step)]
+    slope = 2 * step / (ends[1] - ends[0])
+    between = look_up(line, "quasi_static_spring_constant", mean_tension=middle).value
+    assert between == pytest.approx(slope, rel=1e-5)
+    with pytest.raises(DataError, match="outside what was tested of strain of line-1"):
+        look_up(line, "strain", tension=1.01 * grid[-1])
+
+
 def test_the_line_of_an_experiment_is_of_its_specimens(folder):
     line = lines_of(str(folder / "surfaces.nc"))[0]
     assert (line.kind, line.material) == ("rope", "nylon (synthetic)")
@@ -143,3 +173,16 @@ def test_what_has_no_surface_is_refused(surfaces):
     shares["run_rated_break_strength"] = (shares["run_rated_break_strength"].dims, strengths)
     with pytest.raises(ArchiveError, match="levels of mean_tension .* are no N"):
         line_of_experiment(shares, "nylon")
+
+
+def test_a_pull_that_was_refused_and_a_test_without_a_curve_give_no_line(folder):
+    with open_archive(folder / "Q01.nc") as archive:
+        pull = archive.load()
+    name = str(pull["specimen"].to_numpy()[0])
+    refused = pull.copy(deep=True)
+    refused["pull_strain_coefficient"][0, 2] = np.nan
+    for one in (refused, pull.drop_vars("pull_strain_coefficient")):
+        with pytest.raises(
+            ArchiveError, match="has no curve; needed a cyclic test, or a slow pull"
+        ):
+            line_of_test(one, name)
