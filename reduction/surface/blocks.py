@@ -27,14 +27,13 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.record import Bools, Floats, Integers, freeze_arrays
 from reduction.surface.rows import block_contrasts, patterns_of
+from reduction.surface.search import highest_of_each
 
 __all__ = ["RandomIntercept", "block_columns", "fit_random_intercept"]
 
 _LARGEST = 6.0
 """Decimal logarithm of the largest ratio of variances that is searched."""
 _GRID = 49
-_STEPS = 60
-_GOLDEN = (5**0.5 - 1) / 2
 _SINGULAR = 1e-9
 
 
@@ -238,15 +237,8 @@ def _restricted(contrast: Floats, projected: Floats) -> tuple[Floats, Floats]:
 
     n_responses = contrast.shape[0]
     grid = np.linspace(-_LARGEST, _LARGEST, _GRID)
-    depth = np.stack([deviance(np.full(n_responses, 10**power)) for power in grid], axis=1)
-    lowest = np.argmin(depth, axis=1)
-    left, right = grid[np.maximum(lowest - 1, 0)], grid[np.minimum(lowest + 1, _GRID - 1)]
-    for _ in range(_STEPS):
-        reach = _GOLDEN * (right - left)
-        first, second = right - reach, left + reach
-        falling = deviance(10**first) > deviance(10**second)
-        left, right = np.where(falling, first, left), np.where(falling, right, second)
-    ratio = 10 ** ((left + right) / 2)
+    power, _ = highest_of_each(lambda power: -deviance(10**power), grid, n_responses)
+    ratio = 10**power
     none = np.zeros(n_responses)
     ratio = np.where(deviance(none) <= deviance(ratio), 0.0, ratio)
     return ratio, np.sqrt(remainder(ratio) / count)

@@ -29,6 +29,7 @@ from scipy.special import boxcox, chdtri
 from reduction.errors import DataError, SettingsError
 from reduction.record import Bools, Floats
 from reduction.surface.rows import patterns_of, times
+from reduction.surface.search import highest_of_each
 
 __all__ = ["Transform", "back_transform", "box_cox_exponent", "retransformed_mean", "transform"]
 
@@ -38,7 +39,6 @@ LIMITS = (-2.0, 2.0)
 """Exponents that are searched."""
 _GRID = 81
 _STEPS = 60
-_GOLDEN = (5**0.5 - 1) / 2
 
 
 class BoxCoxExponent(NamedTuple):
@@ -276,15 +276,7 @@ def _likelihood(scaled: Floats, basis: Floats) -> Callable[[Floats], Floats]:
 def _profile(likelihood: Callable[[Floats], Floats], count: int, drop: float) -> Floats:
     """Exponent, low and high end of each response, shape (3, count)."""
     grid = np.linspace(*LIMITS, _GRID)
-    height = np.stack([likelihood(np.full(count, power)) for power in grid], axis=1)
-    top = np.argmax(height, axis=1)
-    left, right = grid[np.maximum(top - 1, 0)], grid[np.minimum(top + 1, _GRID - 1)]
-    for _ in range(_STEPS):
-        reach = _GOLDEN * (right - left)
-        first, second = right - reach, left + reach
-        rising = likelihood(first) < likelihood(second)
-        left, right = np.where(rising, first, left), np.where(rising, right, second)
-    best = (left + right) / 2
+    best, height = highest_of_each(likelihood, grid, count)
     threshold = likelihood(best) - drop
     below = height < threshold[:, None]
     before, after = below & (grid < best[:, None]), below & (grid > best[:, None])
