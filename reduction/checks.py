@@ -1,6 +1,7 @@
 """Checks that physics functions share: finite, positive, increasing, same shape.
 
-Each raises `DataError` with the count, the first index and the value there.
+Each raises `DataError` with the count, the first index and the value there; a number that was
+stated is refused with `SettingsError`.
 """
 
 from __future__ import annotations
@@ -8,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.errors import DataError
+from reduction.errors import DataError, SettingsError
 from reduction.record import Bools, Floats
 
-__all__ = ["as_finite", "as_increasing", "as_positive", "as_same_shape"]
+__all__ = ["as_finite", "as_increasing", "as_positive", "as_same_shape", "as_spread"]
 
 
 def _refuse(name: str, values: Floats, bad: Bools, what: str, needed: str) -> None:
@@ -60,3 +61,14 @@ def as_same_shape(**named: ArrayLike) -> tuple[Floats, ...]:
         found = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
         raise DataError("series do not pair up", found=found, needed="equal shapes")
     return tuple(arrays.values())
+
+
+def as_spread(name: str, value: float) -> float:
+    """Return a standard uncertainty, or raise `SettingsError` where it is negative or unknown."""
+    if not (np.isfinite(value) and value >= 0):
+        raise SettingsError(
+            f"the standard uncertainty of {name} cannot be used",
+            found=f"{value:g}",
+            needed="zero or more",
+        )
+    return float(value)

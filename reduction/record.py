@@ -7,6 +7,7 @@ an earlier one said.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from enum import IntFlag
 from math import pi
@@ -28,6 +29,7 @@ __all__ = [
     "StepReadings",
     "areas_of",
     "freeze_arrays",
+    "require_shapes",
 ]
 
 Floats = NDArray[np.float64]
@@ -59,6 +61,14 @@ def freeze_arrays(product: object) -> None:
         value = getattr(product, item.name)
         if isinstance(value, np.ndarray):
             value.setflags(write=False)
+
+
+def require_shapes(product: object, shapes: Mapping[str, tuple[int, ...]], *, of: str) -> None:
+    """Raise `DataError` where an array of a product has another shape than it has to have."""
+    for name, shape in shapes.items():
+        found = getattr(product, name).shape
+        if found != shape:
+            raise DataError(f"{name} does not fit the {of}", found=str(found), needed=str(shape))
 
 
 @dataclass(frozen=True)
@@ -274,12 +284,7 @@ class Record:
             "tension": (len(self.specimens), n_samples),
             "quality_flag": (len(self.specimens), n_samples),
         }
-        for name, shape in shapes.items():
-            found = getattr(self, name).shape
-            if found != shape:
-                raise DataError(
-                    f"{name} does not fit the record", found=str(found), needed=str(shape)
-                )
+        require_shapes(self, shapes, of="record")
 
     @property
     def n_samples(self) -> int:

@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from reduction.checks import as_spread
 from reduction.compare.trials import number_of, range_of, trial_tension
-from reduction.errors import SettingsError
 from reduction.predict.cordcurve import CordCurve
 from reduction.predict.cordload import cord_load
 from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
@@ -186,12 +186,7 @@ def known_uncertainties(
     """
     for name, spread in standard_uncertainty.items():
         number_of(design, name)
-        if not (np.isfinite(spread) and spread >= 0):
-            raise SettingsError(
-                f"the standard uncertainty of {name} cannot be used",
-                found=f"{spread:g}",
-                needed="zero or more",
-            )
+        as_spread(name, spread)
     return {
         name: float(standard_uncertainty[name])
         for name in HOSE_PARAMETERS

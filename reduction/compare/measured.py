@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.checks import as_spread
 from reduction.compare.cells import Cells, fill_cells, reading_of, tension_at_centres
 from reduction.compare.measuredcurve import Loading, MeasuredCurve
 from reduction.compare.samples import select_samples
@@ -46,12 +47,7 @@ class SharedUncertainty:
     def __post_init__(self) -> None:
         """Check that none is negative or unknown."""
         for name, value in vars(self).items():
-            if not (np.isfinite(value) and value >= 0):
-                raise SettingsError(
-                    f"the standard uncertainty of {name} cannot be used",
-                    found=f"{value:g}",
-                    needed="zero or more",
-                )
+            as_spread(name, value)
 
 
 def measured_curve(

@@ -7,8 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.errors import DataError
-from reduction.record import Floats, Integers, freeze_arrays
+from reduction.record import Floats, Integers, freeze_arrays, require_shapes
 
 __all__ = ["BRANCHES", "NODES_A_BIN", "CurveName", "Loading", "MeasuredCurve", "Reading"]
 
@@ -126,12 +125,7 @@ class MeasuredCurve:
             "scatter_contribution": (self.scatter_contribution.shape[0], n_strain),
             "contribution": (len(self.source), n_strain),
         }
-        for name, shape in shapes.items():
-            found = getattr(self, name).shape
-            if found != shape:
-                raise DataError(
-                    f"{name} does not fit the measured curve", found=str(found), needed=str(shape)
-                )
+        require_shapes(self, shapes, of="measured curve")
 
     @property
     def judged(self) -> CurveName:

@@ -58,7 +58,7 @@ def stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike
     """
     stretch, cosine2, sine2 = _stretched(cord_stretch_ratio, wrap_angle)
     rise = (stretch**2 - 1 / stretch) * np.sqrt(cosine2 * sine2)
-    return np.asarray(rise / _half_slope(stretch, cosine2, sine2))
+    return np.asarray(rise / rise_of_cord(stretch, cosine2, sine2))
 
 
 def stretch_ratio_per_cord_stretch(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
@@ -96,10 +96,10 @@ def stretch_ratio_per_cord_stretch(cord_stretch_ratio: ArrayLike, wrap_angle: Ar
     [3.7 4. ]
     """
     stretch, cosine2, sine2 = _stretched(cord_stretch_ratio, wrap_angle)
-    return np.asarray(np.asarray(cord_stretch_ratio) / _half_slope(stretch, cosine2, sine2))
+    return np.asarray(np.asarray(cord_stretch_ratio) / rise_of_cord(stretch, cosine2, sine2))
 
 
-def _half_slope(stretch: Floats, cosine2: Floats, sine2: Floats) -> Floats:
+def rise_of_cord(stretch: Floats, cosine2: Floats, sine2: Floats) -> Floats:
     """Half the derivative of lambda_c squared: lambda_c times d lambda_c / d lambda_h."""
     return np.asarray(stretch * cosine2 - sine2 / (2 * stretch**2))
 

@@ -38,7 +38,11 @@ from reduction.predict.cord import (
     slackest_stretch_ratio,
 )
 from reduction.predict.cordload import cord_load, cord_stiffness, cord_strain_at
-from reduction.predict.cordrates import stretch_ratio_per_angle, stretch_ratio_per_cord_stretch
+from reduction.predict.cordrates import (
+    rise_of_cord,
+    stretch_ratio_per_angle,
+    stretch_ratio_per_cord_stretch,
+)
 from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
 from reduction.predict.rubber import rubber_stiffness, rubber_tension
 from reduction.record import Floats, freeze_arrays
@@ -198,7 +202,7 @@ def _on_the_curve(design: HoseDesign, strain: Floats) -> _State:
     load = load_scale * cord_load(design.cord, at)
     stiffness = load_scale / strain_scale * cord_stiffness(design.cord, at)
     cosine, sine = np.cos(angle), np.sin(angle)
-    by_stretch = (stretch * cosine**2 - sine**2 / (2 * stretch**2)) / cord
+    by_stretch = rise_of_cord(stretch, cosine**2, sine**2) / cord
     per_strain = 1 / (1 - dead)
     of_stretch = {"strain": per_strain, "dead_length_share": (stretch - 1) * per_strain}
     of_cord = {name: by_stretch * rate for name, rate in of_stretch.items()}
@@ -293,7 +297,7 @@ def _chain(design: HoseDesign, state: _State) -> tuple[_Rates, _Rates]:
     )
     stretch, cord, load = state.stretch, state.cord_stretch, state.cord_tension
     cosine, sine = np.cos(angle), np.sin(angle)
-    lever = (stretch * cosine**2 - sine**2 / (2 * stretch**2)) / cord
+    lever = rise_of_cord(stretch, cosine**2, sine**2) / cord
     hoop = sine**2 / (stretch * cord)
     around = pi * density * (first + second)
     inverse = 2 * density * (1 / first + 1 / second)

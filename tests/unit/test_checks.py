@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.checks import as_finite, as_increasing, as_positive, as_same_shape
-from reduction.errors import DataError
+from reduction.checks import as_finite, as_increasing, as_positive, as_same_shape, as_spread
+from reduction.errors import DataError, SettingsError
 
 
 def test_finite_refuses_with_count_and_first_index():
@@ -28,3 +28,10 @@ def test_increasing_refuses_a_plateau_and_a_matrix():
 def test_shapes_must_pair_up():
     with pytest.raises(DataError, match=r"found a \(2,\), b \(3,\)"):
         as_same_shape(a=[1, 2], b=[1, 2, 3])
+
+
+@pytest.mark.parametrize("value", [-0.1, np.nan, np.inf])
+def test_a_standard_uncertainty_is_zero_or_more(value):
+    with pytest.raises(SettingsError, match="standard uncertainty of bore cannot be used; found"):
+        as_spread("bore", value)
+    assert as_spread("bore", 0.0) == 0.0
