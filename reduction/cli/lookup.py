@@ -115,7 +115,8 @@ def _show(
 ) -> None:
     system = cast("UnitSystem", outcome.units)
     unit, factor = display_unit(found.unit, system)
-    outcome.say(f"{found.quantity} of {line.name}; {found.source}")
+    branch = f", {found.branch} branch" if found.branch else ""
+    outcome.say(f"{found.quantity} of {line.name}{branch}; {found.source}")
     heads, levels = shown_levels(points, line.rated_break_strength, found.value.size, system)
     table = table_of(
         *heads, f"value\n[{unit}]", "95 % of\none more test", "95 % of\nthe surface",
@@ -215,6 +216,7 @@ def _document(
     return {
         "line": line.name,
         "quantity": found.quantity,
+        "branch": found.branch or None,
         "levels": {name: of(values) for name, values in points.items()},
         "value": of(found.value),
         "unit": found.unit,

@@ -60,7 +60,8 @@ def _show(
 ) -> None:
     system = cast("UnitSystem", outcome.units)
     unit, factor = display_unit(found.unit, system)
-    outcome.say(f"{found.quantity} of {second.name} (second) against {first.name} (first)")
+    branch = f", {found.first.branch} branch" if found.first.branch else ""
+    outcome.say(f"{found.quantity} of {second.name} (second) against {first.name} (first){branch}")
     if any(not np.array_equal(values, others[name]) for name, values in points.items()):
         outcome.say(
             "levels in %RBS are shares of each line's own break strength: "
@@ -151,6 +152,7 @@ def _document(
 
     return {
         "quantity": found.quantity,
+        "branch": found.first.branch or None,
         "unit": found.unit,
         "first": side(first, found.first, points),
         "second": side(second, found.second, others),

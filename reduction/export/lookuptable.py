@@ -97,7 +97,7 @@ def table_of_values(
         _column("is_above_rule", "", "peak above the rule of the source", found.is_above_rule),
     ]
     return ValueTable(
-        title=f"{found.quantity} of {line.name}",
+        title=f"{found.quantity} of {line.name}{_branch(found)}",
         columns=tuple(columns),
         sources=(_source(line, found),),
         notes=(*_about(line), f"rule: {found.rule}", *found.notes),
@@ -170,7 +170,7 @@ def table_of_difference(
         for text in (*_about(line), f"rule: {one.rule}", *one.notes)
     ]
     return ValueTable(
-        title=f"{name} of {second.name} against {first.name}",
+        title=f"{name} of {second.name} against {first.name}{_branch(a)}",
         columns=tuple(columns),
         sources=(_source(first, a), _source(second, b)),
         notes=tuple(dict.fromkeys(notes)),
@@ -207,6 +207,10 @@ def _levels(
                 )
             )  # fmt: skip
     return columns
+
+
+def _branch(found: DesignValues) -> str:
+    return f", {found.branch} branch" if found.branch else ""
 
 
 def _meaning(name: str) -> str:

@@ -285,4 +285,5 @@ def _values(
         source=line.source,
         errata=of.errata,
         notes=tuple(dict.fromkeys(notes)),
+        branch=of.branch if isinstance(of, LineCurve) else "",
     )

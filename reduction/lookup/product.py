@@ -239,6 +239,8 @@ class DesignValues:
         Where the numbers are from.
     errata, notes : tuple of str
         What is known against them.
+    branch : {"", "ascending", "descending"}
+        Of a cycle, where the quantity differs.
     """
 
     quantity: str
@@ -259,6 +261,7 @@ class DesignValues:
     source: str
     errata: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    branch: Literal["", "ascending", "descending"] = ""
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

@@ -61,6 +61,7 @@ def test_ends_of_the_tension_and_the_rule_are_in_every_answer(command):
         "lookup", TETHER, "--quantity", "tangent_modulus", "--strain", "60 %", "--branch",
         "ascending",
     ).stdout  # fmt: skip
+    assert "of rubber-tether-new-T-2, ascending branch; WHOI-2005-10" in text
     # 62 lb (Table 6, T-2) of 800 lb
     assert "7.75" in text
     assert "rule: a rubber tether must not go slack" in text

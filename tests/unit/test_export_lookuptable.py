@@ -170,6 +170,13 @@ def test_what_is_made_says_so_and_shares_without_a_strength_are_left_out():
     assert "linear density in water 0.02 kg/m" in table.notes
 
 
+def test_a_table_says_of_which_branch_it_is():
+    tether = published_sources()["rubber-tether-new-T-2"]
+    found = look_up(tether, "tangent_modulus", strain=[0.7], branch="ascending")
+    table = table_of_values(tether, found, {"strain": np.array([0.7])})
+    assert table.title == "tangent_modulus of rubber-tether-new-T-2, ascending branch"
+
+
 def test_faults_are_named(line, found):
     with pytest.raises(SettingsError, match=r"says no format; found values.xls; needed .csv, "):
         format_of_file(Path("values.xls"))

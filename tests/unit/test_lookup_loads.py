@@ -45,6 +45,7 @@ def test_a_modulus_comes_with_the_tension_of_its_own_branch():
     assert found.minimum_share.tolist() == [0.5, 0.65]
     other = look_up(TETHER, "tangent_modulus", strain=1.0, branch="descending")
     assert other.peak_share == 0.3
+    assert (found.branch, other.branch) == ("ascending", "descending")
 
 
 def test_one_tension_alone_is_both_ends():
