@@ -29,6 +29,7 @@ from reduction.archive.per_cycle import (
 from reduction.archive.programme import rope_values
 from reduction.archive.samples import row_account, sample_values
 from reduction.archive.schema import schema_of
+from reduction.archive.shared import with_shared
 from reduction.archive.specimens import history_values, specimen_values, strain_model_values
 from reduction.archive.stepwise import stepwise_values
 from reduction.archive.values import Values
@@ -118,4 +119,4 @@ def _all_values(test: ReducedTest) -> Values:
     for name in ("slack_strain_at_unloading", "slack_strain_at_unloading_standard_uncertainty"):
         if getattr(test, name) is not None:
             values[name] = getattr(test, name)
-    return values
+    return with_shared(values, test.contributions, test.shared_uncertainty_of_cycles)

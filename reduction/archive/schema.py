@@ -32,6 +32,7 @@ dimension                      one entry for
 ``elastomer_fit``              each law and specimen
 ``elastomer_parameter``        each parameter; ``elastomer_parameter_fit`` counts fits from 1
 ``step``, ``interval``         each reading of a stepwise test; between two readings
+``uncertainty_component``      each error that the test shares (``uncertainty_source``, ...)
 ``channel``, ``quality_mask``  each channel of the log; each mask of the quality flags
 ``note``                       each quality note (``note``, ``note_stage``)
 ``bound``                      lower and upper edge of a cell
@@ -74,6 +75,7 @@ from reduction.archive.reasons import (
     STATED,
     TWO_METHODS,
 )
+from reduction.archive.shared import SHARED_ROWS
 from reduction.archive.variable import Variable, count, flag, label, mask, measured, stated
 from reduction.record import Quality
 from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES
@@ -354,6 +356,7 @@ _ROWS = chain(
     stated("interval_strain", ("interval",), "middle of two readings"),
     measured("interval_modulus", ("interval",)),
     flag("interval_branch", ("interval",), BRANCH_VALUES),
+    SHARED_ROWS,
     # the record and what is known about it
     count("n_rows_read", ()),
     count("n_rows_kept", ()),

@@ -11,10 +11,31 @@ from dataclasses import dataclass, field
 from reduction.errors import ArchiveError
 from reduction.vocabulary import QUANTITIES
 
-__all__ = ["SUFFIXES", "TEXT", "Variable", "count", "flag", "label", "mask", "measured", "stated"]
+__all__ = [
+    "SUFFIXES",
+    "TEXT",
+    "Variable",
+    "companion",
+    "count",
+    "flag",
+    "label",
+    "mask",
+    "measured",
+    "stated",
+]
 
 TEXT = "U"
 SUFFIXES = {
+    "_random_standard_uncertainty": (
+        "random part (k=1) of the standard uncertainty of {}",
+        "f8",
+        "is an uncertainty",
+    ),
+    "_uncertainty_contribution": (
+        "signed contribution of one standard uncertainty of each shared error to {}",
+        "f8",
+        "is part of an uncertainty",
+    ),
     "_standard_uncertainty": ("standard uncertainty (k=1) of {}", "f8", "is an uncertainty"),
     "_count": ("number of cycles in the mean: {}", "i4", "count"),
     "_minimum": ("least over the cycles: {}", "f8", "bound: least value seen"),
@@ -127,8 +148,13 @@ def measured(
         own_dims = dims
         if suffix == "_standard_uncertainty" and uncertainty_dims is not None:
             own_dims = uncertainty_dims
-        rows.append(Variable(f"{name}{suffix}", own_dims, SUFFIXES[suffix][1], SUFFIXES[suffix][2]))
+        rows.append(companion(name, suffix, own_dims))
     return rows
+
+
+def companion(name: str, suffix: str, dims: tuple[str, ...]) -> Variable:
+    """Return what qualifies a quantity: one of `SUFFIXES`."""
+    return Variable(f"{name}{suffix}", dims, SUFFIXES[suffix][1], SUFFIXES[suffix][2])
 
 
 def stated(

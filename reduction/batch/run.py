@@ -16,6 +16,7 @@ from reduction.batch.check import Progress, selected_surveys
 from reduction.batch.comparisons import write_comparisons
 from reduction.batch.describe import describe
 from reduction.batch.experiments import write_experiments
+from reduction.batch.instruments import instruments_of
 from reduction.batch.models import fit_strain_models
 from reduction.batch.outcome import note_message, status_row
 from reduction.batch.part import PartStatus
@@ -122,6 +123,7 @@ def reduce_survey(
         settings_json=settings,
         pulls=pulls,
         pull_conditions=pull_conditions(campaign, survey),
+        instruments=instruments_of(campaign, survey, models),
     )
 
 

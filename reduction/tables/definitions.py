@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from reduction.archive.schema import COEFFICIENTS, SCHEMA
+from reduction.archive.variable import SUFFIXES
 from reduction.tables.derived import (
     with_chords,
     with_cycle_count,
@@ -11,6 +12,7 @@ from reduction.tables.derived import (
     with_its_one_specimen,
 )
 from reduction.tables.programme import ROPE_TABLES
+from reduction.tables.shared import SHARED_TABLES
 from reduction.tables.table import Table
 from reduction.vocabulary import BRANCH_NAMES
 
@@ -20,7 +22,7 @@ __all__ = ["TABLES"]
 _PER_CYCLE = tuple(
     name
     for name, row in SCHEMA.items()
-    if row.dims == ("specimen", "cycle") and not name.endswith("_standard_uncertainty")
+    if row.dims == ("specimen", "cycle") and not name.endswith(tuple(SUFFIXES))
 )
 _IDENTITY = ("stroke_mean_modulus_difference", "tension_loss_modulus", "identity_residual")
 _TREND = ("peak_tension_per_decade", "dynamic_modulus_per_decade", "peak_tension_change")
@@ -35,7 +37,7 @@ _LINE = (
 _AMPLITUDE = tuple(
     name
     for name in SCHEMA
-    if name.startswith("test_") and name not in _LINE and not name.endswith("_standard_uncertainty")
+    if name.startswith("test_") and name not in _LINE and not name.endswith(tuple(SUFFIXES))
 )
 _PULL = (
     "pull_tension_low",
@@ -183,6 +185,7 @@ TABLES = (
         ("strain_at_break_share",),
     ),
     *ROPE_TABLES,
+    *SHARED_TABLES,
     Table(
         "slips",
         ("slip",),

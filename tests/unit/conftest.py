@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from reduction.archive.dataset import to_dataset
+from reduction.archive.shared import SHARED
 from reduction.archive.write import write_archive
 from reduction.cycles.product import Cycles, Loops
 from reduction.holds.product import HoldResult
@@ -37,6 +38,7 @@ from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
 from reduction.record import Quality, Record, Specimen
 from reduction.strain.model import StrainModel
+from reduction.uncertainty.product import Component, Contributions
 
 N_SAMPLES, N_CYCLES, N_BINS, N_SEGMENTS = 60, 4, 5, 3
 SOURCE = Source("T-1.csv", "ab" * 32, 12345)
@@ -254,6 +256,8 @@ def make_specimens():
         stretched_diameters=((0.1, 0.0252), (1.0, 0.0187)),
         rated_break_strength=3558.0,
         rated_break_strength_source="maker",
+        linear_density=0.9,
+        wet_linear_density=0.2,
         notes=("printed 1.01 in",),
     )
     return new, Specimen("used", diameter=(0.0239,), condition="used")
@@ -372,6 +376,20 @@ def rich_test():
         stress_at_strain_levels=(1.0, 0.5),
         slack_strain_at_unloading=np.array([0.02, np.nan]),
         slack_strain_at_unloading_standard_uncertainty=np.array([0.001, np.nan]),
+        contributions=make_contributions(np.random.default_rng(5)),
+        shared_uncertainty_of_cycles={"apparent_spring_constant": np.full(per_cycle, 3.0)},
+    )
+
+
+def make_contributions(rng):
+    """Two errors of every quantity that has them."""
+    shapes = {1: (2,), 3: (2, 2, N_BINS)}
+    values = {
+        name: array(rng, 2, *((2, 2, N_SEGMENTS) if "segment" in dims else shapes[len(dims)]))
+        for name, dims in SHARED.items()
+    }
+    return Contributions(
+        (Component("tension_gain", "load cell"), Component("strain_calibration", "new", 1)), values
     )
 
 

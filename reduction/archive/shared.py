@@ -1,0 +1,112 @@
+"""Errors that a test shares with others: their variables, and the values of a product.
+
+Each error is an entry along ``uncertainty_component``; its signed contribution to a quantity stands
+beside the random part of that quantity, and ``<name>_standard_uncertainty`` holds both.
+"""
+
+from __future__ import annotations
+
+from itertools import chain
+
+import numpy as np
+
+from reduction.archive.values import Values, texts
+from reduction.archive.variable import Variable, companion, count, label
+from reduction.record import Floats
+from reduction.uncertainty.combine import combined_standard_uncertainty
+from reduction.uncertainty.product import Contributions
+
+__all__ = ["COMPONENT", "SHARED", "SHARED_ROWS", "with_shared"]
+
+COMPONENT = "uncertainty_component"
+_S = ("specimen",)
+_B = ("specimen", "branch_name", "strain_bin")
+_F = ("specimen", "branch_name", "first_loading_strain_bin")
+_OF_TEST = (
+    "mean_strain", "strain_amplitude", "mean_tension", "tension_amplitude",
+    "apparent_spring_constant", "dynamic_modulus", "hysteresis_energy",
+    "storage_spring_constant", "loss_spring_constant", "loss_factor",
+    "quasi_static_spring_constant", "dissipation_spring_constant", "relaxation_time",
+    "dashpot_coefficient",
+)  # fmt: skip
+SHARED: dict[str, tuple[str, ...]] = {
+    **{f"test_{name}": _S for name in _OF_TEST},
+    "tangent_modulus": _B,
+    "tangent_modulus_untrimmed": _B,
+    "branch_tension": _B,
+    "tangent_modulus_first_loading": _F,
+    "branch_tension_first_loading": _F,
+    "segment_modulus": ("specimen", "branch_name", "segment"),
+}
+"""Quantities whose contributions are kept, with their dimensions."""
+# the curve of one cycle has the shared error of the mean
+_ALIKE = {"tangent_modulus_by_cycle": "tangent_modulus"}
+
+SHARED_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        count(COMPONENT, (COMPONENT,)),
+        label("uncertainty_source", (COMPONENT,)),
+        label("uncertainty_source_of", (COMPONENT,)),
+        count("uncertainty_source_number", (COMPONENT,)),
+        *(
+            (
+                companion(name, "_random_standard_uncertainty", dims),
+                companion(name, "_uncertainty_contribution", (COMPONENT, *dims)),
+            )
+            for name, dims in SHARED.items()
+        ),
+    )
+)
+
+
+def with_shared(
+    values: Values, contributions: Contributions | None, of_cycles: dict[str, Floats]
+) -> Values:
+    """Put the shared part of every uncertainty beside its random part, and both together.
+
+    Parameters
+    ----------
+    values : dict of str to ndarray
+        Of the archive; uncertainties are random.
+    contributions : Contributions or None
+        By name of the archive.
+    of_cycles : dict of str to ndarray
+        Shared standard uncertainty of the quantities of each cycle.
+
+    Returns
+    -------
+    values : dict of str to ndarray
+        New; equal where nothing is shared.
+    """
+    found = dict(values)
+    for name, shared in of_cycles.items():
+        _combine(found, name, shared[None])
+    if contributions is None:
+        return found
+    for name, rows in contributions.values.items():
+        if name not in SHARED or name not in values:
+            continue
+        random = _combine(found, name, rows)
+        found[f"{name}_random_standard_uncertainty"] = random
+        # where there is no number, nothing contributes to it
+        found[f"{name}_uncertainty_contribution"] = np.where(np.isnan(values[name]), np.nan, rows)
+    for name, mean in _ALIKE.items():
+        if name in values and mean in contributions.values:
+            shared = contributions.shared_standard_uncertainty(mean)
+            _combine(found, name, np.nan_to_num(shared)[None, :, None])
+    component = contributions.component
+    found[COMPONENT] = np.arange(1, len(component) + 1)
+    found["uncertainty_source"] = texts([one.source for one in component])
+    found["uncertainty_source_of"] = texts([one.of for one in component])
+    found["uncertainty_source_number"] = np.array([one.number for one in component])
+    return found
+
+
+def _combine(values: Values, name: str, rows: Floats) -> Floats:
+    """Make the uncertainty of a quantity the combined one; return its random part."""
+    key = f"{name}_standard_uncertainty"
+    if key not in values:
+        return np.full(np.shape(values.get(name, np.nan)), np.nan)
+    random: Floats = values[key]
+    values[key] = combined_standard_uncertainty(rows, random)
+    return random
