@@ -151,6 +151,24 @@ def test_each_side_has_its_own_limit(like):
     assert found.is_test_known.all()
 
 
+def test_the_other_way_round_signs_and_limits_change_places(lines):
+    new, old = (lines[f"polyester-{BRAID}-{age}"] for age in ("new", "4-years"))
+    # the lower corner of the one box to the upper of the other: Tables 3 and 5
+    at = {
+        "frequency": np.array([0.1, 0.3, 0.5]),
+        "mean_tension": np.linspace(840, 1920, 3) * LBF,
+        "tension_amplitude": np.linspace(350, 768, 3) * LBF,
+    }
+    first, second = (look_up(line, "hysteresis_energy", **at) for line in (new, old))
+    there, back = compare_values(first, second), compare_values(second, first)
+    assert back.difference == pytest.approx(-there.difference)
+    assert back.surface_low == pytest.approx(-there.surface_high)
+    assert back.high == pytest.approx(-there.low)
+    assert back.ratio == pytest.approx(1 / there.ratio)
+    assert back.is_different.tolist() == there.is_different.tolist()
+    assert back.is_test_different.tolist() == there.is_test_different.tolist()
+
+
 def test_where_one_has_no_interval_nothing_is_told_apart(like):
     first = made([10.0, 0.0], [9.0, np.nan], [11.0, np.nan], [9.5, -1.0], [10.5, 1.0], like)
     second = made([20.0, 5.0], [np.nan] * 2, [np.nan] * 2, [19.0, 4.0], [21.0, 6.0], like)
