@@ -27,7 +27,7 @@ from reduction.checks import as_finite, as_positive
 from reduction.predict.coefficients import CODE_OF_HYDROLOGY
 from reduction.predict.harmonics import WaveHarmonics
 from reduction.predict.immersion import ImmersedSection
-from reduction.predict.waves import particle_motion
+from reduction.predict.motion import particle_motion
 from reduction.record import Floats, freeze_arrays
 
 __all__ = [

@@ -30,18 +30,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite
-from reduction.predict.cord import (
-    NEUTRAL_ANGLE,
-    cord_stretch_ratio,
-    hose_stretch_ratio,
-    pick_up_stretch_ratio,
-    slackest_stretch_ratio,
-)
-from reduction.predict.cordload import cord_load, cord_stiffness, cord_strain_at
-from reduction.predict.cordrates import (
-    rise_of_cord,
-    stretch_ratio_per_angle,
-    stretch_ratio_per_cord_stretch,
+from reduction.predict.cordload import cord_strain_at
+from reduction.predict.cordrates import rise_of_cord
+from reduction.predict.hosestate import (
+    HoseState,
+    Rates,
+    as_number,
+    at_cord_strain,
+    at_deepest_slack,
+    at_pick_up,
+    on_the_curve,
 )
 from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
 from reduction.predict.rubber import rubber_stiffness, rubber_tension
@@ -148,7 +146,7 @@ def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> HoseSensitivity:
     [3.7 4. ]
     """
     along = as_finite("strain", strain)
-    curve = _on_the_curve(design, along)
+    curve = on_the_curve(design, along)
     tension, pressure = _chain(design, curve)
     shape = (*design.shape, along.size)
     working = cord_strain_at(design.cord, design.working_share * design.cord.break_load)
@@ -158,118 +156,14 @@ def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> HoseSensitivity:
         tension=_rows(tension, shape) + broken,
         fill_pressure=_rows(pressure, shape) + broken,
         stiffness=np.broadcast_to(tension["strain"], shape).copy(),
-        deepest_slack=_of_event(design, _deepest_slack(design)),
-        pick_up=_of_event(design, _pick_up(design)),
-        working=_of_event(design, _taut(design, working)),
-        cord_break=_of_event(design, _taut(design, np.asarray(design.cord.break_strain))),
+        deepest_slack=_of_event(design, at_deepest_slack(design)),
+        pick_up=_of_event(design, at_pick_up(design)),
+        working=_of_event(design, at_cord_strain(design, working)),
+        cord_break=_of_event(design, at_cord_strain(design, np.asarray(design.cord.break_strain))),
     )
 
 
-_Rates = Mapping[str, Floats]
-
-
-@dataclass(frozen=True)
-class _State:
-    """Where a hose is, and how each parameter moves it from there; ``columns`` adds an axis."""
-
-    stretch: Floats
-    cord_stretch: Floats
-    cord_tension: Floats
-    of_stretch: _Rates
-    of_cord_stretch: _Rates
-    of_cord_tension: _Rates
-    columns: bool = False
-
-
-def _number(value: ArrayLike, *, columns: bool) -> Floats:
-    array = np.asarray(value, dtype=np.float64)
-    return array[..., None] if columns else array
-
-
-def _on_the_curve(design: HoseDesign, strain: Floats) -> _State:
-    angle, dead, load_scale, strain_scale = (
-        _number(one, columns=True)
-        for one in (
-            design.wrap_angle,
-            design.dead_length_share,
-            design.cord_load_scale,
-            design.cord_strain_scale,
-        )
-    )
-    stretch = 1 + strain / (1 - dead)
-    cord = cord_stretch_ratio(stretch, angle)
-    at = (cord - 1) / strain_scale
-    load = load_scale * cord_load(design.cord, at)
-    stiffness = load_scale / strain_scale * cord_stiffness(design.cord, at)
-    cosine, sine = np.cos(angle), np.sin(angle)
-    by_stretch = rise_of_cord(stretch, cosine**2, sine**2) / cord
-    per_strain = 1 / (1 - dead)
-    of_stretch = {"strain": per_strain, "dead_length_share": (stretch - 1) * per_strain}
-    of_cord = {name: by_stretch * rate for name, rate in of_stretch.items()}
-    of_cord["wrap_angle"] = sine * cosine * (1 / stretch - stretch**2) / cord
-    of_load = {name: stiffness * rate for name, rate in of_cord.items()}
-    of_load["cord_load_scale"] = load / load_scale
-    of_load["cord_strain_scale"] = -stiffness * at
-    return _State(stretch, cord, load, of_stretch, of_cord, of_load, columns=True)
-
-
-def _deepest_slack(design: HoseDesign) -> _State:
-    angle = np.asarray(design.wrap_angle, dtype=np.float64)
-    stretch = slackest_stretch_ratio(angle)
-    per_angle = 2 / 3 * stretch / (np.sin(angle) * np.cos(angle))
-    return _slack(design, stretch, per_angle)
-
-
-def _pick_up(design: HoseDesign) -> _State:
-    angle = np.asarray(design.wrap_angle, dtype=np.float64)
-    stretch = pick_up_stretch_ratio(angle)
-    per_angle = 2 * np.tan(angle) / np.cos(angle) ** 2 / (2 * stretch + 1)
-    return _slack(design, stretch, per_angle)
-
-
-def _slack(design: HoseDesign, stretch: Floats, per_angle: Floats) -> _State:
-    """Where the cords carry nothing; below the neutral angle the hose is at rest there."""
-    is_above = np.asarray(design.wrap_angle) > NEUTRAL_ANGLE
-    of_stretch = {
-        "strain": 1 / (1 - np.asarray(design.dead_length_share, dtype=np.float64)),
-        "wrap_angle": np.where(is_above, per_angle, 0.0),
-    }
-    return _State(stretch, np.ones(stretch.shape), np.zeros(stretch.shape), of_stretch, {}, {})
-
-
-def _taut(design: HoseDesign, at: Floats) -> _State:
-    """Where the cords are at a strain of their measured curve."""
-    angle, load_scale, strain_scale, dead = (
-        np.asarray(one, dtype=np.float64)
-        for one in (
-            design.wrap_angle,
-            design.cord_load_scale,
-            design.cord_strain_scale,
-            design.dead_length_share,
-        )
-    )
-    load, slope = cord_load(design.cord, at), cord_stiffness(design.cord, at)
-    cord = 1 + strain_scale * at
-    per_cord = stretch_ratio_per_cord_stretch(cord, angle)
-    per_strain = 1 / (1 - dead)
-    return _State(
-        hose_stretch_ratio(cord, angle),
-        cord,
-        load_scale * load,
-        of_stretch={
-            "strain": per_strain,
-            "wrap_angle": stretch_ratio_per_angle(cord, angle),
-            "cord_strain_scale": per_cord * at,
-        },
-        of_cord_stretch={"strain": per_strain / per_cord, "cord_strain_scale": at},
-        of_cord_tension={
-            "strain": load_scale / strain_scale * slope * per_strain / per_cord,
-            "cord_load_scale": load,
-        },
-    )
-
-
-def _of_event(design: HoseDesign, state: _State) -> EventSensitivity:
+def _of_event(design: HoseDesign, state: HoseState) -> EventSensitivity:
     free = 1 - np.asarray(design.dead_length_share, dtype=np.float64)
     of_strain = {name: free * rate for name, rate in state.of_stretch.items()}
     of_strain["dead_length_share"] = 1 - state.stretch
@@ -282,10 +176,10 @@ def _of_event(design: HoseDesign, state: _State) -> EventSensitivity:
     )
 
 
-def _chain(design: HoseDesign, state: _State) -> tuple[_Rates, _Rates]:
+def _chain(design: HoseDesign, state: HoseState) -> tuple[Rates, Rates]:
     """Tension and fill pressure by every parameter: directly, and through the state."""
     angle, first, second, bore, skin, density, modulus = (
-        _number(one, columns=state.columns)
+        as_number(one, columns=state.columns)
         for one in (
             design.wrap_angle,
             *design.layer_diameter,

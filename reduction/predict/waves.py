@@ -28,40 +28,18 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import exp, expm1, pi, tanh
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from reduction.checks import as_finite, as_positive
+from reduction.checks import as_positive
 from reduction.errors import DataError
 from reduction.predict import dispersion
 from reduction.predict.breaking import refuse_breaking
 from reduction.predict.dispersion import STANDARD_GRAVITY
 from reduction.predict.harmonics import WaveHarmonics
-from reduction.record import Floats, freeze_arrays
 
-__all__ = ["ParticleMotion", "airy_wave", "particle_motion", "stokes_wave"]
-
-
-@dataclass(frozen=True)
-class ParticleMotion:
-    """Surface and water at one place over time; arrays have the shape (n_times,).
-
-    Velocities [m s-1] and accelerations [m s-2] are of the wave alone, without a current;
-    the elevation [m] is of the surface above the mean level.
-    """
-
-    elevation: Floats
-    horizontal_velocity: Floats
-    vertical_velocity: Floats
-    horizontal_acceleration: Floats
-    vertical_acceleration: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
+__all__ = ["airy_wave", "stokes_wave"]
 
 
 def airy_wave(
@@ -222,54 +200,6 @@ def stokes_wave(
         surface=surface,
         speed=[first, second],
         height_above_bed=water_depth + elevation,
-    )
-
-
-def particle_motion(wave: WaveHarmonics, time: ArrayLike, position: float = 0.0) -> ParticleMotion:
-    """Surface and water at one place over time.
-
-    Parameters
-    ----------
-    wave : WaveHarmonics
-        From a theory or by hand.
-    time : array_like, shape (n_times,)
-        When. [s]
-    position : float
-        Along the wave; the crest is at 0 at time 0. [m]
-
-    Returns
-    -------
-    motion : ParticleMotion
-        Arrays of shape (n_times,).
-
-    Raises
-    ------
-    DataError
-        If a time is not finite.
-
-    Notes
-    -----
-    Sums of the harmonics; a current is not in them.
-
-    Examples
-    --------
-    Under the crest the water goes forward and falls fastest a quarter period later.
-
-    >>> wave = airy_wave(wave_height=1.25, wave_period=4.0, water_depth=6.0, elevation=0.0)
-    >>> motion = particle_motion(wave, [0.0, 1.0])
-    >>> print(motion.horizontal_velocity.round(3), motion.vertical_velocity.round(3))
-    [1.06 0.  ] [ 0.    -0.982]
-    """
-    when = np.atleast_1d(as_finite("time", time))
-    phase = wave.wave_number * position - wave.angular_frequency * when
-    order = np.arange(1, wave.elevation.size + 1)
-    cosines, sines = (part(np.multiply.outer(phase, order)) for part in (np.cos, np.sin))
-    return ParticleMotion(
-        elevation=cosines @ wave.elevation,
-        horizontal_velocity=cosines @ wave.horizontal_velocity,
-        vertical_velocity=sines @ wave.vertical_velocity,
-        horizontal_acceleration=sines @ wave.horizontal_acceleration,
-        vertical_acceleration=cosines @ wave.vertical_acceleration,
     )
 
 

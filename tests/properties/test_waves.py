@@ -16,7 +16,8 @@ from reduction.predict.dispersion import (
 from reduction.predict.extremes import find_extremes
 from reduction.predict.immersion import ImmersedSection, immersion_depth_of
 from reduction.predict.morison import wave_load
-from reduction.predict.waves import airy_wave, particle_motion, stokes_wave
+from reduction.predict.motion import particle_motion
+from reduction.predict.waves import airy_wave, stokes_wave
 from reduction.predict.wavetheory import describe_wave
 
 periods, depths = st.floats(0.3, 60.0), st.floats(0.05, 5e3)

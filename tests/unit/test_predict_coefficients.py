@@ -13,7 +13,8 @@ from reduction.predict.coefficients import (
     keulegan_carpenter_number,
     reynolds_number,
 )
-from reduction.predict.waves import airy_wave, particle_motion, stokes_wave
+from reduction.predict.motion import particle_motion
+from reduction.predict.waves import airy_wave, stokes_wave
 
 SEA = {"wave_height": 1.25, "wave_period": 3.57, "water_depth": 3.0, "elevation": -0.038}
 TABLE_2 = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from reduction.pipeline.waveload import PredictedWaveLoad
-from reduction.predict.waves import particle_motion
+from reduction.predict.motion import particle_motion
 from reduction.report.decimate import keep_extremes
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
 from reduction.report.style import COLOURS, SYMBOLS, Shown, faded, shown
