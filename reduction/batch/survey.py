@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from reduction.batch.found import found_in
-from reduction.campaign.plan import Campaign, StepPlan, TestPlan
+from reduction.batch.steps import step_plan, step_record
+from reduction.campaign.plan import Campaign, TestPlan
 from reduction.errors import DataError, LogError, ReductionError
 from reduction.ingest.datum import length_at_slack
 from reduction.ingest.record_of_test import read_record
@@ -66,61 +67,6 @@ class Survey:
     error: ReductionError | None = None
 
 
-def _slice(record: Record, first: int, stop: int) -> Record:
-    """The rows from ``first`` up to ``stop``, as a record of its own."""
-    part = slice(first, stop)
-    return replace(
-        record,
-        time=record.time[part],
-        crosshead_position=record.crosshead_position[part],
-        tension=record.tension[:, part],
-        quality_flag=record.quality_flag[:, part],
-        crosshead_position_quality_flag=record.crosshead_position_quality_flag[part],
-        measured_strain=None if record.measured_strain is None else record.measured_strain[:, part],
-        cycle_counter=None if record.cycle_counter is None else record.cycle_counter[part],
-        n_rows_read=stop - first,
-    )
-
-
-def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
-    """The rows of one step of a log."""
-    if step.time_range is not None:
-        low, high = step.time_range
-        inside = np.flatnonzero((record.time >= low) & (record.time <= high))
-        if inside.size == 0:
-            raise DataError(
-                f"step '{step.name}' of test '{plan.id}' holds no row of the log",
-                found=f"{record.time[0]:g} to {record.time[-1]:g} s in the log",
-                needed=f"rows from {low:g} to {high:g} s",
-            )
-        return _slice(record, int(inside[0]), int(inside[-1]) + 1)
-    whole = locate(record, kind="cyclic", settings=plan.settings)
-    first, last = step.cycle_range or (1, 1)
-    if whole.cycles is None or not 1 <= first <= last <= whole.cycles.n_cycles:
-        raise DataError(
-            f"step '{step.name}' of test '{plan.id}' asks for cycles that the log lacks",
-            found=f"cycles {first} to {last}",
-            needed=f"1 to {0 if whole.cycles is None else whole.cycles.n_cycles}",
-        )
-    return _slice(record, int(whole.cycles.first[first - 1]), int(whole.cycles.last[last - 1]) + 1)
-
-
-def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
-    cycles = replace(plan.settings.cycles, expected_cycles=step.expected_cycles)
-    note = {"step": step.name} | ({"step_note": step.note} if step.note else {})
-    return replace(
-        plan,
-        id=step.product(plan.id),
-        kind=step.kind,
-        target_strain=step.target_strain or plan.target_strain,
-        settings=replace(plan.settings, cycles=cycles),
-        attributes=plan.attributes | note,
-        step_place=place,
-        failed=step.failed,
-        steps=(),
-    )
-
-
 def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
     """Read one log and locate what it holds: one survey a test, or one a step.
 
@@ -169,9 +115,9 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
     whole = locate(record, kind="relaxation", settings=plan.settings)
     surveys = []
     for place, step in enumerate(plan.steps, start=1):
-        part = _step_plan(plan, step, place)
+        part = step_plan(plan, step, place)
         try:
-            record_of_step = replace(_step_record(record, step, plan), test_id=part.id)
+            record_of_step = replace(step_record(record, step, plan), test_id=part.id)
             survey = _located(part, record_of_step, sources)
         except ReductionError as error:
             survey = Survey(part, sources, n_rows=record.n_samples, error=error)
