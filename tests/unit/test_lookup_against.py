@@ -159,7 +159,7 @@ def test_the_other_way_round_signs_and_limits_change_places(lines):
         "mean_tension": np.linspace(840, 1920, 3) * LBF,
         "tension_amplitude": np.linspace(350, 768, 3) * LBF,
     }
-    first, second = (look_up(line, "hysteresis_energy", **at) for line in (new, old))
+    first, second = (look_up(line, "apparent_spring_constant", **at) for line in (new, old))
     there, back = compare_values(first, second), compare_values(second, first)
     assert back.difference == pytest.approx(-there.difference)
     assert back.surface_low == pytest.approx(-there.surface_high)
@@ -167,6 +167,8 @@ def test_the_other_way_round_signs_and_limits_change_places(lines):
     assert back.ratio == pytest.approx(1 / there.ratio)
     assert back.is_different.tolist() == there.is_different.tolist()
     assert back.is_test_different.tolist() == there.is_test_different.tolist()
+    assert back.is_different[2]
+    assert back.is_test_different[2]
 
 
 def test_where_one_has_no_interval_nothing_is_told_apart(like):
