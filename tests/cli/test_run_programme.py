@@ -337,6 +337,32 @@ def test_without_a_break_strength_nothing_is_divided_by_it(log, tmp_path):
         assert not [name for name in archive.variables if "over_strength" in str(name)]
 
 
+@pytest.mark.parametrize(
+    ("lines", "remark"),
+    [
+        (("order = 1", "order = 2"), ""),
+        (("order = 2", "order = 1"), "it had been loaded in dynamic-1"),
+        (("order = 1\nunlogged_cycles = 4", "order = 2"), "it had carried 4 cycles"),
+    ],
+)
+def test_the_order_of_several_logs_decides_what_is_of_a_new_rope(log, tmp_path, lines, remark):
+    made.write(log, tmp_path / "P-7.csv")
+    head, *rows = (tmp_path / "P-7.csv").read_text().splitlines()
+    parts = []
+    for step, line in zip(("bedding-in", "dynamic 1"), lines, strict=True):
+        begin, end = log.steps[step]
+        kept = [row for row in rows if begin <= float(row.partition(",")[0]) <= end]
+        name = step.replace(" ", "-")
+        (tmp_path / f"{name}.csv").write_text("\n".join([head, *kept]) + "\n")
+        parts.append(made.single(name, made.KINDS.get(step, "cyclic"), line))
+    result = run(tmp_path, *parts)
+    assert result.exit_status == 0
+    found = table(result, "change_in_length").set_index("property_name")
+    construction = found.loc["construction strain"]
+    assert pd.isna(construction["property_strain"]) == bool(remark)
+    assert remark in construction["property_remark"]
+
+
 def test_properties_of_logs_without_an_order_are_those_that_need_none(apart):
     found = table(apart, "change_in_length").set_index("property_name")
     of_new = found.loc[["original stiffness", "construction strain", "working strain"]]
