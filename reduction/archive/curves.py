@@ -1,20 +1,25 @@
-"""What stands on a strain grid, and what is fitted to it."""
+"""What stands on a strain grid, and what is fitted to it: variables and values."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields
+from itertools import chain
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from reduction.archive.reasons import BOUND, CRITERION, NO_YES, SETTING, SPREAD
 from reduction.archive.values import Values, numbers, texts
+from reduction.archive.variable import Variable, count, flag, label, measured, stated
 from reduction.moduli.product import ElastomerFit, ModulusCurves, Ratio, Segments
 from reduction.record import Floats
 from reduction.vocabulary import BRANCH_NAMES
 
 __all__ = [
+    "CURVE_ROWS",
+    "ELASTOMER_ROWS",
     "curve_values",
     "elastomer_values",
     "first_loading_values",
@@ -22,6 +27,55 @@ __all__ = [
     "segment_values",
     "stress_at_strain_values",
 ]
+
+_S = ("specimen",)
+_B = ("specimen", "branch_name", "strain_bin")
+_F = ("specimen", "branch_name", "first_loading_strain_bin")
+_BC = ("specimen", "selected_cycle", "branch_name", "strain_bin")
+_G = ("specimen", "branch_name", "segment")
+_R = ("comparison", "branch_name", "ratio_strain_bin")
+
+CURVE_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        stated("strain_window", (), SETTING),
+        measured("tangent_modulus", _B, "_count", "_minimum", "_maximum", "_scatter"),
+        measured("tangent_modulus_untrimmed", _B),
+        measured("branch_tension", _B),
+        measured("tangent_modulus_by_cycle", _BC),
+        measured("tangent_modulus_first_loading", _F),
+        measured("branch_tension_first_loading", _F),
+        measured("segment_modulus", _G),
+        stated("segment_strain_low", _G, BOUND),
+        stated("segment_strain_high", _G, BOUND),
+        stated("segment_tension_low", _G, BOUND),
+        stated("segment_tension_high", _G, BOUND),
+        label("segment_criterion"),
+        measured("stress_at_strain", ("specimen", "strain_level")),
+        measured("slack_strain_at_unloading", _S),
+        # the ratio of two specimens
+        label("ratio_numerator", ("comparison",)),
+        label("ratio_denominator", ("comparison",)),
+        measured("modulus_ratio", _R),
+        stated("modulus_ratio_low", _R, BOUND),
+        stated("modulus_ratio_high", _R, BOUND),
+        flag("modulus_ratio_is_different", _R, NO_YES),
+    )
+)
+ELASTOMER_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        label("elastomer_specimen", ("elastomer_fit",)),
+        label("elastomer_law", ("elastomer_fit",)),
+        stated("elastomer_rms_stress", ("elastomer_fit",), SPREAD),
+        stated("elastomer_strain_low", ("elastomer_fit",), BOUND),
+        stated("elastomer_strain_high", ("elastomer_fit",), BOUND),
+        flag("elastomer_is_stable", ("elastomer_fit",), NO_YES),
+        stated("elastomer_aicc", ("elastomer_fit",), CRITERION),
+        count("elastomer_parameter_fit", ("elastomer_parameter",)),
+        label("elastomer_parameter_name", ("elastomer_parameter",)),
+        measured("elastomer_modulus", ("elastomer_parameter",)),
+        measured("elastomer_exponent", ("elastomer_parameter",)),
+    )
+)
 
 
 def curve_values(curves: ModulusCurves) -> Values:

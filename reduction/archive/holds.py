@@ -1,17 +1,44 @@
-"""Standstills, and the holds that were reduced among them."""
+"""Standstills, and the holds that were reduced among them: variables of holds, values of both."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 
 import numpy as np
 
+from reduction.archive.reasons import CLOCK, MEAN_READING
 from reduction.archive.values import Values, numbers, pad, texts
+from reduction.archive.variable import Variable, count, label, measured, stated
 from reduction.holds.product import HoldResult, hold_numbers
 from reduction.phases.standstill import Standstills
 from reduction.record import Floats
 
-__all__ = ["hold_values", "standstill_values"]
+__all__ = ["HOLD_ROWS", "hold_values", "standstill_values"]
+
+HOLD_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        count("hold_number", ("hold",)),
+        label("hold_specimen", ("hold",)),
+        label("hold_kind", ("hold",)),
+        stated("hold_start_time", ("hold",), CLOCK),
+        stated("hold_duration", ("hold",), CLOCK),
+        stated("hold_ramp_centre_time", ("hold",), CLOCK),
+        stated("hold_strain", ("hold",), MEAN_READING),
+        stated("hold_initial_tension", ("hold",), MEAN_READING),
+        stated("hold_final_tension", ("hold",), MEAN_READING),
+        measured("relaxation_drop", ("hold",)),
+        measured("relaxation_rate_per_decade", ("hold",)),
+        measured("creep_rate_per_decade", ("hold",)),
+        stated("tension_at_time", ("hold", "hold_time"), MEAN_READING),
+        stated("strain_at_time", ("hold", "hold_time"), MEAN_READING),
+        measured("prony_tension", ("hold", "prony_term")),
+        measured("prony_time", ("hold", "prony_term")),
+        measured("long_time_tension", ("hold",)),
+        label("hold_criterion", ("hold",)),
+        label("hold_refusal", ("hold",)),
+    )
+)
 
 _PLAIN = (
     "hold_start_time",

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from reduction.archive.schema import STEP_MASKS
+from reduction.archive.stepwise import STEP_MASKS
 from reduction.archive.strainmodel import strain_model_of
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.pieces import CurvePiece, PieceBranch, piece_of_steps, pieces_of_branches

@@ -57,6 +57,8 @@ from __future__ import annotations
 
 from itertools import chain
 
+from reduction.archive.curves import CURVE_ROWS, ELASTOMER_ROWS
+from reduction.archive.holds import HOLD_ROWS
 from reduction.archive.line import LINE_ROWS
 from reduction.archive.programme import ROPE_ROWS
 from reduction.archive.reasons import (
@@ -64,18 +66,18 @@ from reduction.archive.reasons import (
     BOUND,
     CHECK,
     CLOCK,
-    CRITERION,
     MEAN_READING,
     MOVEMENT,
     NO_YES,
+    PART,
     READING,
     SEE_PER_DECADE,
     SETTING,
-    SPREAD,
     STATED,
     TWO_METHODS,
 )
 from reduction.archive.shared import SHARED_ROWS
+from reduction.archive.stepwise import STEP_ROWS, STEPWISE
 from reduction.archive.variable import Variable, count, flag, label, mask, measured, stated
 from reduction.record import Quality
 from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES
@@ -85,8 +87,6 @@ __all__ = [
     "QUALITY_MASKS",
     "SCHEMA",
     "SCHEMA_VERSION",
-    "STEPWISE",
-    "STEP_MASKS",
     "schema_of",
 ]
 
@@ -94,7 +94,6 @@ SCHEMA_VERSION = "1"
 """Changes when a name, dimension or meaning changes; additions leave it as it is."""
 
 QUALITY_MASKS = {(mask_.name or "").lower(): int(mask_) for mask_ in Quality}
-STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
 
 COEFFICIENTS = {
     "relaxed_free_length": "relaxed_free_length",
@@ -117,11 +116,6 @@ _S = ("specimen",)
 _C = ("specimen", "cycle")
 _CB = ("cycle", "branch_name")
 _CE = ("specimen", "cycle", "branch_name")
-_B = ("specimen", "branch_name", "strain_bin")
-_F = ("specimen", "branch_name", "first_loading_strain_bin")
-_BC = ("specimen", "selected_cycle", "branch_name", "strain_bin")
-_G = ("specimen", "branch_name", "segment")
-_R = ("comparison", "branch_name", "ratio_strain_bin")
 
 _ROWS = chain(
     # coordinates
@@ -211,7 +205,7 @@ _ROWS = chain(
     stated(
         "strain_coefficient_correlation",
         ("specimen", "coefficient_name", "coefficient_name_other"),
-        "is part of an uncertainty",
+        PART,
     ),
     stated("strain_position_low", _S, BOUND),
     stated("strain_position_high", _S, BOUND),
@@ -282,29 +276,7 @@ _ROWS = chain(
     stated("peak_tension_change", _S, SEE_PER_DECADE),
     LINE_ROWS,
     ROPE_ROWS,
-    # curves
-    stated("strain_window", (), SETTING),
-    measured("tangent_modulus", _B, "_count", "_minimum", "_maximum", "_scatter"),
-    measured("tangent_modulus_untrimmed", _B),
-    measured("branch_tension", _B),
-    measured("tangent_modulus_by_cycle", _BC),
-    measured("tangent_modulus_first_loading", _F),
-    measured("branch_tension_first_loading", _F),
-    measured("segment_modulus", _G),
-    stated("segment_strain_low", _G, BOUND),
-    stated("segment_strain_high", _G, BOUND),
-    stated("segment_tension_low", _G, BOUND),
-    stated("segment_tension_high", _G, BOUND),
-    label("segment_criterion"),
-    measured("stress_at_strain", ("specimen", "strain_level")),
-    measured("slack_strain_at_unloading", _S),
-    # the ratio of two specimens
-    label("ratio_numerator", ("comparison",)),
-    label("ratio_denominator", ("comparison",)),
-    measured("modulus_ratio", _R),
-    stated("modulus_ratio_low", _R, BOUND),
-    stated("modulus_ratio_high", _R, BOUND),
-    flag("modulus_ratio_is_different", _R, NO_YES),
+    CURVE_ROWS,
     # slips
     count("n_slips", _S),
     label("slip_specimen", ("slip",)),
@@ -314,48 +286,9 @@ _ROWS = chain(
     measured("slip_tension_step", ("slip",)),
     measured("slip_length", ("slip",)),
     stated("creep_per_cycle", _S, SEE_PER_DECADE),
-    # elastomer laws
-    label("elastomer_specimen", ("elastomer_fit",)),
-    label("elastomer_law", ("elastomer_fit",)),
-    stated("elastomer_rms_stress", ("elastomer_fit",), SPREAD),
-    stated("elastomer_strain_low", ("elastomer_fit",), BOUND),
-    stated("elastomer_strain_high", ("elastomer_fit",), BOUND),
-    flag("elastomer_is_stable", ("elastomer_fit",), NO_YES),
-    stated("elastomer_aicc", ("elastomer_fit",), CRITERION),
-    count("elastomer_parameter_fit", ("elastomer_parameter",)),
-    label("elastomer_parameter_name", ("elastomer_parameter",)),
-    measured("elastomer_modulus", ("elastomer_parameter",)),
-    measured("elastomer_exponent", ("elastomer_parameter",)),
-    # holds
-    count("hold_number", ("hold",)),
-    label("hold_specimen", ("hold",)),
-    label("hold_kind", ("hold",)),
-    stated("hold_start_time", ("hold",), CLOCK),
-    stated("hold_duration", ("hold",), CLOCK),
-    stated("hold_ramp_centre_time", ("hold",), CLOCK),
-    stated("hold_strain", ("hold",), MEAN_READING),
-    stated("hold_initial_tension", ("hold",), MEAN_READING),
-    stated("hold_final_tension", ("hold",), MEAN_READING),
-    measured("relaxation_drop", ("hold",)),
-    measured("relaxation_rate_per_decade", ("hold",)),
-    measured("creep_rate_per_decade", ("hold",)),
-    stated("tension_at_time", ("hold", "hold_time"), MEAN_READING),
-    stated("strain_at_time", ("hold", "hold_time"), MEAN_READING),
-    measured("prony_tension", ("hold", "prony_term")),
-    measured("prony_time", ("hold", "prony_term")),
-    measured("long_time_tension", ("hold",)),
-    label("hold_criterion", ("hold",)),
-    label("hold_refusal", ("hold",)),
-    # steps
-    label("clock", ("step",)),
-    stated("gauge_length", ("step",), "a tape reading"),
-    stated("eye_to_eye_length", ("step",), "a tape reading"),
-    stated("printed_strain", ("step",), STATED),
-    mask("step_flag", ("step",), STEP_MASKS),
-    measured("relaxed_gauge_length", ()),
-    stated("interval_strain", ("interval",), "middle of two readings"),
-    measured("interval_modulus", ("interval",)),
-    flag("interval_branch", ("interval",), BRANCH_VALUES),
+    ELASTOMER_ROWS,
+    HOLD_ROWS,
+    STEP_ROWS,
     SHARED_ROWS,
     # the record and what is known about it
     count("n_rows_read", ()),
@@ -365,17 +298,6 @@ _ROWS = chain(
     label("note_stage", ("note",)),
 )
 SCHEMA: dict[str, Variable] = {row.name: row for row in _ROWS}
-STEPWISE: dict[str, Variable] = {
-    row.name: row
-    for row in chain(
-        stated("time", ("step",), CLOCK),
-        stated("tension", ("step",), "weights as stated"),
-        stated("strain", ("step",), "from tape readings", ancillary=("step_flag",)),
-        flag("branch", ("step",), BRANCH_VALUES),
-        measured("secant_modulus", ("step",)),
-    )
-}
-"""Names that stand along ``step`` in a stepwise test."""
 
 
 def schema_of(*, is_stepwise: bool) -> dict[str, Variable]:

@@ -1,14 +1,45 @@
-"""A stepwise test: readings, and the slopes between them."""
+"""A stepwise test: readings, and the slopes between them; their variables and values."""
 
 from __future__ import annotations
 
+from itertools import chain
+
 import numpy as np
 
-from reduction.archive.schema import STEP_MASKS
+from reduction.archive.reasons import CLOCK, STATED
 from reduction.archive.values import Values, texts
+from reduction.archive.variable import Variable, flag, label, mask, measured, stated
 from reduction.moduli.stepwise import StepwiseResult
+from reduction.vocabulary import BRANCH_VALUES
 
-__all__ = ["stepwise_values"]
+__all__ = ["STEPWISE", "STEP_MASKS", "STEP_ROWS", "stepwise_values"]
+
+STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
+
+STEP_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        label("clock", ("step",)),
+        stated("gauge_length", ("step",), "a tape reading"),
+        stated("eye_to_eye_length", ("step",), "a tape reading"),
+        stated("printed_strain", ("step",), STATED),
+        mask("step_flag", ("step",), STEP_MASKS),
+        measured("relaxed_gauge_length", ()),
+        stated("interval_strain", ("interval",), "middle of two readings"),
+        measured("interval_modulus", ("interval",)),
+        flag("interval_branch", ("interval",), BRANCH_VALUES),
+    )
+)
+STEPWISE: dict[str, Variable] = {
+    row.name: row
+    for row in chain(
+        stated("time", ("step",), CLOCK),
+        stated("tension", ("step",), "weights as stated"),
+        stated("strain", ("step",), "from tape readings", ancillary=("step_flag",)),
+        flag("branch", ("step",), BRANCH_VALUES),
+        measured("secant_modulus", ("step",)),
+    )
+}
+"""Names that stand along ``step`` in a stepwise test."""
 
 
 def stepwise_values(result: StepwiseResult) -> Values:

@@ -2,7 +2,8 @@
 
 import pytest
 
-from reduction.archive.schema import SCHEMA, STEPWISE, schema_of
+from reduction.archive.schema import SCHEMA, schema_of
+from reduction.archive.stepwise import STEPWISE
 from reduction.archive.variable import Variable
 from reduction.errors import ArchiveError
 
