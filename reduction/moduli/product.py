@@ -81,7 +81,8 @@ class Segments:
     """Piecewise-linear moduli, the form of Tables 5 and 6 of WHOI-2005-10.
 
     Every array has shape (n_specimens, 2, n_segments), NaN where a branch has
-    fewer segments.  ``criterion`` says how their number was chosen.
+    fewer segments.  ``segment_misfit`` is the rms distance of the branch from the line [N],
+    ``criterion`` says how the number of segments was chosen.
     """
 
     segment_modulus: Floats
@@ -90,6 +91,7 @@ class Segments:
     segment_strain_high: Floats
     segment_tension_low: Floats
     segment_tension_high: Floats
+    segment_misfit: Floats
     criterion: str
 
     def __post_init__(self) -> None:

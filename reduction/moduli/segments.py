@@ -73,8 +73,9 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     the step between them.
 
     The uncertainty is type A: that of the tangent modulus, root mean square over the
-    segment, over the root of the windows that fit in it; and how far the branch is
-    from the line, as the uncertainty of the tension at each end of the segment.
+    segment, over the root of the windows that fit in it.  It is that of the chord of the line.
+    How far the branch is from the line stands beside it as ``segment_misfit`` (root mean
+    square): who takes the segment for the curve adds what that means to him.
 
     NaN for a branch with fewer than six bins.
 
@@ -102,7 +103,7 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
             found=f"shape {areas.shape}",
             needed=f"({n_specimens},)",
         )
-    table = np.full((6, n_specimens, 2, settings.maximum_segments), np.nan)
+    table = np.full((7, n_specimens, 2, settings.maximum_segments), np.nan)
     for at in np.ndindex(n_specimens, 2):
         if np.count_nonzero(_reached(curves, at)) < _FEWEST_BINS:
             continue
@@ -117,6 +118,7 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
         segment_strain_high=table[3],
         segment_tension_low=table[4],
         segment_tension_high=table[5],
+        segment_misfit=table[6],
         criterion="fewest contiguous segments, best breakpoints, whose rms distance from the "
         f"mean branch is within {100 * settings.segment_tolerance:g} % of its range of tension and "
         f"its roughness, at most {settings.maximum_segments}",
@@ -133,7 +135,7 @@ def _reached(curves: ModulusCurves, at: tuple[int, ...]) -> Bools:
 def _segment_columns(
     curves: ModulusCurves, at: tuple[int, ...], area: float, settings: ModulusSettings
 ) -> Floats:
-    """Modulus, its uncertainty, strain and tension limits of one branch, (6, n_segments)."""
+    """Modulus, uncertainty, strain and tension limits, misfit of a branch, (7, n_segments)."""
     used = _reached(curves, at)
     strain, tension = curves.strain_bin[used], curves.branch_tension[at][used]
     # roughness from bin to bin: a drift of the whole branch from cycle to cycle bends no line
@@ -150,16 +152,13 @@ def _segment_columns(
     modulus = np.diff(line.ordinate) / (area * (high - low))
     distance = tension - np.interp(strain, line.knot, line.ordinate)
     variance = curves.tangent_modulus_standard_uncertainty[at][used] ** 2
-    uncertainty = []
+    uncertainty, misfit = [], []
     for start, stop in zip(low, high, strict=True):
         inside = (strain >= start) & (strain <= stop)
+        misfit.append(np.sqrt(np.mean(distance[inside] ** 2)))
         regression = variance[inside & np.isfinite(variance)]
-        if regression.size == 0:
-            uncertainty.append(np.nan)
-            continue
         windows = max((stop - start) / curves.window, 1.0)
-        ends = 2 * np.mean(distance[inside] ** 2) / (area * (stop - start)) ** 2
-        uncertainty.append(np.sqrt(regression.mean() / windows + ends))
-    return np.stack(
-        [modulus, np.array(uncertainty), low, high, line.ordinate[:-1], line.ordinate[1:]]
-    )
+        spread = np.sqrt(regression.mean() / windows) if regression.size else np.nan
+        uncertainty.append(spread)
+    rows = [modulus, uncertainty, low, high, line.ordinate[:-1], line.ordinate[1:], misfit]
+    return np.array(rows, dtype=np.float64)

@@ -59,6 +59,7 @@ TABLES = (
             "segment_strain_low",
             "segment_strain_high",
             "segment_modulus",
+            "segment_misfit",
             "n_cycles",
             "strain_method",
             "segment_criterion",

@@ -140,6 +140,7 @@ OF_REDUCED = (
     Quantity("segment_strain_high", "1", "upper strain end of the segment"),
     Quantity("segment_tension_low", "N", "tension at the lower end of the segment"),
     Quantity("segment_tension_high", "N", "tension at the upper end of the segment"),
+    Quantity("segment_misfit", "N", "rms distance of the mean branch from the segment"),
     Quantity("strain_level", "1", "stated elongation"),
     Quantity("stress_at_strain", "Pa", "nominal stress of the first loading at an elongation"),
     # elastomer laws
