@@ -9,17 +9,18 @@ import numpy as np
 
 from reduction.campaign.assemblyspec import AssemblyCase, load_assembly_case
 from reduction.campaign.faults import in_toml
-from reduction.cli.composite import table_format
+from reduction.cli.composite import PAGE, table_format
 from reduction.cli.compositesource import piece_source
 from reduction.cli.numbers import plain, short, table_of
 from reduction.cli.outcome import Outcome
 from reduction.errors import DataError, ReductionError
-from reduction.export.fromassembly import DeployedLine, assembly_table
+from reduction.export.fromassembly import assembly_table
 from reduction.export.write import export_table
 from reduction.lookup.source import PieceSource, compose
 from reduction.lookup.splices import stated_model
-from reduction.pipeline.deployed import WorkingState, deploy
+from reduction.pipeline.deployed import DeployedLine, WorkingState, deploy
 from reduction.published.piecesource import published_piece_sources
+from reduction.report.curvepage import write_assembly_page
 from reduction.strain.model import StrainModel
 from reduction.units import UnitSystem, display_unit
 
@@ -35,7 +36,10 @@ def assemble_spec(path: Path, *, out: Path | None, outcome: Outcome) -> None:
     units = cast("UnitSystem", outcome.units)
     _show(line, outcome, units)
     if out is not None and form is not None:
-        export_table(assembly_table(line), form, out, units=units)
+        if form == PAGE:
+            write_assembly_page(line, out, units=units)
+        else:
+            export_table(assembly_table(line), form, out, units=units)
         outcome.say(f"written: {out}")
     outcome.answer(_document(line) | {"out": None if out is None else str(out)})
 

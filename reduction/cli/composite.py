@@ -17,18 +17,21 @@ from reduction.export.write import export_table
 from reduction.lookup.composite import CompositeCurve, CompositeRule
 from reduction.lookup.pieces import PieceBranch
 from reduction.lookup.source import PieceSource, compose
+from reduction.report.curvepage import write_composite_page
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["compose_tests", "table_format"]
+__all__ = ["PAGE", "compose_tests", "table_format"]
 
 _ROWS = 24
+PAGE = "page"
 _FORMATS = {
     ".csv": "csv", ".json": "json", ".nc": "netcdf", ".md": "markdown", ".tex": "latex",
+    ".html": PAGE,
 }  # fmt: skip
 
 
 def table_format(path: Path) -> str:
-    """Format of a table by the name of its file.
+    """Format of a table, or `PAGE`, by the name of its file.
 
     Raises
     ------
@@ -37,7 +40,7 @@ def table_format(path: Path) -> str:
     """
     if path.suffix.lower() not in _FORMATS:
         raise SettingsError(
-            "the name of a table says its format", found=path.name,
+            "the name of the file says its format", found=path.name,
             needed="a name that ends in " + ", ".join(_FORMATS),
         )  # fmt: skip
     return _FORMATS[path.suffix.lower()]
@@ -60,7 +63,10 @@ def compose_tests(
     units = cast("UnitSystem", outcome.units)
     _show(source, curve, outcome, units)
     if out is not None and form is not None:
-        export_table(composite_table(source, curve), form, out, units=units)
+        if form == PAGE:
+            write_composite_page(source, curve, out, units=units)
+        else:
+            export_table(composite_table(source, curve), form, out, units=units)
         outcome.say(f"written: {out}")
     outcome.answer(_document(source, curve, rule) | {"out": None if out is None else str(out)})
 

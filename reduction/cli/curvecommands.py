@@ -44,7 +44,8 @@ def composite(
         ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Every node, as .csv, .json, .nc, .md or .tex.")
+        Path | None,
+        typer.Option(help="Every node as .csv, .json, .nc, .md or .tex; a page as .html."),
     ] = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -67,7 +68,8 @@ def composite(
 def assembly(
     spec: SpecPath,
     out: Annotated[
-        Path | None, typer.Option(help="Every node, as .csv, .json, .nc, .md or .tex.")
+        Path | None,
+        typer.Option(help="Every node as .csv, .json, .nc, .md or .tex; a page as .html."),
     ] = None,
     json: Json = False,
     quiet: Quiet = False,

@@ -10,48 +10,15 @@ References
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from reduction.export.product import ExportLine
 from reduction.export.table import TableColumn, ValueTable
-from reduction.lookup.assembly import SeriesPart
-from reduction.lookup.composite import CompositeCurve
-from reduction.lookup.source import PieceSource
-from reduction.pipeline.deployed import DeployedAssembly
+from reduction.pipeline.deployed import DeployedLine
 
-__all__ = ["DeployedLine", "assembly_table", "line_from_assembly"]
-
-
-@dataclass(frozen=True)
-class DeployedLine:
-    """An assembly with what it was made of.
-
-    ``splices`` says by which law a tether has its length, in words.
-    """
-
-    name: str
-    deployed: DeployedAssembly
-    source: PieceSource
-    curve: CompositeCurve
-    splices: str
-    parts: tuple[SeriesPart, ...] = ()
-
-    @property
-    def is_equal(self) -> bool:
-        """Whether all tethers carry the same."""
-        return bool(np.ptp(self.deployed.assembly.slack_length) == 0)
-
-    @property
-    def words(self) -> str:
-        """What it is."""
-        lengths = self.deployed.free_length
-        free = [f"{length:.4g}" for length in dict.fromkeys(lengths)]
-        told = f"{len(lengths)} x {self.source.name}, free length {', '.join(free)} m"
-        named = ", ".join(f"{part.name} {part.length:.4g} m" for part in self.parts)
-        return f"{told}, in line with {named}" if named else told
+__all__ = ["assembly_table", "line_from_assembly"]
 
 
 def assembly_table(line: DeployedLine) -> ValueTable:

@@ -18,12 +18,13 @@ from reduction.lookup.assembly import (
     unequal_tethers,
 )
 from reduction.lookup.composite import CompositeCurve
+from reduction.lookup.source import PieceSource
 from reduction.lookup.splices import deployed_model
 from reduction.lookup.working import LoadSharing, WorkingPoint, working_point, worst_sharing
 from reduction.record import Floats, freeze_arrays
 from reduction.strain.model import StrainModel
 
-__all__ = ["DeployedAssembly", "WorkingLevel", "WorkingState", "deploy"]
+__all__ = ["DeployedAssembly", "DeployedLine", "WorkingLevel", "WorkingState", "deploy"]
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,35 @@ class DeployedAssembly:
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class DeployedLine:
+    """An assembly with what it was made of.
+
+    ``splices`` says by which law a tether has its length, in words.
+    """
+
+    name: str
+    deployed: DeployedAssembly
+    source: PieceSource
+    curve: CompositeCurve
+    splices: str
+    parts: tuple[SeriesPart, ...] = ()
+
+    @property
+    def is_equal(self) -> bool:
+        """Whether all tethers carry the same."""
+        return bool(np.ptp(self.deployed.assembly.slack_length) == 0)
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        lengths = self.deployed.free_length
+        free = [f"{length:.4g}" for length in dict.fromkeys(lengths)]
+        told = f"{len(lengths)} x {self.source.name}, free length {', '.join(free)} m"
+        named = ", ".join(f"{part.name} {part.length:.4g} m" for part in self.parts)
+        return f"{told}, in line with {named}" if named else told
 
 
 def deploy(

@@ -180,6 +180,9 @@ def test_every_node_is_written(command, tmp_path):
     tension = [float(row[1]) * LBF for row in rows[1:]]
     assert tension == pytest.approx(found["tension"], rel=1e-9, abs=1e-9)
     assert command("assembly", path, "--quiet").stdout == ""
+    page = tmp_path / "a.html"
+    assert command("assembly", path, "--out", page).returncode == 0
+    assert "2 x rubber-tether-used" in page.read_text(encoding="utf-8")
 
 
 def test_an_assembly_is_exported_as_one_line(command, tmp_path):

@@ -108,7 +108,7 @@ def test_text_flags_joins_and_gaps_in_the_units_that_were_asked_for(command):
     assert command("composite", "rubber-tether-used", "--quiet").stdout == ""
 
 
-@pytest.mark.parametrize("suffix", ["csv", "json", "nc", "md", "tex"])
+@pytest.mark.parametrize("suffix", ["csv", "json", "nc", "md", "tex", "html"])
 def test_every_node_is_written_by_the_name_of_the_file(command, tmp_path, suffix):
     path = tmp_path / f"c.{suffix}"
     done = command("composite", "rubber-tether-new", "--out", path, "--json")

@@ -1,0 +1,99 @@
+"""Pages of a composite curve and of an assembly: what stands on them, and what is drawn."""
+
+import re
+
+import numpy as np
+import pytest
+from assemblies import DRIVEN
+
+from reduction.lookup.assembly import SeriesPart
+from reduction.lookup.composite import CompositeRule
+from reduction.lookup.pieces import CurvePiece
+from reduction.lookup.source import PieceSource, compose
+from reduction.pipeline.deployed import DeployedLine, WorkingLevel, deploy
+from reduction.report.curvepage import write_assembly_page, write_composite_page
+from reduction.report.figures.curves import draw_assembly, draw_composite, draw_stiffness
+
+
+def piece(name, low, high, kind="cyclic"):
+    at = np.linspace(low, high, 21)
+    return CurvePiece(name, kind, "mean", at, 400 * at, np.full(21, 2.0))
+
+
+SOURCE = PieceSource(
+    "<b>tether</b>", "mean", (piece("T-1", 0.5, 1.0), piece("T-2", 1.2, 2.0),
+    piece("S", 0.2, 0.9, "static")), sources=("archive <a>",),
+    notes=("T-2: a splice slipped 2 times, and its strains hold the slip",), is_synthetic=True,
+)  # fmt: skip
+CURVE = compose(SOURCE, CompositeRule(precedence=("cyclic",)))
+
+
+LEVELS = (WorkingLevel("strain", 0.8, 300.0), WorkingLevel("strain", 0.3))
+
+
+def deployed(levels=LEVELS):
+    found = deploy(
+        CURVE, DRIVEN, n_tethers=3, parts=[SeriesPart("chain", 2.0)], levels=levels,
+        tolerance=0.02, rated_break_strength=3200.0,
+    )  # fmt: skip
+    return DeployedLine(
+        "mooring", found, SOURCE, CURVE, "length by tension-driven", (SeriesPart("chain", 2.0),)
+    )
+
+
+def finite(trace):
+    return np.array([value for value in trace["y"] if value is not None])
+
+
+def test_the_composite_is_drawn_over_the_pieces_that_it_is_made_of():
+    figure = draw_composite(SOURCE, CURVE, "si")
+    by_name = {trace["name"]: trace for trace in figure.data}
+    assert {"T-1, cyclic", "T-2, cyclic", "composite", "gap"} < by_name.keys()
+    assert not any("static" in name for name in by_name)  # not named by the rule
+    assert max(by_name["composite"]["x"]) == pytest.approx(200)
+    assert finite(by_name["composite"]).max() == pytest.approx(800)
+    # from zero to 50 %, and from 100 to 120 %
+    shown = [x for x, y in zip(by_name["gap"]["x"], by_name["gap"]["y"], strict=True)
+             if y is not None]  # fmt: skip
+    assert shown == pytest.approx([0, 25, 50, 100, 110, 120])
+    assert by_name["gap"]["line"]["dash"] == "dot"
+    assert figure.layout["title"]["subtitle"]["text"] == "SYNTHETIC DATA"
+
+
+def test_an_assembly_is_drawn_with_its_cycles_in_the_units_of_the_reader():
+    figure = draw_assembly(deployed(), "us")
+    point = next(trace for trace in figure.data if trace["name"] == "working point 1")
+    mean = 3 * 400 * 0.8
+    assert point["y"] == pytest.approx(
+        np.array([mean - 300, mean, mean + 300]) / 4.4482216, rel=1e-3
+    )
+    assert "length [ft]" in figure.layout["xaxis"]["title"]["text"]
+    dotted = next(trace for trace in figure.data if trace["name"] == "not tested")
+    assert finite(dotted).size > 2
+    stiffness = draw_stiffness(deployed(), "si")
+    assert finite(stiffness.data[0]).min() > 0
+
+
+def test_a_page_of_a_composite_stands_alone_and_escapes_names(tmp_path):
+    path = tmp_path / "c.html"
+    write_composite_page(SOURCE, CURVE, path)
+    text = path.read_text(encoding="utf-8")
+    assert "SYNTHETIC DATA" in text
+    assert "<b>tether</b>" not in re.sub(r"<script.*?</script>", "", text, flags=re.S)
+    assert "&lt;b&gt;tether&lt;/b&gt;" in text
+    assert "Warnings (2)" in text and "no two pieces of one kind overlap" in text
+    assert "a splice slipped 2 times" in text
+    assert "archive &lt;a&gt;" in text
+    assert not re.search(r'<(?:script|link|img)[^>]+(?:src|href)="https?:', text)
+
+
+def test_a_page_of_an_assembly_lists_its_working_points(tmp_path):
+    path = tmp_path / "a.html"
+    write_assembly_page(deployed(), path)
+    text = path.read_text(encoding="utf-8")
+    assert "3 x &lt;b&gt;tether&lt;/b&gt;, free length 2.55 m, in line with chain 2 m" in text
+    assert "Working points." in text and "2, not tested" in text
+    assert "length by tension-driven" in text
+    write_assembly_page(deployed(levels=()), path, units="us")
+    text = path.read_text(encoding="utf-8")
+    assert "Working points." not in text and "US customary" in text
