@@ -49,6 +49,7 @@ CURVE_ROWS: tuple[Variable, ...] = tuple(
         stated("segment_strain_high", _G, BOUND),
         stated("segment_tension_low", _G, BOUND),
         stated("segment_tension_high", _G, BOUND),
+        stated("segment_misfit", _G, SPREAD),
         label("segment_criterion"),
         measured("stress_at_strain", ("specimen", "strain_level")),
         measured("slack_strain_at_unloading", _S),
