@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 from reduction.archive.open import open_archive
+from reduction.archive.schema import SCHEMA_VERSION
 from reduction.archive.strainmodel import strain_model_of
 from reduction.strain.inverse import position_by_model
 
@@ -156,7 +157,8 @@ def test_bad_input_is_named(command, tmp_path, arguments, status, told):
 
 
 def test_bad_archives_are_named(command, synthetic, static, tmp_path):
-    folder = synthetic.processed
+    folder, surfaces = synthetic.processed, tmp_path / "surfaces.nc"
+    xr.Dataset(attrs={"schema_version": SCHEMA_VERSION}).to_netcdf(surfaces)
     for arguments, status, told in (
         ([folder], 2, "several specimens; found new, used"),
         ([folder, "--specimen", "old"], 2, "no specimen 'old'"),
@@ -164,6 +166,7 @@ def test_bad_archives_are_named(command, synthetic, static, tmp_path):
         ([folder / "overnight-hold.nc", "--specimen", "new"], 4, "no test of 'new' gives a mean"),
         ([folder / "status.csv"], 6, "is not a netCDF file"),
         ([tmp_path], 2, "holds no archive of a test"),
+        ([surfaces], 2, "surfaces.nc: no archive of a test; needed archives of reduced tests"),
         (
             [folder / "T-1.nc", static.processed / "static.nc", "--specimen", "new"],
             2,

@@ -91,6 +91,51 @@ def test_a_slow_pull_is_static_and_its_first_rise_is_not_taken_twice():
     assert pieces_of_test(pull(), "new", branch="descending", name="Q") == ()
 
 
+def weights(branch):
+    """100 N per unit strain on the way up, 80 N on the way down; the third row contradicts itself."""
+    n = len(branch)
+    strain = np.array([0.5, 1.0, 1.2, 1.5, 1.0, 0.5])[:n]
+    slope = np.where(np.array(branch) == 1, 100.0, 80.0)
+    reading = {"secant_modulus": slope, "secant_modulus_standard_uncertainty": 0.01 * slope}
+    same = {name: np.zeros(n) for name in
+            ("time", "gauge_length", "eye_to_eye_length", "printed_strain")}  # fmt: skip
+    between = {name: np.zeros(n - 1) for name in
+               ("interval_strain", "interval_modulus", "interval_modulus_standard_uncertainty")}  # fmt: skip
+    return xr.Dataset(
+        {
+            "specimen": ("specimen", ["new"]),
+            "clock": ("step", ["1200"] * n),
+            "strain": ("step", strain),
+            "tension": ("step", slope * strain),
+            "branch": ("step", np.array(branch)),
+            "step_flag": ("step", np.array([0, 0, 1, 0, 0, 0])[:n]),
+            **{name: ("step", values) for name, values in (reading | same).items()},
+            **{name: ("interval", values) for name, values in between.items()},
+            "interval_branch": ("interval", np.ones(n - 1, dtype=int)),
+            "relaxed_gauge_length": 0.15,
+            "relaxed_gauge_length_standard_uncertainty": 0.001,
+        },
+        attrs={"test": "S", "id": "c/S", "test_kind": "stepwise", "campaign": "c"},
+    )
+
+
+def test_weights_give_either_branch_and_the_mean_where_both_were_read():
+    found = weights([1, 1, 1, 1, 2, 2])
+    (up,) = pieces_of_test(found, "new", branch="ascending", name="S")
+    assert (up.kind, up.strain.tolist()) == ("static", [0.5, 1.0, 1.5])
+    assert up.tension == pytest.approx([50, 100, 150])
+    assert up.standard_uncertainty == pytest.approx([0.5, 1.0, 1.5])
+    (mean,) = pieces_of_test(found, "new", branch="mean", name="S")
+    assert mean.branch == "mean"
+    assert mean.tension == pytest.approx(90 * mean.strain)
+    assert (mean.strain[0], mean.strain[-1]) == (0.5, 1.0)
+
+
+def test_weights_that_were_never_taken_off_stand_for_the_mean_by_their_own_name():
+    (only,) = pieces_of_test(weights([1, 1, 1, 1]), "new", branch="mean", name="S")
+    assert only.branch == "ascending"
+
+
 def test_tests_come_in_the_order_in_which_they_were_run():
     tests = [cyclic("T-2", 10), cyclic("T-1", 9)]
     found = source_of_tests(tests, "new", branch="ascending")
