@@ -197,7 +197,6 @@ def _unknown_at(loads: CycleLoads, unknown: Bools) -> CycleLoads:
         loads,
         **{name: np.where(unknown, np.nan, getattr(loads, name)) for name in numbers},
         is_slack=loads.is_slack & ~unknown,
-        is_above_rule=loads.is_above_rule & ~unknown,
     )
 
 

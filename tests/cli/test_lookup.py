@@ -165,6 +165,22 @@ def test_outside_one_of_two_boxes_is_refused_and_flagged(command):
     assert "\N{HORIZONTAL ELLIPSIS}" not in flagged.stdout
 
 
+def test_two_lines_of_one_source_stand_against_each_other(command, synthetic):
+    archive = synthetic.processed / "T-1.nc"
+    ask = ("lookup", archive, "--line", "new", "--quantity", "tangent_modulus", "--strain", "100 %",
+           "--branch", "descending")  # fmt: skip
+    done = command(*ask, "--against", "used", "--json")
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout)
+    sides = [
+        json.loads(command(*ask[:3], name, *ask[4:], "--json").stdout)["value"]
+        for name in ("new", "used")
+    ]
+    assert answer["ratio"] == pytest.approx(sides[1] / sides[0])
+    assert answer["branch"] == "descending"
+    assert "synthetic data" in answer["first"]["notes"]
+
+
 def test_boxes_without_anything_in_common_make_no_grid(command):
     done = command(
         "lookup", NYLON, "--quantity", "apparent_spring_constant", "--table", "--against",

@@ -139,6 +139,23 @@ def test_nothing_is_said_of_what_specimens_differ_in(surfaces):
     assert alone.material == ""
 
 
+def test_specimens_of_an_experiment_are_sought_in_the_archives_of_all_tests(
+    folder, surfaces, tmp_path
+):
+    several = surfaces.copy(deep=True)
+    several["run_specimen"][0, :3] = "other"
+    several.to_netcdf(tmp_path / "surfaces.nc", engine="netcdf4")
+    for place, (name, condition) in enumerate([("line-1", "new, wet"), ("other", "used")]):
+        with open_archive(folder / "R01.nc") as archive:
+            test = archive.load()
+        test = test.assign_coords(specimen=[name])
+        test["specimen_condition"] = ("specimen", [condition])
+        test.to_netcdf(tmp_path / f"R0{place + 1}.nc", engine="netcdf4")
+    (line,) = lines_of(str(tmp_path / "surfaces.nc"))
+    assert line.material == "nylon (synthetic)"
+    assert line.condition == ""
+
+
 def test_surfaces_of_tethers_refuse_zero_tension(folder, tmp_path):
     """A synthetic campaign, whose specimen is called a tether."""
     rope = lines_of(str(folder / "surfaces.nc"))[0]

@@ -143,6 +143,9 @@ def test_two_lines_stand_beside_each_other(line, tmp_path):
     assert column(table, "other_apparent_spring_constant").values.tolist() == (
         values[1].value.tolist()
     )
+    for side, one in (("", values[0]), ("other_", values[1])):
+        for flag in ("is_untested", "is_inside"):
+            np.testing.assert_array_equal(column(table, f"{side}{flag}").values, getattr(one, flag))
     # one mean tension, of two break strengths: 6,400 and 7,000 lb
     share, other_share = (
         column(table, f"{which}mean_tension_percent_of_break_strength").values

@@ -115,6 +115,15 @@ def test_noise_below_zero_is_zero_and_beyond_the_points_nothing_is_known():
     assert not found.is_above_rule[2]
 
 
+def test_a_tether_beyond_its_points_is_not_known_to_be_slack():
+    found = look_up(
+        TETHER, "tangent_modulus", strain=[1.0, 2.5], branch="ascending", extrapolate="flag"
+    )
+    assert found.is_inside.tolist() == [True, False]
+    assert found.peak_tension[0] == 500
+    assert np.isnan(found.peak_tension[1])
+
+
 def test_a_negative_tension_is_refused():
     line = published_sources()["nylon-double-braid-0.5in-new"]
     with pytest.raises(DataError, match="mean_tension is negative; found -5 N"):
