@@ -154,3 +154,38 @@ def test_the_first_rise_ends_where_the_first_cycle_turns():
         "R-1",
     ).first_rise
     assert found.tension.tolist() == [10.0, 20.0, 30.0]
+
+
+def test_bedding_in_has_the_foot_of_its_first_cycle_and_the_greatest_peak():
+    of_cycles = {
+        "mean_strain": [0.05, 0.07],
+        "mean_strain_standard_uncertainty": [0.003, 0.9],
+        "strain_amplitude": [0.02, 0.01],
+        "strain_amplitude_standard_uncertainty": [0.004, 0.9],
+        "valley_tension": [40.0, 41.0],
+        "peak_tension": [75.0, 80.0],
+    }
+    of_step = {
+        "bedding_first_stiffness": 900.0,
+        "bedding_first_stiffness_standard_uncertainty": 2.0,
+        "bedding_permanent_strain": 0.03,
+        "bedding_permanent_strain_standard_uncertainty": 0.002,
+        "dynamic_stiffness": 1000.0,
+    }
+    found = step_of_archive(
+        step(
+            **{
+                name: (("specimen", "cycle"), [[np.nan] * 2, values])
+                for name, values in of_cycles.items()
+            },
+            **{name: ("specimen", [np.nan, value]) for name, value in of_step.items()},
+        ),
+        "R-2",
+    )
+    cycles = found.bedding
+    assert (cycles.first_stiffness, cycles.permanent_strain) == (900.0, 0.03)
+    assert cycles.foot_strain == pytest.approx(0.03)
+    assert cycles.foot_strain_standard_uncertainty == pytest.approx(0.005)
+    assert (cycles.valley_tension, cycles.first_peak_tension, cycles.peak_tension) == (40, 75, 80)
+    # of a rope that still settles: no level
+    assert found.level is None

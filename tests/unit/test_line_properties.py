@@ -69,6 +69,12 @@ def test_tests_without_a_product_are_told_where_a_property_is_absent(name):
     assert one.reason.endswith("; C failed")
 
 
+def test_a_refusal_of_a_step_says_nothing_of_missing_tests():
+    short = HeldTension(20.0, 90.0, math.nan, math.nan, "too short")
+    (one,) = named([step(holds=(short,))], "polymer strain", missing="C failed")
+    assert one.reason == "too short"
+
+
 def test_a_property_of_a_step_says_nothing_of_missing_tests():
     (one,) = named([step(pairs=(PAIR,))], "static stiffness", missing="C failed")
     assert one.reason == ""
@@ -83,6 +89,11 @@ def test_construction_strain_holds_the_first_rise():
     # 0.5 N on a slope of 2000 N
     spread = math.sqrt(0.002**2 + 0.001**2 + (0.5 / 2000) ** 2)
     assert one.standard_uncertainty == pytest.approx(spread)
+
+
+def test_a_rise_that_begins_at_the_valleys_is_read_at_its_foot():
+    (one,) = named([bedding(first_rise=rise(40, 60, 80))], "construction strain")
+    assert one.value == pytest.approx(0.03 + 0.05 - 0.01)
 
 
 def test_construction_strain_of_the_cycles_alone_is_told():
@@ -137,6 +148,14 @@ def test_a_rise_that_was_held_on_its_way_says_so():
     assert whole.reason == ""
 
 
+def test_original_stiffness_is_as_uncertain_as_both_ends_of_the_rise():
+    whole = dataclasses.replace(
+        rise(20, 50, 80), tension_standard_uncertainty=np.array([0.3, 9.0, 0.4])
+    )
+    (one,) = named([bedding(first_rise=whole)], "original stiffness")
+    assert one.standard_uncertainty == pytest.approx(0.5 / 0.02)
+
+
 def test_original_stiffness_falls_back_to_the_first_cycle():
     (cycle,) = named([bedding()], "original stiffness")
     assert (cycle.value, cycle.standard_uncertainty) == (1000.0, 2.0)
@@ -168,6 +187,8 @@ def test_working_strain_is_the_rise_over_the_static_stiffness_after_bedding_in()
     assert math.isnan(one.over_strength)
     (early,) = named(steps[::-1], "working strain")
     assert early.reason == "no step holds one tension after a lower one"
+    (within,) = named([bedding(pairs=(PAIR,))], "working strain")
+    assert math.isnan(within.value)
     (never,) = named(steps[1:], "working strain")
     assert "no step beds the rope in" in never.reason
     (unknown,) = named(steps, "working strain", is_ordered=False)
