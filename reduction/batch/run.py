@@ -3,41 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
-from reduction import __version__
-from reduction.archive.dataset import to_dataset
 from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
-from reduction.archive.write import write_archive, write_whole
-from reduction.batch.basis import basis_of
+from reduction.archive.write import write_whole
+from reduction.batch.basis import Basis, basis_of
 from reduction.batch.check import Progress, selected_surveys
 from reduction.batch.comparisons import write_comparisons
-from reduction.batch.describe import describe
 from reduction.batch.experiments import write_experiments
-from reduction.batch.instruments import instruments_of
 from reduction.batch.models import fit_strain_models
-from reduction.batch.outcome import note_message, status_row
+from reduction.batch.outcome import status_row
 from reduction.batch.part import PartStatus
 from reduction.batch.predictions import write_predictions
 from reduction.batch.properties import tests_of_ropes, write_change_in_length
-from reduction.batch.pulls import fit_pulls, pull_conditions
+from reduction.batch.pulls import fit_pulls
+from reduction.batch.reduce import bring_up_to_date
 from reduction.batch.results import write_outcomes
-from reduction.batch.standing import standing_product
 from reduction.batch.status import Status, TestStatus, read_status, status_csv
-from reduction.batch.survey import Survey, as_reduction_error, located_again, survey_campaign
+from reduction.batch.survey import Survey, as_reduction_error, survey_campaign
 from reduction.batch.waiting import waiting_runs
 from reduction.campaign.plan import Campaign
-from reduction.line.product import SlowPull
-from reduction.pipeline.reduce import reduce_stepwise_test, reduce_test
-from reduction.product import History, ReducedTest
 from reduction.report.page import write_report
-from reduction.strain.model import StrainModel
 from reduction.tables.write import write_tables
 from reduction.units import UnitSystem
 
-__all__ = ["CampaignResult", "reduce_survey", "run_campaign"]
+__all__ = ["CampaignResult", "run_campaign"]
 
 
 @dataclass(frozen=True)
@@ -63,68 +56,6 @@ class CampaignResult:
         """The highest seen."""
         seen = [test.exit_status for test in self.tests]
         return max([*seen, *(one.exit_status for one in self.parts)], default=0)
-
-
-def reduce_survey(
-    campaign: Campaign,
-    survey: Survey,
-    models: Sequence[StrainModel],
-    history: History | None,
-    settings: str,
-    pulls: Sequence[SlowPull | None] | None = None,
-) -> ReducedTest:
-    """Reduce one surveyed test.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        Where its files, layouts and specimens are.
-    survey : Survey
-        The test after the first pass.
-    models : sequence of StrainModel
-        One a specimen, in the order of the test; none for a stepwise test.
-    history : History or None
-        What the specimens had seen before.
-    settings : str
-        Every setting in force, as JSON, for the product.
-    pulls : sequence of SlowPull or None, optional
-        Slow pull of each specimen, where the test is a run of an experiment.
-
-    Returns
-    -------
-    test : ReducedTest
-        Ready for the archive.
-
-    Raises
-    ------
-    ReductionError
-        If the record cannot support a stage that its kind needs.
-    """
-    description = describe(campaign, survey)
-    specimens = tuple(campaign.specimens[name] for name in survey.plan.specimens)
-    if survey.step_readings is not None:
-        return reduce_stepwise_test(
-            survey.step_readings,
-            description=description,
-            specimens=specimens,
-            history=history,
-            sources=survey.sources,
-            settings_json=settings,
-        )
-    located = located_again(campaign, survey)
-    return reduce_test(
-        located,
-        description=description,
-        specimens=specimens,
-        models=models,
-        history=history,
-        sources=survey.sources,
-        settings=survey.plan.settings,
-        settings_json=settings,
-        pulls=pulls,
-        pull_conditions=pull_conditions(campaign, survey),
-        instruments=instruments_of(campaign, survey, models),
-    )
 
 
 def run_campaign(
@@ -188,6 +119,7 @@ def run_campaign(
         failed=failed,
     )
     statuses: list[TestStatus] = []
+    status: Status
     for survey in chosen:
         name = survey.plan.id
         path = folder / f"{name}.nc"
@@ -198,26 +130,9 @@ def run_campaign(
         try:
             if error is not None:
                 raise error
-            now = basis(survey)
-            standing = (
-                None
-                if force
-                else standing_product(
-                    path, survey, now.settings, remarks=now.remarks, failed=now.failed
-                )
+            status, message = bring_up_to_date(
+                campaign, survey, basis(survey), path, force=force, command=command
             )
-            if standing is not None:
-                status: Status = "unchanged"
-                message = "; ".join(filter(None, [standing.remark, note_message(standing.notes)]))
-            else:
-                product = reduce_survey(
-                    campaign, survey, now.models, now.history, now.settings, now.pulls
-                )
-                product = replace(product, notes=(*product.notes, *now.remarks))
-                write_archive(to_dataset(product, version=__version__, command=command), path)
-                notes = product.all_notes()
-                status = "reduced_with_notes" if notes else "reduced"
-                message = note_message(notes)
         except Exception as failure:
             # a campaign goes on after a failed test, even where the failure is a defect here
             error, status, message = as_reduction_error(failure), "failed", ""
@@ -227,31 +142,9 @@ def run_campaign(
             status_row(campaign, survey, status, error=error, message=message, seconds=seconds)
         )
     now_failed = {status.test for status in statuses if status.status == "failed"}.union(failed)
-    runs = {run for plan in campaign.experiments.values() for run in plan.runs}
-    compared = {plan.measured for plan in campaign.comparisons.values()}
     asked = {survey.plan.id for survey in chosen}
-    needed = runs | compared | tests_of_ropes(campaign, surveys)
-    left_out = [entry for entry in surveys if entry.plan.id in needed - asked - now_failed]
-    waiting = waiting_runs(folder, left_out, basis)
-    experiments = write_experiments(
-        campaign,
-        folder,
-        failed=now_failed,
-        waiting=waiting,
-        raw_sha256={
-            entry.plan.id: "\n".join(source.sha256 for source in entry.sources)
-            for entry in surveys
-            if entry.plan.id in runs
-        },
-        command=command,
-    )
-    write_outcomes(campaign, folder, command=command)
-    lengths = write_change_in_length(
-        campaign, folder, surveys, failed=now_failed, waiting=waiting, command=command
-    )
-    hoses = write_predictions(campaign, folder, command=command)
-    comparisons = write_comparisons(
-        campaign, folder, failed=now_failed, waiting=waiting, command=command
+    parts = _write_parts(
+        campaign, folder, surveys, asked=asked, failed=now_failed, basis=basis, command=command
     )
     if progress is not None:
         progress("tables", campaign.id)
@@ -261,7 +154,7 @@ def run_campaign(
     rows = _all_rows(folder / "status.csv", surveys, statuses)
     if statuses:
         write_whole(folder / "status.csv", status_csv(rows))
-    products = _products_of_campaign(campaign, folder, has_lengths=lengths is not None)
+    products = _products_of_campaign(campaign, folder, has_lengths=parts.has_lengths)
     if archives or products:
         tables = write_tables(archives, folder / "tables", **products)
         if progress is not None:
@@ -275,14 +168,62 @@ def run_campaign(
     ]
     return CampaignResult(
         tests=tuple(statuses),
-        experiments=tuple(experiments),
-        hoses=tuple(hoses),
-        comparisons=tuple(comparisons),
+        experiments=parts.experiments,
+        hoses=parts.hoses,
+        comparisons=parts.comparisons,
         processed=folder,
         report=report,
         stray=tuple(stray),
         tables=tuple(tables),
     )
+
+
+class _Parts(NamedTuple):
+    """What became of the parts of a campaign that are no tests."""
+
+    experiments: tuple[PartStatus, ...]
+    hoses: tuple[PartStatus, ...]
+    comparisons: tuple[PartStatus, ...]
+    has_lengths: bool
+
+
+def _write_parts(
+    campaign: Campaign,
+    folder: Path,
+    surveys: Sequence[Survey],
+    *,
+    asked: set[str],
+    failed: set[str],
+    basis: Callable[[Survey], Basis],
+    command: str,
+) -> _Parts:
+    """Write the archives of the whole campaign, from those of its tests that are up to date."""
+    runs = {run for plan in campaign.experiments.values() for run in plan.runs}
+    compared = {plan.measured for plan in campaign.comparisons.values()}
+    needed = runs | compared | tests_of_ropes(campaign, surveys)
+    left_out = [entry for entry in surveys if entry.plan.id in needed - asked - failed]
+    waiting = waiting_runs(folder, left_out, basis)
+    experiments = write_experiments(
+        campaign,
+        folder,
+        failed=failed,
+        waiting=waiting,
+        raw_sha256={
+            entry.plan.id: "\n".join(source.sha256 for source in entry.sources)
+            for entry in surveys
+            if entry.plan.id in runs
+        },
+        command=command,
+    )
+    write_outcomes(campaign, folder, command=command)
+    lengths = write_change_in_length(
+        campaign, folder, surveys, failed=failed, waiting=waiting, command=command
+    )
+    hoses = write_predictions(campaign, folder, command=command)
+    comparisons = write_comparisons(
+        campaign, folder, failed=failed, waiting=waiting, command=command
+    )
+    return _Parts(tuple(experiments), tuple(hoses), tuple(comparisons), lengths is not None)
 
 
 def _products_of_campaign(

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+import reduction.batch.reduce
 import reduction.batch.run
 from reduction.archive.open import open_archive
 
@@ -191,16 +192,21 @@ def test_an_earlier_test_that_is_new_and_fails_makes_the_later_ones_anew(row, co
     assert np.isnan(history(row, "B")[1]).all()
 
 
-@pytest.mark.parametrize("part", ["basis_of", "standing_product"])
-def test_a_defect_before_the_reduction_is_the_failure_of_one_test(row, command, monkeypatch, part):
-    sound = getattr(reduction.batch.run, part)
+@pytest.mark.parametrize(
+    ("module", "part"),
+    [(reduction.batch.run, "basis_of"), (reduction.batch.reduce, "standing_product")],
+)
+def test_a_defect_before_the_reduction_is_the_failure_of_one_test(
+    row, command, monkeypatch, module, part
+):
+    sound = getattr(module, part)
 
     def spoilt(*arguments, **more):
         if any(getattr(getattr(one, "plan", None), "id", "") == "B" for one in arguments):
             raise ZeroDivisionError("for the test")
         return sound(*arguments, **more)
 
-    monkeypatch.setattr(reduction.batch.run, part, spoilt)
+    monkeypatch.setattr(module, part, spoilt)
     statuses = run(row, command)
     assert statuses["B"]["status"] == "failed" and statuses["B"]["exit_status"] == 1
     assert "a defect of this program: ZeroDivisionError: for the test" in statuses["B"]["message"]

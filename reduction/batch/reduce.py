@@ -1,0 +1,136 @@
+"""One test of a campaign: reduced, or left as it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from reduction import __version__
+from reduction.archive.dataset import to_dataset
+from reduction.archive.write import write_archive
+from reduction.batch.basis import Basis
+from reduction.batch.describe import describe
+from reduction.batch.instruments import instruments_of
+from reduction.batch.outcome import note_message
+from reduction.batch.pulls import pull_conditions
+from reduction.batch.standing import standing_product
+from reduction.batch.status import Status
+from reduction.batch.survey import Survey, located_again
+from reduction.campaign.plan import Campaign
+from reduction.line.product import SlowPull
+from reduction.pipeline.reduce import reduce_stepwise_test, reduce_test
+from reduction.product import History, ReducedTest
+from reduction.strain.model import StrainModel
+
+__all__ = ["bring_up_to_date", "reduce_survey"]
+
+
+def reduce_survey(
+    campaign: Campaign,
+    survey: Survey,
+    models: Sequence[StrainModel],
+    history: History | None,
+    settings: str,
+    pulls: Sequence[SlowPull | None] | None = None,
+) -> ReducedTest:
+    """Reduce one surveyed test.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        Where its files, layouts and specimens are.
+    survey : Survey
+        The test after the first pass.
+    models : sequence of StrainModel
+        One a specimen, in the order of the test; none for a stepwise test.
+    history : History or None
+        What the specimens had seen before.
+    settings : str
+        Every setting in force, as JSON, for the product.
+    pulls : sequence of SlowPull or None, optional
+        Slow pull of each specimen, where the test is a run of an experiment.
+
+    Returns
+    -------
+    test : ReducedTest
+        Ready for the archive.
+
+    Raises
+    ------
+    ReductionError
+        If the record cannot support a stage that its kind needs.
+    """
+    description = describe(campaign, survey)
+    specimens = tuple(campaign.specimens[name] for name in survey.plan.specimens)
+    if survey.step_readings is not None:
+        return reduce_stepwise_test(
+            survey.step_readings,
+            description=description,
+            specimens=specimens,
+            history=history,
+            sources=survey.sources,
+            settings_json=settings,
+        )
+    located = located_again(campaign, survey)
+    return reduce_test(
+        located,
+        description=description,
+        specimens=specimens,
+        models=models,
+        history=history,
+        sources=survey.sources,
+        settings=survey.plan.settings,
+        settings_json=settings,
+        pulls=pulls,
+        pull_conditions=pull_conditions(campaign, survey),
+        instruments=instruments_of(campaign, survey, models),
+    )
+
+
+def bring_up_to_date(
+    campaign: Campaign, survey: Survey, basis: Basis, path: Path, *, force: bool, command: str
+) -> tuple[Status, str]:
+    """Write the archive of one test, unless one stands that is of the same logs and settings.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        Where its files, layouts and specimens are.
+    survey : Survey
+        The test after the first pass.
+    basis : Basis
+        What its product rests on beside its own log.
+    path : pathlib.Path
+        Of the archive.
+    force : bool
+        Write it in any case.
+    command : str
+        For the product's ``command`` attribute, without paths.
+
+    Returns
+    -------
+    status : Status
+        ``unchanged``, ``reduced`` or ``reduced_with_notes``.
+    message : str
+        What a reader of the table of tests has to know.
+
+    Raises
+    ------
+    ReductionError
+        If the record cannot support a stage that its kind needs, or the archive cannot be written.
+    """
+    if not force:
+        standing = standing_product(
+            path, survey, basis.settings, remarks=basis.remarks, failed=basis.failed
+        )
+        if standing is not None:
+            said = filter(None, [standing.remark, note_message(standing.notes)])
+            return "unchanged", "; ".join(said)
+    product = reduce_survey(
+        campaign, survey, basis.models, basis.history, basis.settings, basis.pulls
+    )
+    product = replace(product, notes=(*product.notes, *basis.remarks))
+    write_archive(to_dataset(product, version=__version__, command=command), path)
+    notes = product.all_notes()
+    return "reduced_with_notes" if notes else "reduced", note_message(notes)
