@@ -12,7 +12,7 @@ import xarray as xr
 
 from reduction.notes import Severity
 from reduction.predict.cord import NEUTRAL_ANGLE
-from reduction.record import Bools, Floats
+from reduction.record import Floats
 from reduction.report.rowview import RowView
 from reduction.report.style import Shown, shown
 from reduction.units import UnitSystem
@@ -86,13 +86,6 @@ class HoseView(RowView):
             return ()
         size = self.sizes.get(str(self.data[name].dims[-1]))
         return tuple(str(text) for text in self.data[name].values[self.index][:size])
-
-    def is_in_state(self, name: str) -> Bools:
-        """Return where the hose is slack, broken, jammed or has too small a bore."""
-        attributes = self.data["hose_state"].attrs
-        masks = np.ravel(attributes["flag_masks"])
-        place = str(attributes["flag_meanings"]).split().index(name)
-        return np.asarray((self.array("hose_state").astype(np.int64) & int(masks[place])) > 0)
 
     @cached_property
     def sources(self) -> tuple[str, ...]:

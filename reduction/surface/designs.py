@@ -20,7 +20,7 @@ from typing import Literal
 import numpy as np
 
 from reduction.errors import SettingsError
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Floats, freeze_arrays
 
 __all__ = ["Design", "DesignKind", "box_behnken", "plackett_burman"]
 
@@ -71,12 +71,6 @@ class Design:
     def n_factors(self) -> int:
         """Number of factors."""
         return int(self.coded.shape[1])
-
-    @property
-    def is_centre(self) -> Bools:
-        """Runs with every factor at its centre, shape (n_runs,)."""
-        centre: Bools = np.all(self.coded == 0, axis=1)
-        return centre
 
 
 def box_behnken(n_factors: int, *, n_centre: int | None = None) -> Design:

@@ -20,6 +20,7 @@ from predicted_hoses import (
     working_tension,
 )
 
+from reduction.archive.prediction_schema import HOSE_STATES
 from reduction.archive.write import write_archive
 from reduction.errors import ArchiveError
 from reduction.predict.cordcurve import CordCurve
@@ -94,10 +95,12 @@ def test_a_hose_is_cut_to_its_length():
     assert short.text("no such") == "" and short.texts("no such") == ()
 
 
-def test_states_are_read_by_the_names_of_their_masks():
+def test_a_state_of_the_cords_is_a_bit_at_each_strain():
     one = view()
-    assert one.is_in_state("slack").tolist() == (one.array("strain") <= pick_up_strain(68)).tolist()
-    assert not one.is_in_state("jammed").any()
+    state = one.array("hose_state").astype(int)
+    is_slack = (state & HOSE_STATES["slack"]) > 0
+    assert is_slack.tolist() == (one.array("strain") <= pick_up_strain(68)).tolist()
+    assert not (state & HOSE_STATES["jammed"]).any()
 
 
 @pytest.mark.parametrize("units", ["si", "us"])
