@@ -3,11 +3,8 @@ import pytest
 from measured_hoses import Truth
 
 from reduction.compare.hose import compare_hose
-from reduction.compare.inputs import input_draws
 from reduction.compare.measured import SharedUncertainty, measured_curve
-from reduction.compare.plausibility import plausibility_of_working_strain
-from reduction.compare.trials import design_with, number_of
-from reduction.errors import DataError, SettingsError
+from reduction.errors import SettingsError
 from reduction.predict.events import find_events
 
 TRUTH = Truth()
@@ -108,63 +105,3 @@ def test_many_designs_are_refused():
     many = TRUTH.design(rubber_modulus=np.array([1e6, 2e6]))
     with pytest.raises(SettingsError, match="a comparison is of one hose"):
         compare_hose(many, cyclic())
-
-
-def test_the_two_reported_hoses_are_bands_and_no_targets():
-    inside = plausibility_of_working_strain(np.radians(64), 0.95)
-    assert "is inside the band of the hose reported at 64 deg: 70 to 113 %" in inside
-    assert "about 79 % at its 115,000th cycle (dynamic, where this is static)" in inside
-    assert "above the band" in plausibility_of_working_strain(np.radians(64), 1.2)
-    assert "below the band" in plausibility_of_working_strain(np.radians(68), 1.0)
-    high = plausibility_of_working_strain(np.radians(68), 1.46, loading="dynamic")
-    assert "is inside" in high and "where this is dynamic" in high
-
-
-def test_another_angle_has_no_band_and_one_nearby_a_moved_one():
-    assert plausibility_of_working_strain(np.radians(60), 0.9) == ""
-    # half a degree up, 4.3 points of stretch more
-    note = plausibility_of_working_strain(np.radians(64.5), 0.79)
-    assert "(moved by +0.5 deg)" in note and "75 to 118 %" in note
-
-
-def test_static_stretch_in_the_band_is_that_of_equation_eight():
-    # cord strain 9.5 %, bisection on lambda_c
-    for angle, points in ((64, 104.6), (68, 146.1)):
-        hose, low, high = Truth(wrap_angle=np.radians(angle)), 1.5, 3.0
-        for _ in range(60):
-            middle = (low + high) / 2
-            low, high = (middle, high) if hose.cord_stretch(middle) < 1.095 else (low, middle)
-        assert 100 * (low - 1) == pytest.approx(points, abs=0.05)
-
-
-def test_plausibility_needs_numbers_above_zero():
-    with pytest.raises(DataError, match="working_strain cannot be compared; found 0"):
-        plausibility_of_working_strain(1.1, 0.0)
-    with pytest.raises(DataError, match="wrap_angle cannot be compared; found nan"):
-        plausibility_of_working_strain(np.nan, 1.0)
-
-
-def test_draws_see_the_cords_that_pick_up_earlier():
-    below = np.array([TRUTH.pick_up_strain() - 0.02])
-    known = {"wrap_angle": np.radians(0.5)}
-    drawn = np.random.default_rng(3).normal(64, 0.5, 4000)
-    spread = [TRUTH.but(wrap_angle=np.radians(a)).tension(below)[0] for a in drawn]
-    exact = np.sqrt(np.mean((np.array(spread) - TRUTH.tension(below)[0]) ** 2))
-    draws = input_draws(TRUTH.design(), known, below, n_draws=4000)
-    assert np.sqrt(np.mean(draws**2)) == pytest.approx(exact, rel=0.1)
-
-
-def test_a_dead_length_is_not_drawn_below_zero():
-    draws = input_draws(TRUTH.design(), {"dead_length_share": 0.01}, np.array([0.5]), n_draws=200)
-    assert draws.min() >= 0
-
-
-def test_nothing_uncertain_is_no_draw():
-    assert input_draws(TRUTH.design(), {"wrap_angle": 0.0}, np.zeros(3), n_draws=5).shape == (0, 3)
-
-
-def test_a_layer_diameter_moves_both_layers():
-    design = TRUTH.design()
-    assert number_of(design, "layer_diameter") == pytest.approx(3.5 * 0.0254)
-    moved = design_with(design, {"layer_diameter": 3.6 * 0.0254}).layer_diameter
-    assert np.array(moved) == pytest.approx(np.array([3.5, 3.7]) * 0.0254)
