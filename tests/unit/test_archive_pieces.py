@@ -193,6 +193,18 @@ def test_specimens_of_one_name_and_two_diameters_are_refused():
         source_of_tests([cyclic(), cyclic("T-2", 2, diameter=0.03)], "new", branch="mean")
 
 
+def test_mass_a_length_is_that_of_all_its_tests():
+    tests = [
+        one.assign(linear_density=("specimen", [0.1]), wet_linear_density=("specimen", [wet]))
+        for one, wet in ((cyclic(), -0.01), (cyclic("T-2", 2), -0.01))
+    ]
+    found = source_of_tests([*tests, cyclic("T-3", 3)], "new", branch="mean")
+    assert (found.linear_density, found.wet_linear_density) == (0.1, -0.01)
+    tests[1]["wet_linear_density"][0] = -0.02
+    with pytest.raises(SettingsError, match="another wet linear density of 'new'"):
+        source_of_tests(tests, "new", branch="mean")
+
+
 def test_tests_without_a_curve_are_refused():
     with pytest.raises(DataError, match="no test of 'new' gives a mean curve.*held .relaxation"):
         source_of_tests([hold()], "new", branch="mean")
