@@ -17,8 +17,9 @@ from reduction.surface.product import ResponseSurfaces
 from reduction.surface.screening import ScreeningEffects
 from reduction.surface.select import ReducedSurfaces
 from reduction.surface.stiffness_product import FormQuality, StiffnessForm
+from reduction.uncertainty.product import Component, Contributions
 
-__all__ = ["ExperimentResult", "RunTable"]
+__all__ = ["ExperimentResult", "RunTable", "SharedSurfaces"]
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,9 @@ class RunTable:
         Of the specimen; NaN where not stated. [N]
     remark : tuple of str, length n_runs
         Why a run has no number, and what its cycles do to the model; several end with ``; ``.
+    shared : Contributions or None
+        Of errors that runs share, to responses and levels by name, shape (n_components, n_runs);
+        None where nothing is known of any.
     """
 
     run: tuple[str, ...]
@@ -62,6 +66,7 @@ class RunTable:
     minimum_tension: Floats
     rated_break_strength: Floats
     remark: tuple[str, ...]
+    shared: Contributions | None = None
 
     def __post_init__(self) -> None:
         """Check that every column has one entry a run, and make the arrays read-only."""
@@ -87,6 +92,27 @@ class RunTable:
         many = len(set(self.specimen)) > 1
         pairs = zip(self.run, self.specimen, strict=True)
         return tuple(f"{run} {specimen}" if many else run for run, specimen in pairs)
+
+
+@dataclass(frozen=True)
+class SharedSurfaces:
+    """What errors that runs share add to the coefficients of surfaces.
+
+    Parameters
+    ----------
+    component : tuple of Component, length n_components
+        Each error.
+    coefficient, coefficient_engineering : ndarray, shape (n_components, n_responses, n_terms)
+        Signed, of one standard uncertainty of the error. [as the coefficients of the surfaces]
+    """
+
+    component: tuple[Component, ...]
+    coefficient: Floats
+    coefficient_engineering: Floats
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
 
 
 @dataclass(frozen=True)
@@ -128,6 +154,8 @@ class ExperimentResult:
     refusal_status : int
         Exit status of the error for which there are neither surfaces nor effects; 0 where
         there are.
+    shared : SharedSurfaces or None
+        Of ``surfaces``; None where the runs share nothing that is known.
     """
 
     name: str
@@ -149,6 +177,7 @@ class ExperimentResult:
     cautions: tuple[Caution, ...] = ()
     notes: tuple[str, ...] = ()
     refusal_status: int = 0
+    shared: SharedSurfaces | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

@@ -4,6 +4,7 @@ import numpy as np
 
 from reduction.experiment import ExperimentResult, RunTable
 from reduction.line.single import check_single_time
+from reduction.pipeline.sharedsurfaces import with_shared_surfaces
 from reduction.provenance import Origin, Source, Step
 from reduction.surface.cautions import Caution
 from reduction.surface.designs import box_behnken, plackett_burman
@@ -12,6 +13,7 @@ from reduction.surface.select import reduce_terms
 from reduction.surface.stiffness import fit_del_vecchio_stiffness, fit_mean_load_stiffness
 from reduction.surface.stiffness_forms import compare_stiffness_forms
 from reduction.surface.surfaces import fit_surfaces
+from reduction.uncertainty.product import Component, Contributions
 from reduction.vocabulary import RESPONSES
 
 FACTORS = ("frequency", "mean_tension", "tension_amplitude")
@@ -29,8 +31,8 @@ ABOUT = Origin(
 )
 
 
-def run_table(coded, level, responses, *, specimens=None, missing=(), prefix="R"):
-    """Runs with responses of a law; those of ``missing`` were not done."""
+def run_table(coded, level, responses, *, specimens=None, missing=(), prefix="R", names=None):
+    """Runs with responses of a law; those of ``missing`` were not done, those named share a gain."""
     n_runs = len(coded)
     gone = np.isin(np.arange(n_runs), missing)
     mean, amplitude = level[:, 1], level[:, 2]
@@ -52,7 +54,16 @@ def run_table(coded, level, responses, *, specimens=None, missing=(), prefix="R"
         minimum_tension=known(mean - amplitude),
         rated_break_strength=np.full(n_runs, STRENGTH),
         remark=tuple("its test gave no product" if one else "" for one in gone),
-    )
+        shared=None if names is None else Contributions(
+            (Component("tension_gain", "load cell"),),
+            {
+                **{name: 0.01 * known(row)[None] for name, row in zip(names, responses, strict=True)},
+                "mean_tension": 0.01 * known(mean)[None],
+                "tension_amplitude": 0.01 * known(amplitude)[None],
+                "frequency": 0.0 * known(mean)[None],
+            },
+        ),
+    )  # fmt: skip
 
 
 def laws(rng, coded, count):
@@ -75,7 +86,9 @@ def surface_experiment(
     reached = coded + 0.01 * rng.standard_normal(coded.shape)
     level = (HIGH + LOW) / 2 + reached * (HIGH - LOW) / 2
     who = None if specimens is None else list(specimens) * 15
-    runs = run_table(coded, level, laws(rng, coded, len(names)), specimens=who, missing=missing)
+    runs = run_table(
+        coded, level, laws(rng, coded, len(names)), specimens=who, missing=missing, names=names
+    )
     bent = [index for index, one in enumerate(names) if one in RESPONSES[1:4]]
     scales = ["log", "box-cox", "log"][: len(bent)]
     prefix = {"log": "log_", "box-cox": "box_cox_"}
@@ -104,7 +117,7 @@ def surface_experiment(
             np.where(np.isfinite(runs.frequency), runs.frequency, 1.0), time, time,
             group=[str(row[1:]) for row in coded],
         )  # fmt: skip
-    return ExperimentResult(
+    result = ExperimentResult(
         name=name,
         kind="box-behnken",
         factor_names=FACTORS,
@@ -130,6 +143,7 @@ def surface_experiment(
         ),
         notes=(*surfaces.notes, "=a note that looks like a formula"),
     )
+    return with_shared_surfaces(result)
 
 
 def screening_experiment(name="screening", *, seed=5, missing=()):

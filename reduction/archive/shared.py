@@ -6,17 +6,26 @@ beside the random part of that quantity, and ``<name>_standard_uncertainty`` hol
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import chain
 
 import numpy as np
+import xarray as xr
 
 from reduction.archive.values import Values, texts
 from reduction.archive.variable import Variable, companion, count, label
 from reduction.record import Floats
 from reduction.uncertainty.combine import combined_standard_uncertainty
-from reduction.uncertainty.product import Contributions
+from reduction.uncertainty.product import Component, Contributions
 
-__all__ = ["COMPONENT", "SHARED", "SHARED_ROWS", "with_shared"]
+__all__ = [
+    "COMPONENT",
+    "SHARED",
+    "SHARED_ROWS",
+    "component_values",
+    "shared_contributions",
+    "with_shared",
+]
 
 COMPONENT = "uncertainty_component"
 _S = ("specimen",)
@@ -94,12 +103,52 @@ def with_shared(
         if name in values and mean in contributions.values:
             shared = contributions.shared_standard_uncertainty(mean)
             _combine(found, name, np.nan_to_num(shared)[None, :, None])
-    component = contributions.component
-    found[COMPONENT] = np.arange(1, len(component) + 1)
-    found["uncertainty_source"] = texts([one.source for one in component])
-    found["uncertainty_source_of"] = texts([one.of for one in component])
-    found["uncertainty_source_number"] = np.array([one.number for one in component])
-    return found
+    return found | component_values(contributions.component)
+
+
+def component_values(component: Sequence[Component]) -> Values:
+    """Return the axis of the shared errors, and what each of them is."""
+    return {
+        COMPONENT: np.arange(1, len(component) + 1),
+        "uncertainty_source": texts([one.source for one in component]),
+        "uncertainty_source_of": texts([one.of for one in component]),
+        "uncertainty_source_number": np.array([one.number for one in component]),
+    }
+
+
+def shared_contributions(archive: xr.Dataset, name: str, *place: int) -> dict[Component, float]:
+    """What each shared error adds to one number of an archive; empty where nothing is known.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        Of a reduced test.
+    name : str
+        Of the quantity.
+    *place : int
+        Along its dimensions.
+
+    Returns
+    -------
+    contributions : dict of Component to float
+        [unit of the quantity]
+    """
+    rows = archive.get(f"{name}_uncertainty_contribution")
+    if rows is None:
+        return {}
+    labels = zip(
+        archive["uncertainty_source"].values,
+        archive["uncertainty_source_of"].values,
+        archive["uncertainty_source_number"].values,
+        strict=True,
+    )
+    components = [Component(str(source), str(of), int(number)) for source, of, number in labels]
+    found = np.moveaxis(rows.values, 0, -1)[place]
+    return {
+        one: float(value)
+        for one, value in zip(components, found, strict=True)
+        if np.isfinite(value) and value != 0
+    }
 
 
 def _combine(values: Values, name: str, rows: Floats) -> Floats:

@@ -29,6 +29,7 @@ from reduction.vocabulary import RESPONSES, SURFACE_NAMES
 
 __all__ = ["surface_names", "surfaces_of"]
 
+_SPREAD = "_standard_uncertainty"
 _LABEL_OF_DIM = {
     "factor": "factor_name",
     "term": "term_name",
@@ -144,6 +145,11 @@ class _Reader:
         """Give what is said of each response, the responses first."""
         return np.stack([self.own(f"{name}_{what}") for name in self.names])
 
+    def random(self, what: str) -> Floats:
+        """Give the uncertainty of each response from the scatter of its runs alone."""
+        kind = "_random" if f"{self.names[0]}_{what}_random{_SPREAD}" in self.dataset else ""
+        return self.stack(f"{what}{kind}{_SPREAD}")
+
     def codes(self, what: str, reasons: dict[int, str]) -> NDArray[np.int8]:
         """Give the code of each reason; an archive without the text has none to give."""
         code = {text: number for number, text in reasons.items()}
@@ -171,15 +177,13 @@ class _Reader:
                 axis=-1,
             ),
             coefficient=self.stack("coefficient"),
-            coefficient_standard_uncertainty=self.stack("coefficient_standard_uncertainty"),
+            coefficient_standard_uncertainty=self.random("coefficient"),
             t=self.stack("t"),
             p_value=self.stack("p_value"),
             term_degrees_of_freedom=self.stack("term_degrees_of_freedom"),
             error_term=self.labels("term_error"),
             coefficient_engineering=self.stack("coefficient_engineering"),
-            coefficient_engineering_standard_uncertainty=self.stack(
-                "coefficient_engineering_standard_uncertainty"
-            ),
+            coefficient_engineering_standard_uncertainty=self.random("coefficient_engineering"),
             covariance_factor=self.stack("covariance_factor"),
             engineering_matrix=engineering_matrix(exponents, low=low, high=high),
             pattern=np.arange(len(self.names)),

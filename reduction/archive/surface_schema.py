@@ -46,7 +46,8 @@ from reduction.archive.reasons import (
     STATED,
     STATISTIC,
 )
-from reduction.archive.variable import Variable, count, flag, label, measured, stated
+from reduction.archive.shared import COMPONENT
+from reduction.archive.variable import Variable, companion, count, flag, label, measured, stated
 from reduction.surface.product import STATIONARY_KINDS
 from reduction.vocabulary import RESPONSES, SURFACE_NAMES
 
@@ -64,6 +65,7 @@ _S = ("experiment", "stiffness_form")
 _C = ("experiment", "stiffness_form", "stiffness_term")
 _X = ("experiment", "point")
 _D = ("experiment", "ridge_direction", "ridge_radius")
+_U = ("experiment", COMPONENT)
 
 _COUNT = "count"
 _LEVELS = "a property of the levels"
@@ -89,8 +91,16 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
     row : Variable
     """
     yield from chain(
-        measured(f"{name}_coefficient", _T),
-        measured(f"{name}_coefficient_engineering", _T),
+        *(
+            chain(
+                measured(of, _T),
+                [
+                    companion(of, "_random_standard_uncertainty", _T),
+                    companion(of, "_uncertainty_contribution", (*_U, "term")),
+                ],
+            )
+            for of in (f"{name}_coefficient", f"{name}_coefficient_engineering")
+        ),
         stated(f"{name}_t", _T, STATISTIC),
         stated(f"{name}_p_value", _T, STATISTIC),
         stated(f"{name}_term_degrees_of_freedom", _T, _COUNT),
@@ -195,6 +205,10 @@ _ROWS = chain(
     label("experiment", _E),
     label("experiment_kind", _E),
     count("factor", ("factor",)),
+    count(COMPONENT, (COMPONENT,)),
+    label("uncertainty_source", _U),
+    label("uncertainty_source_of", _U),
+    count("uncertainty_source_number", _U),
     label("factor_name", _F),
     label("factor_unit", _F),
     stated("factor_low", _F, _PLAN),

@@ -7,14 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from reduction.archive.effects import alias_values, effect_values
+from reduction.archive.shared import component_values
 from reduction.archive.surface_points import point_values, ridge_values
 from reduction.archive.values import Values, texts
 from reduction.errors import ArchiveError
-from reduction.experiment import ExperimentResult, RunTable
+from reduction.experiment import ExperimentResult, RunTable, SharedSurfaces
 from reduction.line.single import VERDICTS, SingleTimeCheck
 from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.product import LACK_OF_FIT_REASONS, STATIONARY_REASONS, ResponseSurfaces
 from reduction.surface.select import ReducedSurfaces
+from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.units import combined_unit
 from reduction.vocabulary import SURFACE_NAMES
 
@@ -94,9 +96,13 @@ def experiment_values(result: ExperimentResult) -> Values:
     }
     if result.surfaces is not None:
         _require_same_runs(result.runs, result.surfaces)
-        values |= _shared_values(result.surfaces, result.factor_units)
+        values |= _common_values(result.surfaces, result.factor_units)
+        if result.shared is not None:
+            values |= component_values(result.shared.component)
         for index, name in enumerate(result.surfaces.response_names):
             values |= _surface_values(result.surfaces, index, name)
+            if result.shared is not None:
+                values |= _with_shared(values, result.shared, index, name)
             if result.reduced is not None:
                 values |= _reduced_values(result.reduced, index, name)
         plan = result.runs.coded_plan[:, : len(result.factor_names)]
@@ -135,7 +141,7 @@ def _require_same_runs(runs: RunTable, surfaces: ResponseSurfaces) -> None:
         )
 
 
-def _shared_values(surfaces: ResponseSurfaces, factor_units: Sequence[str]) -> Values:
+def _common_values(surfaces: ResponseSurfaces, factor_units: Sequence[str]) -> Values:
     """What all surfaces of an experiment have in common."""
     values: Values = {
         "term": texts(surfaces.labels),
@@ -162,6 +168,20 @@ def _shared_values(surfaces: ResponseSurfaces, factor_units: Sequence[str]) -> V
             "run_block": names[surfaces.blocks.index],
         }
     return values
+
+
+def _with_shared(values: Values, shared: SharedSurfaces, index: int, name: str) -> Values:
+    """Coefficients with what the errors that runs share add to the scatter of the runs."""
+    found: Values = {}
+    for of, rows in (
+        (f"{name}_coefficient", shared.coefficient),
+        (f"{name}_coefficient_engineering", shared.coefficient_engineering),
+    ):
+        random = values[f"{of}_standard_uncertainty"]
+        found[f"{of}_random_standard_uncertainty"] = random
+        found[f"{of}_uncertainty_contribution"] = rows[:, index]
+        found[f"{of}_standard_uncertainty"] = combined_standard_uncertainty(rows[:, index], random)
+    return found
 
 
 def _surface_values(surfaces: ResponseSurfaces, index: int, name: str) -> Values:

@@ -22,9 +22,11 @@ from reduction.ingest.source import source_of
 from reduction.notes import by_severity
 from reduction.pipeline.experiment import fit_experiment
 from reduction.pipeline.runline import LineOfRuns
+from reduction.pipeline.sharedsurfaces import with_shared_surfaces
 from reduction.provenance import Origin, Source, Step
 from reduction.record import Floats
 from reduction.surface.levels import FactorLevels
+from reduction.uncertainty.product import Contributions
 from reduction.vocabulary import quantity
 
 __all__ = ["fit_experiments", "write_experiments"]
@@ -213,8 +215,9 @@ def _fit(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
         minimum_tension=_column(rows, "least"),
         rated_break_strength=_column(rows, "strength"),
         remark=tuple(row["remark"] for row in rows),
+        shared=_shared(plan, rows),
     )
-    return fit_experiment(
+    result = fit_experiment(
         runs,
         LineOfRuns(*(_column(rows, name) for name in LINE)),
         name=plan.name,
@@ -227,3 +230,36 @@ def _fit(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
         term_reduction=plan.term_reduction,
         run_order=_column(rows, "order"),
     )
+    return with_shared_surfaces(result)
+
+
+def _shared(plan: ExperimentPlan, rows: list[Row]) -> Contributions | None:
+    """What errors that runs share add to their responses, and to the levels as reached."""
+    given = [row.get("shared", {}) for row in rows]
+    component = tuple(sorted({one for row in given for own in row.values() for one in own}))
+    if not component:
+        return None
+    names = dict.fromkeys((*MEASURED, *plan.responses))
+    tables = {
+        name: np.array([[row.get(name, {}).get(one, 0.0) for row in given] for one in component])
+        for name in names
+    }
+    values = {name: tables[name] for name in plan.responses}
+    # the levels follow from means of the run, and are theirs or ratios of them
+    sides = [
+        [
+            _levels(plan, _moved(rows, {name: way * tables[name][place] for name in MEASURED}))[2]
+            for place in range(len(component))
+        ]
+        for way in (1, -1)
+    ]
+    change = (np.array(sides[0]) - np.array(sides[1])) / 2
+    values |= {factor.name: change[..., place] for place, factor in enumerate(plan.factors)}
+    return Contributions(component, values)
+
+
+def _moved(rows: list[Row], by: Mapping[str, Floats]) -> list[Row]:
+    return [
+        row | {name: row.get(name, np.nan) + float(step[place]) for name, step in by.items()}
+        for place, row in enumerate(rows)
+    ]

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.open import open_archive
+from reduction.archive.shared import shared_contributions
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.errors import ArchiveError
 from reduction.line.product import REASONS
@@ -66,7 +67,14 @@ def _row(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -
     remarks = _refusal(plan, archive, place, specimen) if _NEEDS_LINE & set(plan.responses) else []
     row: Row = {name: of_test(name) for name in (*MEASURED, *LINE, *plan.responses)}
     for name in plan.responses:
-        row[f"u {name}"] = of_test(f"{name}_standard_uncertainty")
+        # what is shared is no scatter of the run: it goes another way, with its sign
+        row[f"u {name}"] = of_test(f"{name}_random_standard_uncertainty")
+        if np.isnan(row[f"u {name}"]):
+            row[f"u {name}"] = of_test(f"{name}_standard_uncertainty")
+    row["shared"] = {
+        name: shared_contributions(archive, f"test_{name}", place)
+        for name in dict.fromkeys((*MEASURED, *plan.responses))
+    }
     settings = json.loads(archive.attrs["settings"])
     begin = int(settings["reduction"]["cycles"]["break_in_cycles"])
     if "peak_tension" in archive:

@@ -46,8 +46,8 @@ __all__ = ["fit_experiment"]
 _PREFIX: dict[str, Transform] = {"log_": "log", "box_cox_": "box-cox"}
 _FROM_SLOW_PULL = {"dissipation_spring_constant", "relaxation_time", "dashpot_coefficient"}
 _SHARED = (
-    "standard errors of the surfaces of K_1 and tau are of the scatter of the runs: the error of "
-    "K_0, which all runs of one slow pull share, is not in them"
+    "t and p of the surfaces of K_1 and tau are of the scatter of the runs; the error of K_0, "
+    "which all runs of one slow pull share, is in the uncertainty of the coefficients alone"
 )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from reduction.archive.variable import SUFFIXES
 from reduction.units import combined_unit
 from reduction.vocabulary import QUANTITIES, RESPONSE_PATTERNS, SURFACE_NAMES
 
@@ -49,7 +50,7 @@ def by_response(archive: xr.Dataset) -> xr.Dataset:
     }
     for pattern in RESPONSE_PATTERNS:
         what = pattern.name.removeprefix("<response>")
-        for own in (what, f"{what}_standard_uncertainty"):
+        for own in (what, *(f"{what}{suffix}" for suffix in SUFFIXES)):
             variable = _stacked(archive, names, own)
             if variable is not None:
                 stacked[f"response{own}"] = variable

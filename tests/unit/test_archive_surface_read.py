@@ -102,7 +102,7 @@ def test_the_covariance_in_the_file_gives_the_uncertainty_in_the_file(archive):
     for name in surface_names(archive, "half-inch"):
         factor, sigma, deviation = (
             archive[f"{name}_{what}"].values[0]
-            for what in ("covariance_factor", "sigma", "coefficient_standard_uncertainty")
+            for what in ("covariance_factor", "sigma", "coefficient_random_standard_uncertainty")
         )
         np.testing.assert_allclose(np.sqrt(np.diag(factor)) * sigma, deviation, rtol=1e-12)
 

@@ -101,6 +101,24 @@ def test_the_engineering_coefficients_are_those_of_numbers_in_si(dataset):
         np.testing.assert_allclose(value, dataset[f"{name}_fitted"].values[0, :15], rtol=1e-9)
 
 
+def test_what_the_runs_share_stands_beside_their_scatter(dataset):
+    """A load cell 1 % too high: K_ap, and the levels at which it is said to hold."""
+    name = "apparent_spring_constant_coefficient"
+    assert dataset["uncertainty_source"].values[0].tolist() == ["tension_gain"]
+    (shared,) = dataset[f"{name}_uncertainty_contribution"].values[0]
+    random = dataset[f"{name}_random_standard_uncertainty"].values[0]
+    both = dataset[f"{name}_standard_uncertainty"].values[0]
+    np.testing.assert_allclose(both, np.hypot(shared, random), rtol=1e-12)
+    # in engineering units a tension that reads 1 % high has a slope 1 % low, and so a level:
+    # what stands with neither tension is 1 % high, with one tension as it was, with two 1 % low
+    coefficient = dataset[f"{name}_engineering"].values[0]
+    (found,) = dataset[f"{name}_engineering_uncertainty_contribution"].values[0]
+    tensions = dataset["term_exponent"].values[0, :, 1:3].sum(axis=1)
+    np.testing.assert_allclose(
+        found, 0.01 * (1 - tensions) * coefficient, atol=2e-4 * abs(coefficient).max()
+    )
+
+
 def test_the_covariance_carries_over_to_engineering_units(dataset):
     """As a fit to the levels themselves has it."""
     level = dataset["run_level"].values[0, :15, :3]
@@ -109,7 +127,7 @@ def test_the_covariance_carries_over_to_engineering_units(dataset):
     scale = np.prod(level.max(axis=0) ** power, axis=-1)
     sigma = float(dataset["loss_factor_sigma"].values[0])
     expected = np.sqrt(np.diag(np.linalg.inv(terms.T @ terms))) * sigma / scale
-    found = dataset["loss_factor_coefficient_engineering_standard_uncertainty"].values[0]
+    found = dataset["loss_factor_coefficient_engineering_random_standard_uncertainty"].values[0]
     np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 

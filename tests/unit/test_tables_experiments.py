@@ -247,6 +247,11 @@ def test_every_number_of_an_archive_of_experiments_is_in_a_table():
         for pattern in RESPONSE_PATTERNS
         for name in SURFACE_NAMES
     }
+    of_responses |= {
+        f"{name}_coefficient{kind}_uncertainty_contribution"
+        for name in SURFACE_NAMES
+        for kind in ("", "_engineering")
+    }
     missing = set(SURFACE_SCHEMA) - sources - of_responses
     assert {name for name in missing if not name.endswith("_standard_uncertainty")} == {
         # axes, and what is written out as text or as a unit
