@@ -135,9 +135,21 @@ def test_unequal_tethers_share_by_their_lengths(command, tmp_path):
     point = assembly(command, path)["working"][0]
     assert point["tether_tension"][0] > point["tether_tension"][1]
     assert sum(point["tether_tension"]) == pytest.approx(200 * LBF)
-    text = command("assembly", path, "--units", "us").stdout
-    assert "the longest tether below" in text
-    assert "greatest, least [lbf]" in text
+    done = command("assembly", path, "--units", "us", "--out", tmp_path / "a.csv")
+    assert "the longest tether below" in done.stdout
+    assert "greatest, least [lbf]" in done.stdout
+    table = pd.read_csv(tmp_path / "a.csv")
+    first, second = (table[f"tether_tension_{number} [lbf]"] for number in (1, 2))
+    assert (first + second).to_numpy() == pytest.approx(table["tension [lbf]"].to_numpy())
+    assert (first > second)[1:].all()
+
+
+def test_a_stated_strength_stands_before_that_of_the_source(command, tmp_path):
+    point = '[[assembly.working]]\ntension = "200 lbf"\n'
+    for stated, share in (("", 0.125), ('rated_break_strength = "400 lbf"\n', 0.25)):
+        text = SPEC.replace("[assembly.curve]", f"{stated}[assembly.curve]") + point
+        found = assembly(command, written(tmp_path, text))["working"][0]
+        assert found["peak_share"] == pytest.approx([share] * 2)
 
 
 def test_stated_splices_stand_before_the_published_ones(command, tmp_path):

@@ -157,6 +157,13 @@ def test_what_is_left_out_is_said():
     }
 
 
+def test_one_synthetic_test_makes_the_curve_synthetic():
+    real = cyclic("T-2", 2)
+    real.attrs["synthetic"] = "no"
+    assert source_of_tests([cyclic(), real], "new", branch="mean").is_synthetic
+    assert not source_of_tests([real], "new", branch="mean").is_synthetic
+
+
 def test_a_part_whose_whole_is_not_there_is_taken():
     found = source_of_tests([cyclic("T-1-end", part_of="T-1")], "new", branch="mean")
     assert found.pieces[0].name == "T-1-end"

@@ -67,3 +67,8 @@ def test_the_shortest_specification_leaves_the_rest_to_the_tests(tmp_path):
 def test_more_tethers_than_a_bundle_has_are_refused(tmp_path):
     with pytest.raises(SettingsError, match="assembly.n_tethers.*less than or equal to 100"):
         load(tmp_path, '[assembly]\nn_tethers = 1000\n[assembly.curve]\nsource = "used"\n')
+
+
+def test_tethers_that_are_alike_have_one_length_each(tmp_path):
+    text = '[assembly]\nn_tethers = 3\nfree_length = "8 m"\n[assembly.curve]\nsource = "used"\n'
+    assert load(tmp_path, text).free_lengths == (8.0, 8.0, 8.0)

@@ -33,3 +33,9 @@ def test_a_pull_ends_where_its_cubic_turns_back():
 def test_a_pull_of_one_point_is_no_curve():
     with pytest.raises(DataError, match="Q is no curve; found 1 points"):
         piece_of_pull([0.01, np.nan], [100.0, 200.0], [1e-4, 1e-4], name="Q")
+
+
+def test_a_fit_that_begins_below_zero_strain_begins_where_it_is_above():
+    load = np.array([50.0, 100.0, 200.0])
+    found = piece_of_pull([-0.001, 0.01, 0.02], load, np.full(3, 1e-4), name="Q")
+    assert found.strain == pytest.approx([0.01, 0.02])
