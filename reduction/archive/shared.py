@@ -23,6 +23,7 @@ __all__ = [
     "SHARED",
     "SHARED_ROWS",
     "component_values",
+    "components_of",
     "shared_contributions",
     "with_shared",
 ]
@@ -136,19 +137,24 @@ def shared_contributions(archive: xr.Dataset, name: str, *place: int) -> dict[Co
     rows = archive.get(f"{name}_uncertainty_contribution")
     if rows is None:
         return {}
-    labels = zip(
-        archive["uncertainty_source"].values,
-        archive["uncertainty_source_of"].values,
-        archive["uncertainty_source_number"].values,
-        strict=True,
-    )
-    components = [Component(str(source), str(of), int(number)) for source, of, number in labels]
+    components = components_of(archive)
     found = np.moveaxis(rows.values, 0, -1)[place]
     return {
         one: float(value)
         for one, value in zip(components, found, strict=True)
         if np.isfinite(value) and value != 0
     }
+
+
+def components_of(archive: xr.Dataset, experiment: int | None = None) -> list[Component]:
+    """Every shared error of an archive, or of one of its experiments, in order."""
+    names = ("uncertainty_source", "uncertainty_source_of", "uncertainty_source_number")
+    columns = [archive[name].values for name in names]
+    own = columns if experiment is None else [column[experiment] for column in columns]
+    return [
+        Component(str(source), str(of), int(number))
+        for source, of, number in zip(*own, strict=True)
+    ]
 
 
 def _combine(values: Values, name: str, rows: Floats) -> Floats:

@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from reduction import __version__
+from reduction.cli.budgetcommand import budget
 from reduction.cli.campaigncommands import check, init, report, run, schema, sniff
 from reduction.cli.curvecommands import assembly, composite
 from reduction.cli.experimentcommands import experiment, surface
@@ -59,6 +60,7 @@ app.command()(composite)
 app.command()(assembly)
 app.command()(export)
 app.command()(lookup)
+app.command()(budget)
 app.command()(report)
 app.command()(reproduce)
 app.command()(schema)

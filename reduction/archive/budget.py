@@ -1,0 +1,140 @@
+"""The uncertainty budget of one number of an archive: which one is meant, and its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.shared import components_of
+from reduction.errors import ArchiveError, SettingsError
+from reduction.uncertainty.budget import Budget, budget_of
+from reduction.uncertainty.product import Component
+
+__all__ = ["budget_from_archive", "quantities_with_budget"]
+
+_CONTRIBUTION = "_uncertainty_contribution"
+_RANDOM = "_random_standard_uncertainty"
+# what a user calls a dimension
+_ALIAS = {"branch": "branch_name", "strain": "strain_bin", "first_loading_strain":
+          "first_loading_strain_bin"}  # fmt: skip
+_ON_AN_AXIS = ("strain_bin", "first_loading_strain_bin")
+
+
+def quantities_with_budget(archive: xr.Dataset) -> tuple[str, ...]:
+    """Names of what an archive keeps the shared errors of."""
+    return tuple(
+        str(name).removesuffix(_CONTRIBUTION)
+        for name in archive.variables
+        if str(name).endswith(_CONTRIBUTION)
+    )
+
+
+def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str]) -> Budget:
+    """Read the budget of one number.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        Of a reduced test, or of experiments.
+    quantity : str
+        Of the vocabulary, as the archive names it; without ``test_`` the mean of the test is
+        meant where the archive keeps only that.
+    at : mapping of str to str
+        Place along each dimension by label, number, or strain; one with a single entry may be
+        left out.
+
+    Returns
+    -------
+    budget : Budget
+        Of that number.
+
+    Raises
+    ------
+    SettingsError
+        If the quantity has no budget, or the place is not one number of it.
+    ArchiveError
+        If there is no number at that place.
+    """
+    known = quantities_with_budget(archive)
+    name = next((one for one in (quantity, f"test_{quantity}") if one in known), None)
+    if name is None:
+        why = "is not in this archive" if quantity not in archive else "has no shared part"
+        raise SettingsError(
+            f"{quantity} {why}", needed="one of " + (", ".join(known) or "none: no error is shared")
+        )
+    variable = archive[name]
+    wanted = {_ALIAS.get(key, key): text for key, text in at.items()}
+    dims = [str(dim) for dim in variable.dims]
+    strange = sorted(set(wanted) - set(dims))
+    if strange:
+        raise SettingsError(
+            f"{name} does not vary with {', '.join(strange)}", needed="--at " + ", ".join(dims)
+        )
+    place = {dim: _place(archive, dim, wanted.get(dim)) for dim in dims}
+    number = float(variable.isel(place))
+    if not np.isfinite(number):
+        raise ArchiveError(
+            f"there is no {name} there", found=", ".join(f"{dim}={place[dim]}" for dim in dims)
+        )
+    rows = archive[f"{name}{_CONTRIBUTION}"].isel(place).values
+    components = components_of(archive, place.get("experiment"))
+    found: dict[Component, float] = {
+        one: float(value) for one, value in zip(components, rows, strict=False) if value != 0
+    }
+    return budget_of(
+        name,
+        str(variable.attrs.get("units", "")),
+        number,
+        found,
+        random=float(archive[f"{name}{_RANDOM}"].isel(place)),
+        degrees_of_freedom=_freedom(archive, name, place),
+        place={dim: str(_label(archive, dim, index)) for dim, index in place.items()},
+    )
+
+
+def _label(archive: xr.Dataset, dim: str, index: int) -> Any:
+    return archive[dim].values[index] if dim in archive.variables else index + 1
+
+
+def _place(archive: xr.Dataset, dim: str, text: str | None) -> int:
+    """Index along a dimension of what was asked for."""
+    labels = [str(_label(archive, dim, index)) for index in range(archive.sizes[dim])]
+    shown = ", ".join(labels[:12]) + (", ..." if len(labels) > 12 else "")
+    if text is None:
+        if len(labels) == 1:
+            return 0
+        raise SettingsError(
+            f"which {dim} is meant is not said", needed=f'--at "{dim}=..." ({shown})'
+        )
+    if dim in _ON_AN_AXIS:
+        return _bin(archive, dim, float(text))
+    if text not in labels:
+        raise SettingsError(f"there is no {dim} '{text}'", needed=shown)
+    return labels.index(text)
+
+
+def _bin(archive: xr.Dataset, dim: str, strain: float) -> int:
+    bounds = archive[f"{dim}_bounds"].values
+    inside = np.flatnonzero((bounds[:, 0] <= strain) & (strain <= bounds[:, 1]))
+    if inside.size == 0:
+        raise SettingsError(
+            f"{dim} has no bin at {strain:g}", needed=f"{bounds.min():.4g} to {bounds.max():.4g}"
+        )
+    return int(inside[0])
+
+
+def _freedom(archive: xr.Dataset, name: str, place: Mapping[str, int]) -> float:
+    """Degrees of freedom of the random part: of the regression, or cycles less one."""
+    base = name.removesuffix("_engineering").removesuffix("_coefficient")
+    terms = f"{base}_term_degrees_of_freedom"
+    if terms in archive:
+        return float(
+            archive[terms].isel({str(dim): place[str(dim)] for dim in archive[terms].dims})
+        )
+    if f"{name}_count" in archive:
+        return max(float(archive[f"{name}_count"].isel(place)) - 1, 1.0)
+    cycles = archive.sizes.get("cycle", 0)
+    return max(float(cycles - 1), 1.0)

@@ -1,0 +1,94 @@
+"""The command budget: where the uncertainty of one number comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import cast
+
+from reduction.archive.budget import budget_from_archive, quantities_with_budget
+from reduction.archive.open import open_archive
+from reduction.cli.numbers import plain, short, table_of
+from reduction.cli.outcome import Outcome
+from reduction.errors import SettingsError
+from reduction.uncertainty.budget import Budget
+from reduction.units import UnitSystem, display_unit, parse_quantity
+
+__all__ = ["list_budgets", "show_budget"]
+
+
+def list_budgets(path: Path, *, outcome: Outcome) -> None:
+    """Print what PRODUCT keeps a budget of."""
+    with open_archive(path) as archive:
+        names = {name: list(archive[name].dims) for name in quantities_with_budget(archive)}
+    table = table_of("quantity", "--at", texts=2)
+    for name, dims in names.items():
+        table.add_row(name, ", ".join(str(dim) for dim in dims))
+    outcome.show(table)
+    outcome.answer(
+        {"quantities": {name: [str(dim) for dim in dims] for name, dims in names.items()}}
+    )
+
+
+def show_budget(path: Path, quantity: str, places: Sequence[str], *, outcome: Outcome) -> None:
+    """Print the budget of one number, largest source first."""
+    with open_archive(path) as archive:
+        budget = budget_from_archive(archive, quantity, _places(places))
+        synthetic = archive.attrs.get("synthetic", "no") == "yes"
+    unit, scale = display_unit(budget.unit, cast("UnitSystem", outcome.units))
+    where = ", ".join(f"{dim} {label}" for dim, label in budget.place.items())
+    table = table_of(
+        "source", "of", f"contribution [{unit}]", "share of u2", texts=2,
+        title=f"{budget.quantity}, {where}" + (" (synthetic data)" if synthetic else ""),
+    )  # fmt: skip
+    for row in budget.rows:
+        table.add_row(row.source, row.of, short(row.contribution * scale, 3), f"{row.share:.1%}")
+    outcome.show(table)
+    outcome.say(
+        f"value {short(budget.value * scale)} {unit}, standard uncertainty "
+        f"{short(budget.standard_uncertainty * scale, 3)} {unit}"
+    )
+    outcome.say(
+        f"expanded uncertainty {short(budget.expanded_uncertainty * scale, 3)} {unit} "
+        f"(95 %, k = {budget.coverage_factor:.2f})"
+    )
+    outcome.answer(_document(budget, synthetic))
+
+
+def _places(texts: Sequence[str]) -> dict[str, str]:
+    """``dimension=label`` of each option; a strain may carry a percent sign."""
+    found = {}
+    for text in texts:
+        name, sign, label = text.partition("=")
+        if not (sign and label.strip()):
+            raise SettingsError(
+                "--at is no place", found=repr(text), needed='such as "branch=ascending"'
+            )
+        key = name.strip()
+        is_strain = key.endswith(("strain", "strain_bin"))
+        found[key] = str(parse_quantity(label, "strain")) if is_strain else label.strip()
+    return found
+
+
+def _document(budget: Budget, synthetic: bool) -> dict[str, object]:
+    return {
+        "quantity": budget.quantity,
+        "unit": budget.unit,
+        "at": budget.place,
+        "value": plain(budget.value),
+        "standard_uncertainty": plain(budget.standard_uncertainty),
+        "expanded_uncertainty": plain(budget.expanded_uncertainty),
+        "coverage_factor": plain(budget.coverage_factor),
+        "confidence": 0.95,
+        "degrees_of_freedom": plain(budget.degrees_of_freedom),
+        "sources": [
+            {
+                "source": row.source,
+                "of": row.of,
+                "contribution": plain(row.contribution),
+                "share": plain(row.share),
+            }
+            for row in budget.rows
+        ],
+        "synthetic": synthetic,
+    }

@@ -1,0 +1,46 @@
+"""The command of uncertainty budgets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reduction.cli.options import Json, Quiet, Units
+from reduction.cli.outcome import Outcome, guarded
+from reduction.cli.usage import here
+
+__all__ = ["budget"]
+
+
+def budget(
+    product: Annotated[
+        Path,
+        typer.Argument(
+            metavar="PRODUCT.nc",
+            help="Archive of a reduced test, or surfaces.nc.",
+            show_default=False,
+            callback=here,
+        ),
+    ],
+    quantity: Annotated[
+        str | None,
+        typer.Option(help="Such as segment_modulus; left out: what there is.", show_default=False),
+    ] = None,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(help='Which one: "specimen=new", "branch=ascending", "strain=100 %".'),
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Where the uncertainty of a number comes from, largest source first."""
+    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+        from reduction.cli.budget import list_budgets, show_budget
+
+        if quantity is None:
+            list_budgets(product, outcome=outcome)
+        else:
+            show_budget(product, quantity, at or [], outcome=outcome)

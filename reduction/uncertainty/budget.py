@@ -1,0 +1,146 @@
+"""The uncertainty budget of one number: what each source adds, largest first.
+
+References
+----------
+.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 7.2.7 and Table H.1 (what a report of uncertainty holds).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from reduction.uncertainty.combine import combined_standard_uncertainty, coverage_factor
+from reduction.uncertainty.product import Component
+
+__all__ = ["RANDOM", "Budget", "BudgetRow", "budget_of"]
+
+RANDOM = "random"
+"""Source of what is not shared: scatter, noise, regression."""
+
+
+@dataclass(frozen=True)
+class BudgetRow:
+    """One source of the uncertainty of a number.
+
+    ``contribution`` is signed where the source is one error, [unit of the number]; ``share`` is
+    that of the variance.
+    """
+
+    source: str
+    of: str
+    contribution: float
+    share: float
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The uncertainty of one number.
+
+    Parameters
+    ----------
+    quantity, unit : str
+        What it is.
+    place : dict of str to str
+        Which one of its kind: specimen, branch, strain ...
+    value, standard_uncertainty, expanded_uncertainty : float
+        [unit]
+    coverage_factor : float
+        k of the expanded uncertainty, for 95 %. [1]
+    degrees_of_freedom : float
+        Of the random part. [1]
+    rows : tuple of BudgetRow
+        Largest first; their shares add up to 1.
+    """
+
+    quantity: str
+    unit: str
+    place: dict[str, str]
+    value: float
+    standard_uncertainty: float
+    expanded_uncertainty: float
+    coverage_factor: float
+    degrees_of_freedom: float
+    rows: tuple[BudgetRow, ...]
+
+
+def budget_of(
+    quantity: str,
+    unit: str,
+    value: float,
+    contributions: Mapping[Component, float],
+    *,
+    random: float,
+    degrees_of_freedom: float,
+    place: Mapping[str, str] | None = None,
+) -> Budget:
+    """Put the sources of one number in order.
+
+    Parameters
+    ----------
+    quantity, unit : str
+        What it is.
+    value : float
+        [unit]
+    contributions : mapping of Component to float
+        Signed; those of one source and owner count together. [unit]
+    random : float
+        Standard uncertainty of what is not shared. [unit]
+    degrees_of_freedom : float
+        Of the random part. [1]
+    place : mapping of str to str, optional
+        Which one of its kind.
+
+    Returns
+    -------
+    budget : Budget
+        With the expanded uncertainty for 95 %.
+
+    Raises
+    ------
+    ValueError
+        Never by itself.
+
+    Notes
+    -----
+    Contributions of one source to one owner are of independent errors (the coefficients of a fit)
+    and add by their squares; a single one keeps its sign.
+
+    Examples
+    --------
+    >>> cell = Component("tension_gain", "load cell")
+    >>> budget = budget_of("segment_modulus", "Pa", 1e6, {cell: 3e3}, random=4e3,
+    ...     degrees_of_freedom=9.0)
+    >>> print([(row.source, round(row.share, 2)) for row in budget.rows])
+    [('random', 0.64), ('tension_gain', 0.36)]
+    >>> print(budget.standard_uncertainty, round(budget.coverage_factor, 2))
+    5000.0 2.07
+    """
+    groups: dict[tuple[str, str], list[float]] = {}
+    for one, amount in contributions.items():
+        groups.setdefault((one.source, one.of), []).append(float(amount))
+    amounts = {
+        key: own[0] if len(own) == 1 else float(np.sqrt(np.sum(np.square(own))))
+        for key, own in groups.items()
+    }
+    amounts[RANDOM, ""] = float(random)
+    total = float(combined_standard_uncertainty(list(amounts.values()), 0.0))
+    rows = [
+        BudgetRow(source, of, amount, (amount / total) ** 2 if total > 0 else 0.0)
+        for (source, of), amount in amounts.items()
+    ]
+    factor = float(coverage_factor(total, random, degrees_of_freedom))
+    return Budget(
+        quantity=quantity,
+        unit=unit,
+        place=dict(place or {}),
+        value=value,
+        standard_uncertainty=total,
+        expanded_uncertainty=factor * total,
+        coverage_factor=factor,
+        degrees_of_freedom=degrees_of_freedom,
+        rows=tuple(sorted(rows, key=lambda row: (-row.share, row.source, row.of))),
+    )

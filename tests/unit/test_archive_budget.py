@@ -1,0 +1,104 @@
+"""The budget of one number, read from an archive."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from reduction.archive.budget import budget_from_archive, quantities_with_budget
+from reduction.errors import ArchiveError, SettingsError
+
+
+@pytest.fixture
+def archive():
+    dims = ("specimen", "branch_name", "segment")
+    return xr.Dataset(
+        {
+            "segment_modulus": (dims, [[[1e6, np.nan], [2e6, 3e6]]], {"units": "Pa"}),
+            "segment_modulus_random_standard_uncertainty": (dims, [[[4e3, 1.0], [4e3, 0.0]]]),
+            "segment_modulus_uncertainty_contribution": (
+                ("uncertainty_component", *dims),
+                [
+                    [[[3e3, 1.0], [0.0, 3e3]]],
+                    [[[0.0, 1.0], [3e3, -4e3]]],
+                    [[[0.0, 1.0], [4e3, 0.0]]],
+                ],
+            ),
+            "tangent_modulus": (("specimen", "strain_bin"), [[5.0, 6.0]], {"units": "Pa"}),
+            "tangent_modulus_count": (("specimen", "strain_bin"), [[10, 4]]),
+            "tangent_modulus_random_standard_uncertainty": (
+                ("specimen", "strain_bin"), [[1.0, 1.0]],
+            ),
+            "tangent_modulus_uncertainty_contribution": (
+                ("uncertainty_component", "specimen", "strain_bin"), np.zeros((3, 1, 2)),
+            ),
+            "uncertainty_source": (
+                "uncertainty_component",
+                ["tension_gain", "strain_calibration", "strain_calibration"],
+            ),
+            "uncertainty_source_of": ("uncertainty_component", ["load cell", "new", "new"]),
+            "uncertainty_source_number": ("uncertainty_component", [0, 0, 1]),
+            "strain_bin_bounds": (("strain_bin", "bound"), [[0.9, 1.0], [1.0, 1.1]]),
+            "peak_tension": ("cycle", [1.0, 2.0, 3.0]),
+        },
+        coords={
+            "specimen": ["new"],
+            "branch_name": ["ascending", "descending"],
+            "segment": [1, 2],
+            "strain_bin": [0.95, 1.05],
+            "cycle": [1, 2, 3],
+        },
+    )  # fmt: skip
+
+
+def test_sources_stand_by_their_share_and_those_of_one_fit_together(archive):
+    found = budget_from_archive(
+        archive, "segment_modulus", {"branch": "descending", "segment": "1"}
+    )
+    assert [(row.source, row.of) for row in found.rows] == [
+        ("strain_calibration", "new"), ("random", ""),
+    ]  # fmt: skip
+    # 3 and 4 of one fit are 5; with 4 of scatter the variance is 41
+    assert found.rows[0].contribution == pytest.approx(5e3)
+    assert found.standard_uncertainty == pytest.approx(np.sqrt(41) * 1e3)
+    assert found.rows[0].share == pytest.approx(25 / 41)
+    # two degrees of freedom of three cycles, and the shared part: 2 (41/16)^2, 2.16 from tables
+    assert found.degrees_of_freedom == 2
+    assert found.coverage_factor == pytest.approx(2.16, abs=0.005)
+
+
+def test_a_single_error_keeps_its_sign(archive):
+    found = budget_from_archive(
+        archive, "segment_modulus", {"branch": "descending", "segment": "2"}
+    )
+    assert [row.contribution for row in found.rows] == [-4e3, 3e3, 0.0]
+
+
+def test_a_strain_is_that_of_the_bin_that_holds_it(archive):
+    found = budget_from_archive(archive, "tangent_modulus", {"strain": "1.02"})
+    assert found.value == 6.0
+    assert found.degrees_of_freedom == 3
+    assert found.place == {"specimen": "new", "strain_bin": "1.05"}
+
+
+def test_what_has_a_budget_is_listed(archive):
+    assert quantities_with_budget(archive) == ("segment_modulus", "tangent_modulus")
+
+
+@pytest.mark.parametrize(
+    ("quantity", "at", "error", "words"),
+    [
+        ("peak_tension", {}, SettingsError, "peak_tension has no shared part.*segment_modulus"),
+        ("colour", {}, SettingsError, "colour is not in this archive"),
+        ("segment_modulus", {"segment": "1"}, SettingsError, "which branch_name is meant"),
+        ("segment_modulus", {"cycle": "1"}, SettingsError, "does not vary with cycle"),
+        ("segment_modulus", {"branch": "up", "segment": "1"}, SettingsError, "no branch_name 'up'"),
+        ("tangent_modulus", {"strain": "3"}, SettingsError, "no bin at 3.*0.9 to 1.1"),
+        (
+            "segment_modulus", {"branch": "ascending", "segment": "2"}, ArchiveError,
+            "there is no segment_modulus there",
+        ),
+    ],
+)  # fmt: skip
+def test_what_is_no_number_of_the_archive_is_refused(archive, quantity, at, error, words):
+    with pytest.raises(error, match=words):
+        budget_from_archive(archive, quantity, at)
