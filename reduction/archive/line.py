@@ -19,7 +19,7 @@ from reduction.line.quasistatic import (
 )
 from reduction.record import Floats, Specimen
 
-__all__ = ["LINE_REFUSALS", "LINE_ROWS", "line_values", "pull_values"]
+__all__ = ["LINE_REFUSALS", "LINE_ROWS", "line_values", "pull_values", "random_of_line"]
 
 LINE_REFUSALS = {
     "given": 0,
@@ -87,6 +87,13 @@ def line_values(
         values[f"test_{name}"] = getattr(test, name)
         values[f"test_{name}_standard_uncertainty"] = test.uncertainty[name]
     return values
+
+
+def random_of_line(test: LineParameters) -> Values:
+    """Return what is random in the line of a test: the fit of its slow pull is shared by runs."""
+    names = {f"test_{name}": test.random_uncertainty[name] for name in _LINE}
+    constant = test.quasi_static_spring_constant
+    return names | {"test_quasi_static_spring_constant": np.where(np.isnan(constant), np.nan, 0.0)}
 
 
 def pull_values(pulls: tuple[SlowPull | None, ...], specimens: tuple[Specimen, ...]) -> Values:

@@ -70,7 +70,10 @@ SHARED_ROWS: tuple[Variable, ...] = tuple(
 
 
 def with_shared(
-    values: Values, contributions: Contributions | None, of_cycles: dict[str, Floats]
+    values: Values,
+    contributions: Contributions | None,
+    of_cycles: dict[str, Floats],
+    random: Values | None = None,
 ) -> Values:
     """Put the shared part of every uncertainty beside its random part, and both together.
 
@@ -82,6 +85,8 @@ def with_shared(
         By name of the archive.
     of_cycles : dict of str to ndarray
         Shared standard uncertainty of the quantities of each cycle.
+    random : dict of str to ndarray, optional
+        Random part by quantity, where the uncertainty of ``values`` holds more.
 
     Returns
     -------
@@ -96,8 +101,9 @@ def with_shared(
     for name, rows in contributions.values.items():
         if name not in SHARED or name not in values:
             continue
-        random = _combine(found, name, rows)
-        found[f"{name}_random_standard_uncertainty"] = random
+        if random is not None and name in random:
+            found[f"{name}_standard_uncertainty"] = random[name]
+        found[f"{name}_random_standard_uncertainty"] = _combine(found, name, rows)
         # where there is no number, nothing contributes to it
         found[f"{name}_uncertainty_contribution"] = np.where(np.isnan(values[name]), np.nan, rows)
     for name, mean in _ALIKE.items():

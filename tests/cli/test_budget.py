@@ -34,8 +34,9 @@ def product(tmp_path_factory):
     for name in ("T-1.csv", "marks.csv"):
         shutil.copy(RAW / name, folder)
     text = (RAW / "campaign.toml").read_text(encoding="utf-8")
-    text = text.partition("[uncertainty]")[0] if "[uncertainty]" in text else text
-    head, _, tests = text.partition("[tests.T-1]")
+    # with what this test states in place of what the campaign does
+    before, _, after = text.partition("[uncertainty]")
+    head, _, tests = (before + after[after.index("[defaults]") :]).partition("[tests.T-1]")
     only = tests.partition("[tests.T-2]")[0]
     marks = (RAW / "marks.csv").read_text(encoding="utf-8").splitlines()
     kept = [line for line in marks if not line.startswith("T-") or line.startswith("T-1,")]
