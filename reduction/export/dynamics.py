@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from reduction.errors import SettingsError
+from reduction.line.model import apparent_spring_constant, hysteresis_energy
 from reduction.record import Floats, freeze_arrays
 
 __all__ = ["Syrope", "Viscoelasticity"]
@@ -40,6 +41,10 @@ class Viscoelasticity:
         At which the numbers hold; needed where beta is not zero. [N]
     holds : str
         In words: levels at which the numbers were found.
+    frequency : float
+        At which they were found; NaN where they hold at every one. [Hz]
+    growth : str
+        In words: how beta was found, or why it is zero.
     """
 
     static_stiffness: float
@@ -48,6 +53,8 @@ class Viscoelasticity:
     dynamic_stiffness_per_mean_tension: float = 0.0
     mean_tension: float = math.nan
     holds: str = ""
+    frequency: float = math.nan
+    growth: str = ""
 
     def __post_init__(self) -> None:
         """Check that the line is stiffer when it is fast."""
@@ -80,6 +87,29 @@ class Viscoelasticity:
     def relaxation_time(self) -> float:
         """Of the tension at constant strain, tau = N / K_1. [s]."""
         return self.dashpot_coefficient / (self.fast_stiffness - self.static_stiffness)
+
+    @property
+    def apparent_stiffness(self) -> float:
+        """Of a cycle, for a code without damping: K_ap at the frequency, else EA_d. [N]."""
+        known = math.isfinite(self.frequency)
+        return self.apparent_stiffness_at(self.frequency) if known else self.fast_stiffness
+
+    def apparent_stiffness_at(self, frequency: float) -> float:
+        """Tension amplitude over strain amplitude, K_ap, at a frequency in Hz. [N]."""
+        return float(apparent_spring_constant(**self._three, frequency=frequency))
+
+    def hysteresis_energy_at(self, frequency: float, amplitude: float) -> float:
+        """Energy of a cycle, H, at a frequency in Hz and a tension amplitude in N. [J m-1]."""
+        found = hysteresis_energy(**self._three, frequency=frequency, tension_amplitude=amplitude)
+        return float(found)
+
+    @property
+    def _three(self) -> dict[str, float]:
+        return {
+            "quasi_static_spring_constant": self.static_stiffness,
+            "dissipation_spring_constant": self.fast_stiffness - self.static_stiffness,
+            "relaxation_time": self.relaxation_time,
+        }
 
     @property
     def slow_dashpot_coefficient(self) -> float:

@@ -15,18 +15,15 @@ from typing import Any, Literal
 import numpy as np
 
 from reduction.errors import DataError, SettingsError
-from reduction.export.dynamics import Viscoelasticity
+from reduction.export.linedynamics import line_dynamics
 from reduction.export.product import ExportLine
 from reduction.lookup.curve import evaluate_curve
-from reduction.lookup.line import look_up
-from reduction.lookup.product import DesignValues, LineCurve, LineSource
+from reduction.lookup.product import LineCurve, LineSource
 from reduction.record import Floats
 
 __all__ = ["line_from_lookup"]
 
 _POINTS = 201
-_MEANS = 9
-_ROUNDING = 1e-9
 _MOST_CUT, _LEAST_CUT = 0.9, 0.05  # shares of the greatest tension that a cut may leave or take
 _STRAIN = ("strain", "quasi_static_strain")
 _TENSION = ("tension", "branch_tension")
@@ -72,10 +69,9 @@ def line_from_lookup(
 
     Notes
     -----
-    EA_s is K_0 at the mean tension, EA_d is K_0 + K_1, and N = K_1 tau ([1]_).  The growth with
-    the mean tension is that of the straight line of least squares through K_0 + K_1 at nine means
-    over the tested ones, at the frequency and amplitude that were asked for, as far as no cycle
-    among them goes slack; the note says how far off it is.
+    Static and dynamic stiffness are those of `reduction.export.linedynamics.line_dynamics`: K_0 and
+    K_0 + K_1 at the mean tension, N = K_1 tau ([1]_), identified so that the line gives back its
+    own K_ap and H.
     """
     curve = _curve_of(source, branch)
     strain, tension, cut = _points(source, curve)
@@ -86,8 +82,10 @@ def line_from_lookup(
         sources.append(f"errata that touch the curve: {', '.join(curve.errata)}")
     part = None
     if levels:
-        part, told = _dynamics(source, levels, extrapolate)
-        sources += told
+        dynamics = line_dynamics(source, levels, extrapolate)
+        part = dynamics.part
+        sources += dynamics.sources
+        notes += dynamics.notes
     given = {
         name: value
         for name, value in stated.items()
@@ -183,91 +181,3 @@ def _tested(curve: LineCurve, strain: Floats, tension: Floats) -> tuple[float, f
     if curve.quantity in _STRAIN:
         ends = np.interp(ends, tension, strain)
     return max(float(ends[0]), 0.0), min(float(ends[1]), float(strain[-1]))
-
-
-def _dynamics(
-    source: LineSource, levels: Mapping[str, float], extrapolate: Literal["refuse", "flag"]
-) -> tuple[Viscoelasticity, list[str]]:
-    """Static and dynamic stiffness and the dashpot at the levels, and where they are from."""
-    if "mean_tension" not in levels:
-        raise SettingsError(
-            "static and dynamic stiffness need a mean tension", needed="--mean-tension"
-        )
-    rest = _value(source, "quasi_static_spring_constant", levels, extrapolate)
-    spring = _value(source, "dissipation_spring_constant", levels, extrapolate)
-    time = _value(source, "relaxation_time", levels, extrapolate)
-    static, dynamic = float(rest.value), float(rest.value + spring.value)
-    mean = float(levels["mean_tension"])
-    slope, worst = _growth(source, levels)
-    holds = ", ".join(f"{name.replace('_', ' ')} {value:.5g}" for name, value in levels.items())
-    told = [
-        f"{found.source}: {found.quantity} {float(found.value):.6g} {found.unit}, "
-        + (
-            f"95 percent {float(found.low):.4g} to {float(found.high):.4g}"
-            if math.isfinite(float(found.high))
-            else "no interval known"
-        )
-        + (f", errata {', '.join(found.errata)}" if found.errata else "")
-        + ("" if found.is_inside else ", OUTSIDE what was tested")
-        + (", untested corner" if found.is_untested else "")
-        for found in (rest, spring, time)
-    ]
-    if slope > 0 and dynamic - slope * mean > 0:
-        told.append(
-            f"growth of the dynamic stiffness with the mean tension: {slope:.4g}, a straight line "
-            f"over the tested means, off by up to {worst:.3g} N"
-        )
-    else:
-        slope = 0.0
-    return (
-        Viscoelasticity(
-            static_stiffness=static,
-            dynamic_stiffness=dynamic - slope * mean,
-            dashpot_coefficient=float(spring.value * time.value),
-            dynamic_stiffness_per_mean_tension=slope,
-            mean_tension=mean,
-            holds=f"{holds} (SI)",
-        ),
-        told,
-    )
-
-
-def _value(
-    source: LineSource,
-    quantity: str,
-    levels: Mapping[str, Any],
-    extrapolate: Literal["refuse", "flag"],
-) -> DesignValues:
-    """Design value at those of the levels that the quantity varies with."""
-    if quantity in source.surfaces:
-        names = source.factor_names
-    else:
-        names = tuple(one.variable for one in source.curves if one.quantity == quantity)
-    # a pull is over the tension, which is the mean of the cycles
-    given = {
-        name: levels["mean_tension"] if name == "tension" else levels[name]
-        for name in names
-        if name in levels or name == "tension"
-    }
-    return look_up(source, quantity, extrapolate=extrapolate, **given)
-
-
-def _growth(source: LineSource, levels: Mapping[str, float]) -> tuple[float, float]:
-    """Slope of K_0 + K_1 over the mean tension, and how far the line is off. [1], [N]."""
-    surface = source.surfaces.get("dissipation_spring_constant")
-    if surface is None or "mean_tension" not in source.factor_names:
-        return 0.0, math.nan
-    place = source.factor_names.index("mean_tension")
-    low = max(float(surface.low[place]), levels.get("tension_amplitude", 0.0))
-    means = np.linspace(low, float(surface.high[place]), _MEANS)
-    over = {name: np.full(_MEANS, value) for name, value in levels.items()} | {
-        "mean_tension": means
-    }
-    total = sum(
-        _value(source, name, over, "flag").value
-        for name in ("quasi_static_spring_constant", "dissipation_spring_constant")
-    )
-    slope, start = np.polyfit(means, total, 1)
-    if abs(slope) * np.ptp(means) < _ROUNDING * np.abs(total).max():
-        slope = 0.0
-    return float(slope), float(np.abs(slope * means + start - total).max())

@@ -120,9 +120,10 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
         slope = part.dynamic_stiffness_per_mean_tension
         if not slope > 0:
             raise SettingsError(
-                f"the dynamic stiffness of {line.name} does not grow with the mean tension",
-                found=f"slope {slope:g}",
-                needed="a slope above zero",
+                f"no growth of the dynamic stiffness of {line.name} with the mean tension can be "
+                "written",
+                found=part.growth or f"slope {slope:g}",
+                needed="a slope above zero, and a stiffness above zero at no tension",
                 hint="Use --form static-dynamic.",
             )
         stiffness = "|".join(map(number, (part.static_stiffness, part.dynamic_stiffness, slope)))

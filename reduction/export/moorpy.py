@@ -17,6 +17,7 @@ References
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 import numpy as np
@@ -98,12 +99,17 @@ def _library(line: ExportLine) -> str:
         f"hydrodynamic coefficients: {water.source}",
         f"holds for the diameter {1000 * diameter:.4g} mm alone: nothing is known of others",
         f"found at {part.holds}" if part.holds else "",
+        "the dynamic stiffness is K_ap at that frequency, since the library has no damping; "
+        f"K_0 + K_1, that of fast cycles, is {part.fast_stiffness:.6g} N"
+        if math.isfinite(part.frequency)
+        else "",
     )
+    slow = part.apparent_stiffness - part.fast_stiffness
     rows = {
         "mass_d2": mass / diameter**2,
         "MBL_d2": strength / diameter**2,
         "EA_MBL": part.static_stiffness / strength,
-        "EAd_MBL": part.dynamic_stiffness / strength,
+        "EAd_MBL": (part.dynamic_stiffness + slow) / strength,
         "EAD_LM": beta,
         "EAd_MBL_Lm": beta,
         "dvol_dnom": volume / diameter,

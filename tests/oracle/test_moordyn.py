@@ -15,10 +15,13 @@ from export_readers import moordyn_sections, moordyn_table
 from reduction.cli.assembly import deployed_line
 from reduction.export.fromassembly import line_from_assembly
 from reduction.export.fromcomposite import line_from_composite
+from reduction.export.fromlookup import line_from_lookup
 from reduction.export.moordyn import moordyn_files
 from reduction.export.write import export_line
 from reduction.lookup.composite import CompositeRule
+from reduction.lookup.line import look_up
 from reduction.lookup.source import compose
+from reduction.published.linesource import published_sources
 from reduction.published.piecesource import published_piece_sources
 
 pytestmark = pytest.mark.skipif(
@@ -201,3 +204,43 @@ def test_composites_and_assemblies_give_back_their_tension_at_14_strains(tmp_pat
     missed = np.abs(tension - np.interp(strains, made.strain, made.tension)).max()
     told = re.search(r"greatest error ([\d.e+-]+) N", (tmp_path / "deck.dat").read_text())
     assert missed <= float(told[1]) * (1 + 1e-3)
+
+
+# levels of the design: -1 to 1 of frequency, mean tension, tension amplitude
+POINTS = [
+    ("nylon-double-braid-0.5in-new", (0, 0, 0)),
+    ("nylon-double-braid-0.5in-new", (1, 0, 0)),
+    ("nylon-double-braid-1in-new", (-1, 0, 0)),
+    ("nylon-double-braid-1.25in-new", (1, -1, 0)),
+    ("polyester-double-braid-0.5in-new", (1, 1, 0)),
+    ("nylon-8-strand-plaited-0.5in-new", (0, 0, 1)),
+    ("polyester-double-braid-0.5in-5-years", (0, 0, 0)),
+]
+
+
+@pytest.mark.parametrize(("name", "coded"), POINTS)
+def test_k_ap_is_that_of_the_look_up_within_2_percent(tmp_path, name, coded):
+    source = published_sources()[name]
+    surface = source.surfaces["apparent_spring_constant"]
+    at = (surface.low + surface.high) / 2 + np.array(coded) * (surface.high - surface.low) / 2
+    levels = dict(zip(source.factor_names, at.tolist(), strict=True))
+    wanted, energy = (
+        float(look_up(source, quantity, **levels).value)
+        for quantity in ("apparent_spring_constant", "hysteresis_energy")
+    )
+    line = line_from_lookup(source, levels=levels, linear_density=0.2)
+    write(tmp_path, moordyn_files(line, "deck", form="static-dynamic"))
+    amplitude = levels["tension_amplitude"] / wanted
+    # the slow spring settles in a few tau
+    cycles = 20 + int(8 * line.viscoelasticity.relaxation_time * levels["frequency"])
+    done, tension = run(
+        tmp_path, mean=0.1, amplitude=amplitude, frequency=levels["frequency"], cycles=cycles
+    )
+    assert done.returncode == 0, done.stdout[-800:]
+    phase = 2 * np.pi * np.arange(400) / 200
+    waves = np.stack([np.ones(400), np.sin(phase), np.cos(phase)], axis=1)
+    # the tension of a step is that at its end, a phase of a two-hundredth cycle later
+    _, sine, cosine = np.linalg.lstsq(waves, tension[-400:], rcond=None)[0]
+    turned = complex(sine, cosine) * np.exp(-2j * np.pi / 200)
+    assert abs(turned) / amplitude == pytest.approx(wanted, rel=0.02)
+    assert np.pi * amplitude * turned.imag == pytest.approx(energy, rel=0.1)

@@ -1,49 +1,10 @@
 import numpy as np
 import pytest
+from export_sources import LEVELS, source
 
 from reduction.errors import DataError, SettingsError
 from reduction.export.fromlookup import line_from_lookup
-from reduction.lookup.product import LineCurve, LineSource, LineSurface
-from reduction.surface.designs import box_behnken
-from reduction.surface.terms import model_matrix, quadratic_exponents
-
-LOW, HIGH = np.array([0.1, 1000.0, 500.0]), np.array([0.5, 3000.0, 900.0])
-EXPONENTS = quadratic_exponents(3)
-DESIGN = box_behnken(3).coded
-INVERSE = np.linalg.inv(model_matrix(DESIGN, EXPONENTS).T @ model_matrix(DESIGN, EXPONENTS))
-LEVELS = {"frequency": 0.3, "mean_tension": 2000.0, "tension_amplitude": 700.0}
-
-
-def surface(quantity, centre, *, per_mean=0.0, errata=()):
-    coefficient = np.zeros(10)
-    coefficient[0] = centre
-    place = [tuple(row) for row in EXPONENTS].index((0, 1, 0))
-    coefficient[place] = per_mean
-    return LineSurface(
-        quantity, coefficient, EXPONENTS, LOW, HIGH, INVERSE, 10.0, 5.0, 0.75, errata=errata
-    )
-
-
-def source(*, curves=None, growth=5000.0, **changed):
-    pull = LineCurve(
-        "strain", "tension", 0.0, 4000.0, coefficient=np.array([0, 1e-4, -1e-8]), errata=("CG-8",)
-    )
-    rest = LineCurve(
-        "quasi_static_spring_constant", "mean_tension", 0.0, 4000.0, coefficient=np.array([2e4])
-    )
-    fields = {
-        "factor_names": ("frequency", "mean_tension", "tension_amplitude"),
-        "surfaces": {
-            "dissipation_spring_constant": surface(
-                "dissipation_spring_constant", 3e4, per_mean=growth, errata=("CG-14",)
-            ),
-            "relaxation_time": surface("relaxation_time", 3.0),
-        },
-        "curves": (pull, rest) if curves is None else curves,
-        "linear_density": 0.1,
-        "notes": ("wet",),
-    } | changed
-    return LineSource("a rope", "CG-D-39-80", "nylon", "braid", "new", 0.0127, 28e3, **fields)
+from reduction.lookup.product import LineCurve
 
 
 def test_strain_over_tension_becomes_tension_over_strain():
@@ -72,7 +33,7 @@ def test_growth_with_the_mean_tension_is_its_slope_and_the_value_at_the_mean_is_
     assert part.dynamic_stiffness_per_mean_tension == pytest.approx(5.0)
     assert part.dynamic_stiffness == pytest.approx(5e4 - 5 * 2000)
     assert part.fast_stiffness == pytest.approx(5e4)
-    assert any("growth of the dynamic stiffness" in text for text in found.sources)
+    assert any("growth of the dynamic stiffness" in text for text in found.notes)
     assert any("errata CG-14" in text for text in found.sources)
 
 

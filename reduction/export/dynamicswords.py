@@ -1,0 +1,138 @@
+"""What is said of the dynamics of an exported line: how they were found, what is doubtful."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from reduction.export.dynamics import Viscoelasticity
+from reduction.line.product import REASONS, LineParameters
+from reduction.lookup.product import DesignValues
+from reduction.record import Floats
+
+__all__ = [
+    "doubts_of_identified", "doubts_of_printed", "interval_of", "said_identified", "said_instead",
+    "said_of_value", "said_over_frequency", "said_printed",
+]  # fmt: skip
+
+
+def said_identified(part: Viscoelasticity, amplitude: float) -> str:
+    """K_1 and tau, and what they give back."""
+    spring = part.fast_stiffness - part.static_stiffness
+    return (
+        f"K_1 {spring:.5g} N and tau {part.relaxation_time:.4g} s are identified from the surfaces "
+        f"of K_ap and H and from K_0 at these levels: the exported line gives back K_ap "
+        f"{part.apparent_stiffness:.5g} N and H "
+        f"{part.hysteresis_energy_at(part.frequency, amplitude):.4g} J/m there"
+    )
+
+
+def said_printed(
+    rest: float,
+    printed: Mapping[str, DesignValues],
+    measured: Mapping[str, DesignValues],
+    frequency: float,
+    amplitude: float,
+) -> str:
+    """What the surfaces of K_1 and tau would have given; K_0 ``rest`` beside them."""
+    if not printed:
+        return "the source has no surfaces of K_1 and tau that can be used"
+    spring, time = (float(one.value) for one in printed.values())
+    said = f"the printed surfaces of K_1 and tau, {spring:.5g} N and {time:.4g} s, are not used"
+    if not (spring > 0 and time > 0):
+        return f"{said}: they are not above zero"
+    part = Viscoelasticity(rest, rest + spring, spring * time, frequency=frequency)
+    return f"{said}: they would give {_against(part, measured, amplitude)}"
+
+
+def said_instead(
+    part: Viscoelasticity, measured: Mapping[str, DesignValues], amplitude: float, reason: int
+) -> str:
+    """That the printed K_1 and tau stand, and how far off they are."""
+    spring = part.fast_stiffness - part.static_stiffness
+    return (
+        f"DOUBTFUL: K_1 {spring:.5g} N and tau {part.relaxation_time:.4g} s are those of the "
+        f"printed surfaces; none give back K_ap and H there: {REASONS[reason]}. They give "
+        f"{_against(part, measured, amplitude)}"
+    )
+
+
+def _against(part: Viscoelasticity, measured: Mapping[str, DesignValues], amplitude: float) -> str:
+    model = (part.apparent_stiffness, part.hysteresis_energy_at(part.frequency, amplitude))
+    parts = []
+    for value, (name, unit), found in zip(
+        model, (("K_ap", "N"), ("H", "J/m")), measured.values(), strict=True
+    ):
+        own = float(found.value)
+        share = f", {100 * (value / own - 1):+.1f} percent" if own > 0 else ""
+        parts.append(f"{name} {value:.5g} {unit} where the line has {own:.5g}{share}")
+    return "; ".join(parts)
+
+
+def doubts_of_identified(line: LineParameters, energy: DesignValues) -> list[str]:
+    """Intervals in which there is no damping at all, or that are not known.
+
+    The uncertainties of ``line`` are half widths of 95 % here, as the intervals that went in.
+    """
+    said = []
+    if not math.isfinite(float(energy.surface_low)):
+        said.append("DOUBTFUL: how well the damping is known is not known: H has no interval")
+    elif float(energy.surface_low) <= 0:
+        said.append(
+            "DOUBTFUL: the damping may be none: the 95 percent interval of H, "
+            f"{interval_of(energy)}, holds zero"
+        )
+    half = float(line.random_uncertainty["relaxation_time"])
+    time = float(line.relaxation_time)
+    if half >= time:
+        said.append(
+            f"DOUBTFUL: the dashpot is hardly known: tau {time:.4g} s with a 95 percent interval "
+            f"of +-{half:.3g} s, from those of K_ap and H"
+        )
+    return said
+
+
+def doubts_of_printed(time: DesignValues) -> list[str]:
+    """The same of a tau that is a design value itself."""
+    if not math.isfinite(float(time.surface_low)):
+        return ["DOUBTFUL: how well the dashpot is known is not known: tau has no interval"]
+    if float(time.surface_low) <= 0:
+        return [
+            "DOUBTFUL: the dashpot may be none: the 95 percent interval of tau, "
+            f"{interval_of(time)}, holds zero"
+        ]
+    return []
+
+
+def said_over_frequency(part: Viscoelasticity, frequencies: Floats, found: DesignValues) -> str:
+    """K_ap of the exported line against the surface at several frequencies."""
+    rows = []
+    for row, frequency in enumerate(frequencies):
+        model, own = part.apparent_stiffness_at(float(frequency)), float(found.value[row])
+        inside = float(found.surface_low[row]) <= model <= float(found.surface_high[row])
+        outside = "" if inside or math.isnan(found.surface_low[row]) else ", OUTSIDE its interval"
+        share = f" ({100 * (model / own - 1):+.1f} percent{outside})" if own > 0 else ""
+        rows.append(f"{frequency:.3g} Hz {model:.5g} against {own:.5g} N{share}")
+    return (
+        "one K_1 and tau do not hold at every frequency; K_ap of the exported line against the "
+        f"surface at this mean tension and amplitude: {', '.join(rows)}"
+    )
+
+
+def interval_of(found: DesignValues) -> str:
+    """The 95 % interval of one surface, in words."""
+    if not math.isfinite(float(found.surface_low)):
+        return "an interval, which the source does not have"
+    return f"{float(found.surface_low):.4g} to {float(found.surface_high):.4g} {found.unit}"
+
+
+def said_of_value(found: DesignValues) -> str:
+    """Where one design value is from."""
+    known = math.isfinite(float(found.surface_high))
+    return (
+        f"{found.source}: {found.quantity} {float(found.value):.6g} {found.unit}, "
+        + (f"95 percent of the surface {interval_of(found)}" if known else "no interval known")
+        + (f", errata {', '.join(found.errata)}" if found.errata else "")
+        + ("" if found.is_inside else ", OUTSIDE what was tested")
+        + (", untested corner" if found.is_untested else "")
+    )

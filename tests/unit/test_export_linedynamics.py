@@ -1,0 +1,160 @@
+"""Dynamics of an exported line against the K_ap and H that its own surfaces give."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from export_sources import LEVELS, source, surface
+
+from reduction.errors import DataError, SettingsError
+from reduction.export.fromlookup import line_from_lookup
+from reduction.export.linedynamics import line_dynamics
+from reduction.lookup.product import LineCurve
+
+REST, SPRING, TIME = 2e4, 3e4, 0.8
+
+
+def loop(rest=REST, spring=SPRING, time=TIME):
+    """K_ap and H of eqs. 1-4 of CG-D-39-80, written out as complex numbers."""
+    turned = 2j * np.pi * LEVELS["frequency"] * time
+    stiffness = rest + spring * turned / (1 + turned)
+    amplitude = LEVELS["tension_amplitude"]
+    # a strain of amplitude dT/|K| against a tension with the part K'' a quarter cycle ahead
+    energy = np.pi * (amplitude / abs(stiffness)) ** 2 * stiffness.imag
+    return abs(stiffness), energy
+
+
+def measured(apparent, energy, **changed):
+    one = source(growth=0.0, **changed)
+    more = {
+        "apparent_spring_constant": surface("apparent_spring_constant", apparent, sigma=400.0),
+        "hysteresis_energy": surface("hysteresis_energy", energy, sigma=0.02 * abs(energy)),
+    }
+    return replace(one, surfaces=one.surfaces | more)
+
+
+def test_k_1_and_tau_are_those_that_give_back_the_loop_and_not_the_printed_ones():
+    apparent, energy = loop()
+    found = line_dynamics(measured(apparent, energy), LEVELS)
+    part = found.part
+    assert part.static_stiffness == REST
+    assert part.fast_stiffness == pytest.approx(REST + SPRING, rel=1e-9)
+    # printed is 3 s
+    assert part.relaxation_time == pytest.approx(TIME, rel=1e-9)
+    assert part.apparent_stiffness == pytest.approx(apparent, rel=1e-12)
+    assert part.hysteresis_energy_at(0.3, 700.0) == pytest.approx(energy, rel=1e-9)
+    assert found.notes[0].startswith("K_1 30000 N and tau 0.8 s are identified")
+    off = 100 * (loop(time=3.0)[0] / apparent - 1)
+    assert f"where the line has {apparent:.5g}, {off:+.1f} percent" in found.notes[1]
+    assert not any(text.startswith("DOUBTFUL") for text in found.notes)
+
+
+def test_k_ap_over_frequency_stands_beside_the_surface():
+    apparent, energy = loop()
+    (text,) = (
+        one for one in line_dynamics(measured(apparent, energy), LEVELS).notes if "0.1 Hz" in one
+    )
+    turned = 2j * np.pi * 0.1 * TIME
+    slow = abs(REST + SPRING * turned / (1 + turned))
+    # the surface of this test does not change with the frequency
+    said = f"0.1 Hz {slow:.5g} against {apparent:.5g} N ({100 * (slow / apparent - 1):+.1f} percent"
+    assert f"{said}, OUTSIDE its interval)" in text
+    assert f"0.3 Hz {apparent:.5g} against {apparent:.5g} N (" in text
+
+
+def test_without_surfaces_of_k_1_and_tau_the_loop_is_enough():
+    one = measured(*loop())
+    one = replace(
+        one, surfaces={name: one.surfaces[name] for name in one.surfaces if name.endswith(("apparent_spring_constant", "energy"))}
+    )  # fmt: skip
+    found = line_dynamics(one, LEVELS)
+    assert found.part.relaxation_time == pytest.approx(TIME)
+    assert "no surfaces of K_1 and tau" in found.notes[1]
+
+
+def test_where_no_line_gives_back_the_loop_the_printed_one_stands_if_k_ap_is_in_its_interval():
+    # K_ap of the printed 3e4 N and 3 s is 49,200 N
+    apparent = loop(time=3.0)[0] + 300
+    found = line_dynamics(measured(apparent, -1.0), LEVELS)
+    assert found.part.relaxation_time == pytest.approx(3.0)
+    assert found.notes[0].startswith("DOUBTFUL")
+    assert "not positive" in found.notes[0]
+    assert f"{100 * ((apparent - 300) / apparent - 1):+.1f} percent" in found.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("rest", "apparent", "energy", "message"),
+    [
+        (2e4, 6e4, -1.0, "printed ones give another K_ap"),
+        (6e4, 5e4, 5.0, "the storage spring constant does not exceed"),
+        (2e4, 4.92e4, -1.0, "not above zero"),
+    ],
+)
+def test_what_no_parameters_give_back_is_refused(rest, apparent, energy, message):
+    curves = (
+        LineCurve("strain", "tension", 0.0, 4000.0, coefficient=np.array([0, 1e-4])),
+        LineCurve(
+            "quasi_static_spring_constant", "mean_tension", 0.0, 4000.0,
+            coefficient=np.array([rest]),
+        ),
+    )  # fmt: skip
+    one = measured(apparent, energy, curves=curves)
+    if "above zero" in message:
+        one.surfaces["relaxation_time"] = surface("relaxation_time", -1.0)
+    with pytest.raises(DataError, match=message):
+        line_dynamics(one, LEVELS)
+
+
+def test_without_printed_parameters_there_is_nothing_to_fall_back_to():
+    one = measured(4.9e4, -1.0)
+    for name in ("dissipation_spring_constant", "relaxation_time"):
+        del one.surfaces[name]
+    with pytest.raises(DataError, match="not positive; found K_0 20000 N, K_ap 49000 N"):
+        line_dynamics(one, LEVELS)
+
+
+def test_damping_whose_interval_holds_zero_is_doubtful():
+    apparent, energy = loop()
+    one = measured(apparent, energy)
+    one.surfaces["hysteresis_energy"] = surface("hysteresis_energy", energy, sigma=energy)
+    notes = line_dynamics(one, LEVELS).notes
+    assert any("the damping may be none" in text for text in notes)
+    one.surfaces["hysteresis_energy"] = surface("hysteresis_energy", energy, sigma=np.nan)
+    assert any("H has no interval" in text for text in line_dynamics(one, LEVELS).notes)
+    # K_1 of a fifteenth of K_ap moves fifteen times as much as K_ap
+    apparent, energy = loop(spring=2e3)
+    one = measured(apparent, energy)
+    one.surfaces["apparent_spring_constant"] = surface(
+        "apparent_spring_constant", apparent, sigma=0.1 * apparent
+    )
+    assert any("the dashpot is hardly known" in text for text in line_dynamics(one, LEVELS).notes)
+    # K_1 and tau alone: sigma 10 s of 3 s, and none
+    assert any("the dashpot may be none" in text for text in line_dynamics(source(), LEVELS).notes)
+    alone = source()
+    alone.surfaces["relaxation_time"] = surface("relaxation_time", 3.0, sigma=np.nan)
+    assert any("tau has no interval" in text for text in line_dynamics(alone, LEVELS).notes)
+
+
+def test_growth_that_would_make_the_stiffness_negative_is_not_written_and_said():
+    # K_0 + K_1 is 50,000 N at 2,000 N of mean and falls to 0 at 1,000 N: 50 N per N
+    found = line_dynamics(source(growth=5e4), LEVELS)
+    assert found.part.dynamic_stiffness_per_mean_tension == 0
+    assert "below zero at no tension" in found.part.growth
+    assert found.part.fast_stiffness == pytest.approx(5e4)
+    # K_1 of -30,000 N is no line
+    assert "does not grow" in line_dynamics(source(growth=-1e3), LEVELS).part.growth
+
+
+def test_notes_of_the_surfaces_go_along():
+    one = source()
+    one.surfaces["relaxation_time"] = replace(
+        one.surfaces["relaxation_time"], notes=("the surface fails its F test",)
+    )
+    notes = line_from_lookup(one, levels=LEVELS).notes
+    assert "relaxation_time: the surface fails its F test" in notes
+    assert notes.count("wet") == 1
+
+
+def test_a_mean_tension_is_needed():
+    with pytest.raises(SettingsError, match="need a mean tension"):
+        line_dynamics(source(), {"frequency": 0.3})
