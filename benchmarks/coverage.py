@@ -1,11 +1,11 @@
 """Does the 95 % interval hold the truth in 95 % of cases?  Synthetic tests, every error drawn.
 
-    python benchmarks/coverage.py tethers 1000
+    python benchmarks/coverage.py 1000
 
-Each test is a tether of a law in closed form, cycled ten times.  Its load cell, crosshead, clocks,
-diameter and tape are wrong by errors that are drawn anew for each test with the standard uncertainties
-that the reduction is told, and both channels are noisy.  The table counts, for each number, how often
-value +- k u holds the truth; everything is synthetic.
+Each test is a tether of a law in closed form, cycled ten times.  Its load cell, crosshead,
+clocks, diameter and tape are wrong by errors that are drawn anew for each test with the standard
+uncertainties that the reduction is told, and both channels are noisy.  The table counts, for each
+number, how often value +- k u holds the truth; everything is synthetic.
 """
 
 from __future__ import annotations
@@ -57,6 +57,7 @@ def modulus(strain: np.ndarray, way: int) -> np.ndarray:
 
 
 def splices(tension: np.ndarray) -> np.ndarray:
+    """Length of both splices under a tension. [m]."""
     return SPLICES * (1 + COMPLIANCE * np.maximum(tension, 0) ** EXPONENT)
 
 
@@ -219,4 +220,4 @@ def table(found: dict[str, list[Found]]) -> str:
 
 
 if __name__ == "__main__":
-    print(table(tethers(int(sys.argv[2]))))
+    print(table(tethers(int(sys.argv[1]))))

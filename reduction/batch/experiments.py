@@ -29,7 +29,7 @@ from reduction.surface.levels import FactorLevels
 from reduction.uncertainty.product import Contributions
 from reduction.vocabulary import quantity
 
-__all__ = ["fit_experiments", "write_experiments"]
+__all__ = ["fit_experiments", "fit_rows", "write_experiments"]
 
 _UNITS = {"temperature": "K", "diameter": "m"}
 # notes of which the message tells the first: without that part there is little to read
@@ -162,7 +162,7 @@ def fit_experiments(
             path = archive_of(run)
             if path is not None and path.exists():
                 sources[path.name] = source_of(path.read_bytes(), path.name)
-        result = _fit(plan, rows)
+        result = fit_rows(plan, rows)
         results.append(replace(result, notes=(*result.notes, *same_logs(plan, raw_sha256))))
     return results, tuple(sources.values())
 
@@ -197,7 +197,8 @@ def _levels(
     return tuple(factors), tuple(units), np.stack(columns, axis=1)
 
 
-def _fit(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
+def fit_rows(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
+    """Fit one experiment to what its runs gave, one row a run and specimen."""
     factors, units, level = _levels(plan, rows)
     runs = RunTable(
         run=tuple(row["run"] for row in rows),

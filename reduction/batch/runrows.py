@@ -17,7 +17,7 @@ from reduction.line.product import REASONS
 from reduction.record import Bools
 from reduction.surface.cautions import MEASURED_SLACK
 
-__all__ = ["LINE", "MEASURED", "Row", "rows_of_run"]
+__all__ = ["LINE", "MEASURED", "Row", "row_of_archive", "rows_of_run"]
 
 LINE = ("storage_spring_constant", "loss_spring_constant", "quasi_static_spring_constant")
 MEASURED = ("frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
@@ -41,7 +41,9 @@ def rows_of_run(
             return [about | missing | {"specimen": name} for name in specimens]
         with open_archive(path) as archive:
             given = [str(name) for name in archive["specimen"].values]
-            return [about | _row(plan, archive, given.index(name), name) for name in specimens]
+            return [
+                about | row_of_archive(plan, archive, given.index(name), name) for name in specimens
+            ]
     except ArchiveError:
         return [about | missing | {"specimen": name} for name in specimens]
 
@@ -57,7 +59,7 @@ def _order(campaign: Campaign, plan: ExperimentPlan, run: str) -> float:
     return float(start + (steps.index(run) / len(steps) if run in steps else 0.0))
 
 
-def _row(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> Row:
+def row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> Row:
     """What the archive of a run holds of one specimen."""
 
     def of_test(name: str) -> float:
