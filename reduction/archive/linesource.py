@@ -247,7 +247,7 @@ def line_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
 
 
 def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
-    spread = f"{name}_standard_uncertainty"
+    spread, counted = f"{name}_standard_uncertainty", "tangent_modulus_count"
     strain = dataset["strain_bin"].values
     curves = []
     branches: tuple[Branch, Branch] = ("ascending", "descending")
@@ -257,6 +257,8 @@ def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
         if seen.sum() < 2:
             continue
         at = strain[seen]
+        # bins without a cycle between two that have one are not known
+        missing = np.flatnonzero(np.diff(np.flatnonzero(seen)) > 1)
         curves.append(
             LineCurve(
                 quantity=name,
@@ -268,7 +270,15 @@ def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
                 standard_uncertainty=np.array(dataset[spread].values[place, index][seen])
                 if spread in dataset
                 else np.empty(0),
+                count=np.array(dataset[counted].values[place, index][seen], dtype=np.float64)
+                if counted in dataset
+                else np.empty(0),
+                spread_of="the mean over the cycles of this one test",
+                gaps=np.stack([at[missing], at[missing + 1]], axis=1),
                 branch=branch,
+                notes=(f"{missing.size} gaps between bins were not measured",)
+                if missing.size
+                else (),
             )
         )
     return curves
@@ -291,6 +301,7 @@ def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
             is_inverse_slope=name != "strain",
             at=np.array(dataset["tension_grid"].values),
             standard_uncertainty=np.array(dataset[f"{stored}_standard_uncertainty"].values[place]),
+            spread_of="the curve of this one pull",
         )
         for stored, (name, variable) in _OVER_TENSION.items()
     ]

@@ -43,11 +43,16 @@ class LineDifference:
     surface_low, surface_high : ndarray
         95 % interval of the difference of the two surfaces; NaN where one has none. [unit]
     low, high : ndarray
-        The same of one more test of each. [unit]
-    is_known, is_test_known : ndarray of bool
+        The same of one more run of the same lines. [unit]
+    kind_low, kind_high : ndarray
+        The same of the means of all lines of the two kinds, with the scatter between lines. [unit]
+    line_low, line_high : ndarray
+        The same of another line of each kind. [unit]
+    is_known, is_test_known, is_kind_known, is_line_known : ndarray of bool
         Both lines have that interval.
-    is_different, is_test_different : ndarray of bool
-        Zero is not in the interval of the surfaces, or of one more test of each.
+    is_different, is_test_different, is_kind_different, is_line_different : ndarray of bool
+        Zero is not in the interval of the surfaces, of one more run, of the kinds, or of another
+        line of each.
     """
 
     quantity: str
@@ -60,10 +65,18 @@ class LineDifference:
     surface_high: Floats
     low: Floats
     high: Floats
+    kind_low: Floats
+    kind_high: Floats
+    line_low: Floats
+    line_high: Floats
     is_known: Bools
     is_test_known: Bools
+    is_kind_known: Bools
+    is_line_known: Bools
     is_different: Bools
     is_test_different: Bools
+    is_kind_different: Bools
+    is_line_different: Bools
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -99,9 +112,10 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
     Limits by [1]_, which needs no more than the two intervals and holds where they are not
     symmetric: a surface brought back from a logarithm, or an open coefficient.  For two normal
     values of the same degrees of freedom it is Student's t of those times the root of the summed
-    variances, which is never below 95 %.  It speaks of the scatter about each surface; how lines
-    of one kind differ among each other ([2]_: about 10 % of new ones, 50 % after years in the
-    sea) is in no surface.
+    variances, which is never below 95 %.  What is said of two surfaces is said of the lines that
+    were tested; that lines of the two kinds differ is said by the intervals of the kinds alone,
+    which hold how lines of one kind differ among each other ([2]_, sec. 4.4.1: K_ap of new ones by
+    about 10 %, after years in the sea by 50 %).
 
     Examples
     --------
@@ -110,7 +124,8 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
     >>> from reduction.lookup.line import look_up
     >>> from reduction.lookup.product import LineCurve, LineSource
     >>> def line(value):
-    ...     curve = LineCurve("tangent_modulus", "strain", 0, 1, at=[0, 1], value=2 * [value])
+    ...     at, moduli = np.array([0, 1]), np.full(2, value)
+    ...     curve = LineCurve("tangent_modulus", "strain", 0, 1, at=at, value=moduli)
     ...     return LineSource("a", "", "polyester", "", "", 0.0127, 29e3, curves=(curve,))
     >>> values = [look_up(line(one), "tangent_modulus", strain=0.5) for one in (6.317, 8.252)]
     >>> print(compare_values(*values).ratio.round(3))
@@ -128,6 +143,8 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
     difference = second.value - first.value
     surface_low, surface_high = _limits(first, second, "surface_low", "surface_high")
     low, high = _limits(first, second, "low", "high")
+    kind_low, kind_high = _limits(first, second, "kind_low", "kind_high")
+    line_low, line_high = _limits(first, second, "line_low", "line_high")
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.where(first.value != 0, second.value / first.value, np.nan)
     return LineDifference(
@@ -141,12 +158,28 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
         surface_high=surface_high,
         low=low,
         high=high,
-        is_known=np.isfinite(surface_low) & np.isfinite(surface_high),
-        is_test_known=np.isfinite(low) & np.isfinite(high),
-        # NaN is neither above nor below
-        is_different=np.asarray((surface_low > 0) | (surface_high < 0)),
-        is_test_different=np.asarray((low > 0) | (high < 0)),
+        kind_low=kind_low,
+        kind_high=kind_high,
+        line_low=line_low,
+        line_high=line_high,
+        is_known=_known(surface_low, surface_high),
+        is_test_known=_known(low, high),
+        is_kind_known=_known(kind_low, kind_high),
+        is_line_known=_known(line_low, line_high),
+        is_different=_apart(surface_low, surface_high),
+        is_test_different=_apart(low, high),
+        is_kind_different=_apart(kind_low, kind_high),
+        is_line_different=_apart(line_low, line_high),
     )
+
+
+def _known(low: Floats, high: Floats) -> Bools:
+    return np.asarray(np.isfinite(low) & np.isfinite(high))
+
+
+def _apart(low: Floats, high: Floats) -> Bools:
+    """Zero is not between; NaN is neither above nor below."""
+    return np.asarray((low > 0) | (high < 0))
 
 
 def _limits(

@@ -41,7 +41,7 @@ def evaluate_curve(curve: LineCurve, at: ArrayLike) -> tuple[Floats, Floats, Boo
     standard_uncertainty : ndarray, shape (...)
         NaN where not known. [SI unit of the quantity]
     is_inside : ndarray of bool, shape (...)
-        Between the ends of the range that was tested. [1]
+        Between the ends of the range that was tested, and in none of its gaps. [1]
 
     Raises
     ------
@@ -62,6 +62,8 @@ def evaluate_curve(curve: LineCurve, at: ArrayLike) -> tuple[Floats, Floats, Boo
     points = np.asarray(at, dtype=np.float64)
     width = _EDGE * max(abs(curve.low), abs(curve.high))
     inside = (points >= curve.low - width) & (points <= curve.high + width)
+    for low, high in curve.gaps:
+        inside &= (points <= low + width) | (points >= high - width)
     spread: Floats = np.full(points.shape, np.nan)
     if curve.standard_uncertainty.size:
         spread = np.interp(points, curve.at, curve.standard_uncertainty, left=np.nan, right=np.nan)

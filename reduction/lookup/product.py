@@ -22,9 +22,10 @@ from reduction.record import Bools, Floats, Integers, freeze_arrays
 __all__ = ["DesignValues", "LineCurve", "LineSource", "LineSurface"]
 
 _ROPE_RULE = (
-    "peak at most 60 % of the break strength where the line is always loaded, 30 % where it goes "
-    "slack (CG-D-39-80, sec. 3.4)"
+    "peak at most 60 % of the break strength where the minimum stays at 3 % or above, 30 % where "
+    "it is lower or the line goes slack: a preliminary guideline, from nylon"
 )
+_OF_ROPE = " (CG-D-39-80, sec. 3.4, 5.0)"
 _TETHER_RULE = "a rubber tether must not go slack (WHOI-2005-10, sec. 2.3.2)"
 
 
@@ -55,6 +56,16 @@ class LineSurface:
     alternatives : ndarray, shape (n_alternatives, n_terms)
         Other coefficients that may be the right ones, where that is open: an interval spans
         them all. [as coefficient]
+    alternative_boxes : tuple of (low, high)
+        Other levels that may be the right ones, as ``low`` and ``high``: an interval spans those
+        too. [SI unit of each factor]
+    rounding : ndarray, shape (n_factors,)
+        Half the last digit of the levels as printed, within which a point is inside; empty where
+        they are exact. [SI unit of each factor]
+    line_scatter : float
+        Standard deviation between lines of the kind over their mean; NaN where not known. [1]
+    n_lines : float
+        That the surface is of; NaN where not known. [1]
     errata : tuple of str
         Ids that touch it.
     notes : tuple of str
@@ -72,6 +83,10 @@ class LineSurface:
     greatest_leverage: float
     exponent: float = 1.0
     alternatives: Floats = field(default_factory=lambda: np.empty((0, 0)))
+    alternative_boxes: tuple[tuple[Floats, Floats], ...] = ()
+    rounding: Floats = field(default_factory=lambda: np.empty(0))
+    line_scatter: float = float("nan")
+    n_lines: float = float("nan")
     errata: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -84,7 +99,7 @@ class LineSurface:
             "low": (n_factors,),
             "high": (n_factors,),
             "covariance_factor": (n_terms, n_terms),
-        }
+        } | ({"rounding": (n_factors,)} if self.rounding.size else {})
         for name, shape in shapes.items():
             found = getattr(self, name).shape
             if found != shape:
@@ -103,13 +118,21 @@ class LineCurve:
         Of the vocabulary: ``quasi_static_spring_constant`` over ``mean_tension``, ``strain`` over
         ``tension``, ``tangent_modulus`` over ``strain``.
     low, high : float
-        Range of the variable that was tested. [SI]
+        Range of the variable that was tested, and in which the curve can be trusted. [SI]
     coefficient : ndarray, shape (n_terms,)
         Of rising powers of the variable; empty where the curve is given by points. [SI]
     at, value : ndarray, shape (n_points,)
         Points, rising; straight lines between them. [SI]
     standard_uncertainty : ndarray, shape (n_points,)
         At the points, of a polynomial too; empty where not known. [SI]
+    count : ndarray, shape (n_points,)
+        Cycles that the uncertainty is of; empty where it is of no count. [1]
+    spread_of : str
+        What the uncertainty is of, in words: there is none between tests in it.
+    gaps : ndarray, shape (n_gaps, 2)
+        Ends between which nothing was measured; they are inside, what is between is not. [SI]
+    range_note : str
+        Why the range is less than what was tested; empty where it is not.
     branch : {"", "ascending", "descending"}
         Of a cycle, where the quantity differs.
     is_inverse_slope : bool
@@ -126,6 +149,10 @@ class LineCurve:
     at: Floats = field(default_factory=lambda: np.empty(0))
     value: Floats = field(default_factory=lambda: np.empty(0))
     standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
+    count: Floats = field(default_factory=lambda: np.empty(0))
+    spread_of: str = ""
+    gaps: Floats = field(default_factory=lambda: np.empty((0, 2)))
+    range_note: str = ""
     branch: Literal["", "ascending", "descending"] = ""
     is_inverse_slope: bool = False
     errata: tuple[str, ...] = ()
@@ -151,7 +178,7 @@ class LineSource:
     diameter : float
         NaN where not stated. [m]
     rated_break_strength : float
-        NaN where not stated. [N]
+        That tensions in %RBS are shares of; NaN where not stated. [N]
     factor_names : tuple of str
         Of the surfaces, in the order of their levels.
     surfaces : dict of str to LineSurface
@@ -165,6 +192,11 @@ class LineSource:
     kind : str
         Of the specimen, as a campaign names it: ``rubber tether``, ``rope`` ...; empty where
         not stated.
+    tensile_strength : float
+        That the line still has in its condition, by which the rule is judged then; NaN where
+        the rated one counts. [N]
+    strength_of : str
+        Of which other line the rated break strength is, in words; empty where it is its own.
     notes : tuple of str
         What holds of all of it.
     """
@@ -183,6 +215,8 @@ class LineSource:
     wet_linear_density: float = float("nan")
     absent: dict[str, str] = field(default_factory=dict)
     kind: str = ""
+    tensile_strength: float = float("nan")
+    strength_of: str = ""
     notes: tuple[str, ...] = ()
 
     @property
@@ -193,7 +227,11 @@ class LineSource:
     @property
     def rule(self) -> str:
         """How high the line may be loaded, or how low."""
-        return _TETHER_RULE if self.is_tether else _ROPE_RULE
+        if self.is_tether:
+            return _TETHER_RULE
+        is_nylon = "nylon" in self.material.lower() or not self.material
+        taken = "" if is_nylon else f", taken over for {self.material}"
+        return f"{_ROPE_RULE}{taken}{_OF_ROPE}"
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -219,9 +257,16 @@ class DesignValues:
     value : ndarray
         The median where the surface is of a transform. [unit]
     low, high : ndarray
-        95 % interval of one more test there; NaN where nothing is known of the scatter. [unit]
+        95 % interval of one more run of the same lines there; NaN where nothing is known of the
+        scatter, as of a curve of one test. [unit]
     surface_low, surface_high : ndarray
-        95 % interval of the surface itself. [unit]
+        95 % interval of the surface itself, or of the curve of one test: `surface_interval_of`.
+        [unit]
+    kind_low, kind_high : ndarray
+        95 % interval of the mean of all lines of the kind; NaN where the scatter between lines is
+        not known. [unit]
+    line_low, line_high : ndarray
+        The same of another line of the kind. [unit]
     is_inside : ndarray of bool
         Between the levels, or the ends of the range, that were tested.
     is_untested : ndarray of bool
@@ -231,8 +276,14 @@ class DesignValues:
         on the curve at a strain; NaN where none is known. [N]
     peak_share, minimum_share : ndarray
         Of the rated break strength; NaN where that is not known. [1]
+    own_peak_share, own_minimum_share : ndarray
+        Of the strength that the line has in its condition: the rated one where no other is
+        known. [1]
+    is_slack : ndarray of bool
+        The minimum is zero.
     is_above_rule : ndarray of bool
-        The peak is above 60 % of the break strength, or above 30 % where the line goes slack.
+        The peak is above 60 % of the strength that the line has, or above 30 % where the minimum
+        is below 3 % of it.
     rule : str
         How high, or how low, the source lets the line be loaded.
     source : str
@@ -241,6 +292,9 @@ class DesignValues:
         What is known against them.
     branch : {"", "ascending", "descending"}
         Of a cycle, where the quantity differs.
+    interval_of, surface_interval_of : str
+        What ``low`` and ``high``, and ``surface_low`` and ``surface_high``, are of, in words;
+        empty where there is no such interval.
     """
 
     quantity: str
@@ -250,19 +304,33 @@ class DesignValues:
     high: Floats
     surface_low: Floats
     surface_high: Floats
+    kind_low: Floats
+    kind_high: Floats
+    line_low: Floats
+    line_high: Floats
     is_inside: Bools
     is_untested: Bools
     peak_tension: Floats
     minimum_tension: Floats
     peak_share: Floats
     minimum_share: Floats
+    own_peak_share: Floats
+    own_minimum_share: Floats
+    is_slack: Bools
     is_above_rule: Bools
     rule: str
     source: str
     errata: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     branch: Literal["", "ascending", "descending"] = ""
+    interval_of: str = ""
+    surface_interval_of: str = ""
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze_arrays(self)
+
+    @property
+    def is_below_zero(self) -> Bools:
+        """The value is below zero, which none of the quantities can be."""
+        return np.asarray(self.value < 0)

@@ -103,6 +103,9 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
     out = {name: np.empty(size) for name in names}
     inside = np.empty(size, dtype=bool)
     factor = _t_factor(surface)
+    # a level in round shares of a strength may lie beyond the one that is printed in whole units
+    rounded = surface.rounding if surface.rounding.size else np.zeros(surface.low.size)
+    edge = 1 + _EDGE + 2 * rounded / (surface.high - surface.low)
 
     def fill(block: slice) -> None:
         coded = coded_from_engineering(given[block], low=surface.low, high=surface.high)
@@ -119,7 +122,7 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
         ):
             out[name][block] = values
         out["leverage"][block] = leverage
-        inside[block] = np.all(np.abs(coded) <= 1 + _EDGE, axis=1)
+        inside[block] = np.all(np.abs(coded) <= edge, axis=1)
 
     run_blocks(fill, [slice(start, start + _BLOCK) for start in range(0, size, _BLOCK)])
     if surface.exponent != 1:

@@ -18,8 +18,19 @@ import numpy as np
 
 from reduction.lookup.product import LineCurve, LineSource, LineSurface
 from reduction.lookup.surface import sigma_from_r2
-from reduction.published.lineproduct import PublishedCubic, PublishedLine, PublishedSurface
+from reduction.published.linecells import POUND
+from reduction.published.linecurves import curves_of_line
+from reduction.published.lineproduct import PublishedLine, PublishedSurface
 from reduction.published.lines import published_lines
+from reduction.published.linestrength import (
+    is_documentation,
+    levels_told,
+    line_scatter,
+    own_strength,
+    scatter_told,
+    strength_of,
+    strengths_told,
+)
 from reduction.published.tether import PublishedTether, TetherSegment
 from reduction.published.tethers import published_tethers
 from reduction.surface.designs import box_behnken
@@ -31,7 +42,8 @@ __all__ = ["published_sources"]
 _FACTORS = ("frequency", "mean_tension", "tension_amplitude")
 _FREEDOM = 5.0
 _FIRST = "ten cycles"
-_OF_CUBIC = {"quasi_static_strain": "strain"}
+_FEWEST = 2.0
+"""Lines of a surface, where a table says how many: two to four. [1]"""
 _DESIGN = box_behnken(3).coded
 _EXPONENTS = quadratic_exponents(3)
 
@@ -60,26 +72,14 @@ def published_sources() -> dict[str, LineSource]:
 
 def _line(line: PublishedLine) -> LineSource:
     surfaces = {}
-    absent = {_OF_CUBIC.get(name, name): why for name, why in line.absent.items()}
+    curves, absent = curves_of_line(line)
     for response, found in line.surfaces.items():
         if any(term.index == 0 for term in found.open_terms):
             (term,) = (one for one in found.open_terms if one.index == 0)
             absent[response] = f"its mean B1 is open ({term.erratum}): {term.note}"
         else:
-            surfaces[response] = _surface(found)
-    curves = []
-    for cubic in (line.stiffness, line.load_strain):
-        curve = None if cubic is None else _curve(cubic)
-        if curve is not None:
-            curves.append(curve)
-        elif cubic is not None:
-            why = "; ".join(term.note for term in cubic.open_terms) or "the range is"
-            absent[_OF_CUBIC.get(cubic.quantity, cubic.quantity)] = f"open: {why}"
-    has_stiffness = any(one.quantity == "quasi_static_spring_constant" for one in curves)
-    strain = next((one for one in curves if one.quantity == "strain"), None)
-    if strain is not None and not has_stiffness:
-        curves.append(_slope(strain))
-        absent.pop("quasi_static_spring_constant", None)
+            surfaces[response] = _surface(line, found)
+    strength, told = own_strength(line)
     return LineSource(
         name=line.name,
         source="CG-D-39-80",
@@ -90,45 +90,21 @@ def _line(line: PublishedLine) -> LineSource:
         rated_break_strength=line.rated_break_strength,
         factor_names=_FACTORS,
         surfaces=surfaces,
-        curves=tuple(curves),
+        curves=curves,
         absent=absent,
         kind="rope",
-        notes=(*_strengths(line), *_exposed(line)),
+        tensile_strength=strength,
+        strength_of=strength_of(line),
+        notes=(*strengths_told(line), *told, *scatter_told(line), *levels_told(line)),
     )
 
 
-def _strengths(line: PublishedLine) -> tuple[str, ...]:
-    """What is said of the strength, where the tables do not agree."""
-    found = sorted({round(one.value) for one in line.stated_strengths})
-    if len(found) < 2:
-        return ()
-    listed = ", ".join(f"{one.value:.0f} N (Table {one.table})" for one in line.stated_strengths)
-    return (
-        f"the break strength is printed as {listed}; the tested levels are shares of "
-        f"{line.rated_break_strength:.0f} N",
-    )
-
-
-def _exposed(line: PublishedLine) -> tuple[str, ...]:
-    """What years in the sea did to the strength, and to how alike the lines are."""
-    if line.condition == "new":
-        return ()
-    notes = [
-        "exposed lines differ among each other by about half, new ones by a tenth (sec. 4.4.1); "
-        "no interval has that in it"
-    ]
-    found = line.strength
-    if found is not None and np.isfinite(found.tensile_strength):
-        share = 100 * found.tensile_strength / line.rated_break_strength
-        notes.append(
-            f"lines in this condition break at {found.tensile_strength:.0f} N (Table "
-            f"{found.table}), {share:.0f} % of the strength that shares and rule refer to"
-        )
-    return tuple(notes)
-
-
-def _surface(found: PublishedSurface) -> LineSurface:
-    box = found.boxes[0]
+def _surface(line: PublishedLine, found: PublishedSurface) -> LineSurface:
+    box, *others = found.boxes
+    ends = [np.array([one.frequency, one.mean_tension, one.tension_amplitude]).T
+            for one in (box, *others)]  # fmt: skip
+    # levels are printed in whole pounds
+    rounding = np.array([0.0, 0.5, 0.5]) * POUND
     known = np.array(found.coefficient)
     choices = []
     for chosen in product(*(range(len(term.values)) for term in found.open_terms)):
@@ -137,6 +113,8 @@ def _surface(found: PublishedSurface) -> LineSurface:
             one[term.index] = term.values[place]
         choices.append(one)
     matrix = model_matrix(_DESIGN, _EXPONENTS)
+    # a run at the printed level may have been half a pound beyond it
+    edge = model_matrix(_DESIGN * (1 + 2 * rounding / (ends[0][1] - ends[0][0])), _EXPONENTS)
     names = tuple(f"B{number}" for number in range(1, len(_EXPONENTS) + 1))
     covariance = covariance_factor(matrix, names=names)
     notes = [f"open: {term.note}; the interval spans them" for term in found.open_terms]
@@ -144,60 +122,45 @@ def _surface(found: PublishedSurface) -> LineSurface:
         notes.append("r2 is open: no interval can be given")
     if not found.passes_f_test:
         notes.append("the surface fails its F test at 5 %: it says no more than the mean")
-    if len(found.boxes) > 1:
-        other = found.boxes[1]
+    notes += [
+        f"the tested levels are open: shares of {box.rated_break_strength:.0f} N (Table "
+        f"{box.table}) or of {other.rated_break_strength:.0f} N (Table {other.table}); the "
+        "intervals span both"
+        for other in others
+    ]
+    scatter, n_lines = float("nan"), float(found.n_lines or "nan")
+    if found.response == "apparent_spring_constant":
+        scatter = line_scatter(line)
+    if np.isfinite(n_lines):
+        notes.append(f"the surface is of {n_lines:.0f} lines")
+    elif np.isfinite(scatter):
+        n_lines = _FEWEST
         notes.append(
-            f"the tested levels are open: shares of {box.rated_break_strength:.0f} N (Table "
-            f"{box.table}) or of {other.rated_break_strength:.0f} N (Table {other.table})"
+            f"of how many lines the surface is, is not printed: {_FEWEST:.0f}, the fewest of any, "
+            "are taken for the scatter between lines"
+        )
+    if is_documentation(line):
+        notes.append(
+            'reported "for documentation purposes but no inference is drawn from it": few lines, '
+            "high variability (sec. 4.4.1)"
         )
     return LineSurface(
         quantity=found.response,
         coefficient=choices[0],
         exponents=_EXPONENTS,
-        low=np.array([box.frequency[0], box.mean_tension[0], box.tension_amplitude[0]]),
-        high=np.array([box.frequency[1], box.mean_tension[1], box.tension_amplitude[1]]),
+        low=ends[0][0],
+        high=ends[0][1],
         covariance_factor=covariance,
         sigma=sigma_from_r2(choices[0], found.r2),
         degrees_of_freedom=_FREEDOM,
-        greatest_leverage=float(np.max(variance_factor(matrix, covariance))),
+        greatest_leverage=float(np.max(variance_factor(edge, covariance))),
         alternatives=np.array(choices[1:]).reshape(-1, known.size),
+        alternative_boxes=tuple((low, high) for low, high in ends[1:]),
+        rounding=rounding,
+        line_scatter=scatter,
+        n_lines=n_lines,
         errata=found.errata,
         notes=tuple(notes),
-    )
-
-
-def _curve(cubic: PublishedCubic) -> LineCurve | None:
-    """None where a coefficient or the range is open; a constant that is open moves little."""
-    coefficient, notes = np.array(cubic.coefficient), [cubic.note] if cubic.note else []
-    if [term.index for term in cubic.open_terms] == [0]:
-        (term,) = cubic.open_terms
-        coefficient[0] = term.values[0]
-        notes.append(f"open: {term.note}; the first is taken")
-    if not (np.isfinite(coefficient).all() and np.isfinite(cubic.tension_high)):
-        return None
-    is_strain = cubic.quantity == "quasi_static_strain"
-    return LineCurve(
-        quantity=_OF_CUBIC.get(cubic.quantity, cubic.quantity),
-        variable="tension" if is_strain else "mean_tension",
-        low=0.0,
-        high=cubic.tension_high,
-        coefficient=coefficient,
-        errata=cubic.errata,
-        notes=tuple(notes),
-    )
-
-
-def _slope(strain: LineCurve) -> LineCurve:
-    """K_0 from the slope of load on strain, for a line without a cubic of its own."""
-    return LineCurve(
-        quantity="quasi_static_spring_constant",
-        variable="mean_tension",
-        low=0.0,
-        high=strain.high,
-        coefficient=np.array(strain.coefficient),
-        is_inverse_slope=True,
-        errata=strain.errata,
-        notes=(*strain.notes, "from the slope of load against strain: no K_0 that can be used"),
     )
 
 
@@ -230,7 +193,9 @@ def _of_segments(
     moduli = np.repeat([one.modulus for one in rows], 2)
     tensions = np.array([[one.tension_low, one.tension_high] for one in rows]).ravel()
     errata = tuple(dict.fromkeys(erratum for one in rows for erratum in one.errata))
-    notes = tuple(dict.fromkeys(note for one in rows for note in one.notes))
+    notes = tuple(
+        dict.fromkeys(f"remark on a printed cell: {note}" for one in rows for note in one.notes)
+    )
     table = {"consolidated": "6", "raw": "5"}[data]
     keep = np.isfinite(tensions)
     curves = [

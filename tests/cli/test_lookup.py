@@ -56,7 +56,7 @@ def test_a_grid_fills_what_is_not_given_of_a_curve_too(command):
 def test_ends_of_the_tension_and_the_rule_are_in_every_answer(command):
     text = command("lookup", NYLON, "--quantity", "relaxation_time", *LEVELS).stdout
     assert "29.5" in text
-    assert "rule: peak at most 60 % of the break strength where the line is always loaded" in text
+    assert "rule: peak at most 60 % of the break strength where the minimum stays at 3 % or" in text
     text = command(
         "lookup", TETHER, "--quantity", "tangent_modulus", "--strain", "60 %", "--branch",
         "ascending",
@@ -236,7 +236,7 @@ def test_what_there_is(command):
                 "21 %RBS", "--tension-amplitude", "8.5 %RBS",
             ),
             4,
-            "frequency 2, tested 0.1 to 0.5",
+            "frequency 2 Hz, tested 0.1 to 0.5 Hz",
         ),
         (
             (

@@ -62,7 +62,7 @@ def test_corners_of_the_cube_are_inside_and_untested():
 
 def test_outside_is_refused_with_the_range_and_given_with_a_flag():
     beyond = CENTRE | {"mean_tension": 350.0}
-    with pytest.raises(DataError, match="mean_tension 350, tested 100 to 300"):
+    with pytest.raises(DataError, match="mean_tension 350 N, tested 100 to 300 N"):
         look_up(LINE, "apparent_spring_constant", **beyond)
     found = look_up(LINE, "apparent_spring_constant", extrapolate="flag", **beyond)
     assert not found.is_inside
@@ -106,7 +106,7 @@ def test_curves_are_by_their_variable_and_branch():
     assert look_up(LINE, "tangent_modulus", strain=1.25, branch="ascending").value == 2.5e6
     with pytest.raises(SettingsError, match="differs by branch; .* ascending or descending"):
         look_up(LINE, "tangent_modulus", strain=1.25)
-    with pytest.raises(DataError, match="found strain 2.5; needed 0.5 to 2 1"):
+    with pytest.raises(DataError, match="found strain 2.5 1; needed 0.5 to 2 1"):
         look_up(LINE, "tangent_modulus", strain=2.5, branch="ascending")
     # beyond points there is nothing to go on with
     outside = look_up(LINE, "tangent_modulus", strain=2.5, branch="ascending", extrapolate="flag")

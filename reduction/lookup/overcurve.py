@@ -1,0 +1,138 @@
+"""Design values of a curve at points: value, interval, what was tested, loads.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
+   R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4, 4.4.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.special import stdtrit
+
+from reduction.errors import DataError, SettingsError
+from reduction.lookup.curve import evaluate_curve
+from reduction.lookup.loads import loads_of_line
+from reduction.lookup.product import DesignValues, LineCurve, LineSource
+from reduction.lookup.told import design_values
+from reduction.record import Floats
+from reduction.vocabulary import quantity as quantity_of
+
+__all__ = ["values_of_curve"]
+
+_BOTH_SIDES = 0.975
+
+
+def values_of_curve(
+    line: LineSource, curve: LineCurve, given: Mapping[str, Floats], extrapolate: str
+) -> DesignValues:
+    """Design values of a curve.
+
+    Parameters
+    ----------
+    line : LineSource
+        Whose curve it is.
+    curve : LineCurve
+        Polynomial or points.
+    given : mapping of str to ndarray, shape (...)
+        The variable of the curve alone. [SI]
+    extrapolate : {"refuse", "flag"}
+        What to do outside the range.
+
+    Returns
+    -------
+    values : DesignValues
+        With one interval, of the curve itself: a curve of one test says nothing of others.
+
+    Raises
+    ------
+    SettingsError
+        If a level is not of the curve.
+    DataError
+        If a point is outside and ``extrapolate`` is "refuse", or the loads are refused.
+
+    Notes
+    -----
+    The interval is Student's, with one less than the count of cycles at the point.
+
+    Examples
+    --------
+    >>> pull = LineCurve("strain", "tension", 0.0, 100.0, coefficient=np.array([0.0, 0.01]))
+    >>> rope = LineSource("rope", "", "nylon", "", "new", 0.0127, 1e4, curves=(pull,))
+    >>> found = values_of_curve(rope, pull, {"tension": np.array([10.0, 50.0])}, "refuse")
+    >>> print(found.value, found.peak_share)
+    [0.1 0.5] [0.001 0.005]
+    """
+    unknown = sorted(set(given) - {curve.variable})
+    if unknown:
+        raise SettingsError(
+            f"{curve.quantity} of {line.name} does not vary with {', '.join(unknown)}",
+            needed=f"levels of {curve.variable}",
+        )
+    at = given[curve.variable]
+    value, spread, inside = evaluate_curve(curve, at)
+    if extrapolate == "refuse" and not inside.all():
+        first = at.ravel()[np.flatnonzero(~inside.ravel())[0]]
+        unit = quantity_of(curve.variable).unit
+        gaps = "".join(
+            f", nothing between {low:.5g} and {high:.5g}"
+            for low, high in curve.gaps
+            if low < first < high
+        )
+        raise DataError(
+            f"{int((~inside).sum())} of {inside.size} points are outside what was tested of "
+            f"{curve.quantity} of {line.name}",
+            found=f"{curve.variable} {first:.5g} {unit}",
+            needed=f"{curve.low:.5g} to {curve.high:.5g} {unit}{gaps}",
+            hint=". ".join(
+                part
+                for part in (
+                    curve.range_note, "--extrapolate flag gives the number and flags it."
+                )
+                if part
+            ),
+        )  # fmt: skip
+    half = _factor(curve, at) * spread
+    nothing = np.full(at.shape, np.nan)
+    return design_values(
+        line,
+        curve,
+        loads=loads_of_line(line, given, at.shape, branch=curve.branch),
+        inside=inside,
+        untested=np.zeros(at.shape, dtype=bool),
+        words=("", curve.spread_of if curve.standard_uncertainty.size else ""),
+        more=(*((curve.range_note,) if curve.range_note else ()), *_joints(curve, at)),
+        value=value,
+        low=nothing,
+        high=nothing,
+        surface_low=value - half,
+        surface_high=value + half,
+        kind_low=nothing,
+        kind_high=nothing,
+        line_low=nothing,
+        line_high=nothing,
+    )
+
+
+def _factor(curve: LineCurve, at: Floats) -> Floats:
+    """Half width of a 95 % interval over the standard uncertainty."""
+    if not curve.count.size:
+        return np.asarray(stdtrit(np.inf, _BOTH_SIDES))
+    freedom = np.maximum(np.interp(at, curve.at, curve.count) - 1, 1)
+    return np.asarray(stdtrit(freedom, _BOTH_SIDES))
+
+
+def _joints(curve: LineCurve, at: Floats) -> list[str]:
+    """Where two pieces meet with two values, and a point is just there."""
+    if not curve.value.size:
+        return []
+    meet = (np.diff(curve.at) == 0) & (np.diff(curve.value) != 0)
+    return [
+        f"at {curve.variable} {curve.at[place]:.5g} two pieces meet: {curve.value[place]:.4g} "
+        f"{quantity_of(curve.quantity).unit} below, {curve.value[place + 1]:.4g} above"
+        for place in np.flatnonzero(meet)
+        if np.any(at == curve.at[place])
+    ]
