@@ -30,7 +30,7 @@ REDUCE = """
 import time, json, resource, sys
 from pathlib import Path
 from reduction.batch.models import fit_strain_models
-from reduction.batch.run import reduce_survey
+from reduction.batch.reduce import reduce_survey
 from reduction.batch.survey import survey_campaign
 from reduction.campaign.load import load_campaign
 campaign = load_campaign(Path(sys.argv[1]))

@@ -1,0 +1,79 @@
+"""What the propagation of shared errors adds to the reduction of a log.
+
+    python benchmarks/uncertainty_cost.py [ROWS] [REPEATS]
+
+The log of `reduction_over_parse.py` (synthetic) is read once a repeat; the whole of it, reading
+and hashing included, is timed with and without the propagation, in turn, every instrument stated.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+from statistics import median
+
+from reduction.batch.basis import basis_of
+from reduction.batch.describe import describe
+from reduction.batch.instruments import instruments_of
+from reduction.batch.models import fit_strain_models
+from reduction.batch.survey import located_again, survey_campaign
+from reduction.campaign.load import load_campaign
+from reduction.pipeline.reduce import reduce_test
+from reduction.uncertainty.stated import StatedErrors
+
+STATED = StatedErrors(
+    tension_gain=0.0025, tension_offset=2.0, position_gain=0.001, position_offset=0.003, lag=0.005,
+    diameter=1e-4, strain_gain=0.002, stiffness=0.003,
+)  # fmt: skip
+
+
+def seconds(path: Path, *, propagated: bool) -> tuple[float, int]:
+    """Time from the file to the reduced test, and its cycles."""
+    campaign = replace(load_campaign(path), uncertainty=STATED)
+    start = time.perf_counter()
+    surveys = survey_campaign(campaign)
+    models, _ = fit_strain_models(campaign, surveys)
+    (survey,) = surveys
+    basis = basis_of(campaign, survey, surveys, models=models, pulls={}, failed=())
+    test = reduce_test(
+        located_again(campaign, survey),
+        description=describe(campaign, survey),
+        specimens=tuple(campaign.specimens[name] for name in survey.plan.specimens),
+        models=basis.models, history=None, sources=survey.sources, settings=survey.plan.settings,
+        settings_json="{}",
+        instruments=instruments_of(campaign, survey, basis.models) if propagated else (),
+    )  # fmt: skip
+    taken = time.perf_counter() - start
+    if test.cycles is None or (test.contributions is None) == propagated:
+        raise RuntimeError("the log was not reduced as it should be")
+    return taken, test.cycles.n_cycles
+
+
+def main(n_rows: int, repeats: int) -> None:
+    """Print both times and their ratio."""
+    sys.path.insert(0, str(Path(__file__).parent))
+    from generate import write_campaign
+
+    folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
+    path = write_campaign(folder, n_rows=n_rows)
+    seconds(path, propagated=True)
+    pairs = [
+        (seconds(path, propagated=False)[0], *seconds(path, propagated=True))
+        for _ in range(repeats)
+    ]
+    ratios = [after / before for before, after, _ in pairs]
+    print(f"{n_rows} rows, {pairs[0][2]} cycles, {os.cpu_count()} processors, {repeats} pairs")
+    print(f"without: {median(one[0] for one in pairs):.2f} s")
+    print(f"with:    {median(one[1] for one in pairs):.2f} s")
+    print(f"ratio:   {median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})")
+
+
+if __name__ == "__main__":
+    main(
+        int(sys.argv[1]) if len(sys.argv) > 1 else 5_760_000,
+        int(sys.argv[2]) if len(sys.argv) > 2 else 3,
+    )
