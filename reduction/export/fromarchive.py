@@ -174,6 +174,11 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         "rated_break_strength": _number(archive, "rated_break_strength", place),
         "linear_density": _number(archive, "linear_density", place),
         "wet_linear_density": _number(archive, "wet_linear_density", place),
+        "material": (
+            str(archive["specimen_material"].values[place])
+            if "specimen_material" in archive
+            else ""
+        ),
         "notes": tuple(notes),
     }
 

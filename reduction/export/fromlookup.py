@@ -94,7 +94,13 @@ def line_from_lookup(
     sources += [f"{name.replace('_', ' ')}: stated at the export" for name in given]
     own = {
         name: getattr(source, name)
-        for name in ("diameter", "rated_break_strength", "linear_density", "wet_linear_density")
+        for name in (
+            "diameter",
+            "rated_break_strength",
+            "linear_density",
+            "wet_linear_density",
+            "material",
+        )
     }
     return ExportLine(
         name=source.name,

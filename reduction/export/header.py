@@ -6,6 +6,7 @@ import re
 import textwrap
 
 from reduction import __version__
+from reduction.export.guards import guards_of, range_of
 from reduction.export.product import ExportLine
 from reduction.export.thin import ThinnedCurve
 
@@ -52,15 +53,11 @@ def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) ->
     if line.is_synthetic:
         told.append("SYNTHETIC: made from a formula, nothing was tested")
     if curve is not None:
-        low, high = line.tested
-        where = (
-            f"tested from strain {low:.6g} to {high:.6g}" if low == low else "nothing was tested"
-        )
         told += [
             f"Curve: {line.curve}",
-            f"Holds from strain 0 to {curve.strain[-1]:.6g} and tension 0 to "
-            f"{curve.tension[-1]:.6g} N; {where}. Beyond the last point nothing is known; some "
-            "codes keep the last tension there",
+            f"Holds as {range_of(line)}. The curve ends at strain {curve.strain[-1]:.6g} and "
+            f"tension {curve.tension[-1]:.6g} N; beyond it nothing is known; some codes keep the "
+            "last tension there",
             f"{curve.strain.size} points of {line.strain.size}; greatest error "
             f"{curve.error:.3g} N, {curve.share:.2e} of the greatest tension",
         ]
@@ -68,6 +65,7 @@ def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) ->
             told.append(f"At the start: {curve.words}")
     told += [f"Source: {text}" for text in line.sources]
     told += [f"Note: {text}" for text in line.notes]
+    told += [f"Note: {text}" for text in guards_of(line) if text.startswith("DOUBTFUL")]
     told += [f"Remark: {text}" for text in remarks if text]
     return [
         part

@@ -1,9 +1,16 @@
-"""What a mooring code is told of a line: one curve, its range, its dynamics, its properties."""
+"""What a mooring code is told of a line: one curve, its range, its dynamics, its properties.
+
+References
+----------
+.. [1] M. Bigon and G. Regazzoni, "The Morrow Guide to Knots," Quill, New York, 1982, p. 14,
+   "Comparison between fibers used in ropemaking."
+"""
 
 from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from dataclasses import dataclass, field
 
 from reduction.errors import SettingsError
@@ -14,6 +21,8 @@ __all__ = ["CYLINDER", "SEA_WATER", "ExportLine", "Hydrodynamics"]
 
 SEA_WATER = 1025.0
 """Density that turns a wet mass into a displaced volume. [kg m-3]"""
+FIBRE_DENSITY = {"nylon": 1140.0, "polyester": 1380.0}
+"""By material; specific gravity of [1]_. [kg m-3]"""
 
 
 @dataclass(frozen=True)
@@ -55,6 +64,8 @@ class ExportLine:
         In air, and less the displaced water; NaN where not stated. [kg m-1]
     rated_break_strength : float
         NaN where not stated. [N]
+    material : str
+        Of the fibre, where it is stated.
     viscoelasticity : Viscoelasticity, optional
         Where it was found.
     syrope : Syrope, optional
@@ -78,6 +89,7 @@ class ExportLine:
     linear_density: float = math.nan
     wet_linear_density: float = math.nan
     rated_break_strength: float = math.nan
+    material: str = ""
     viscoelasticity: Viscoelasticity | None = None
     syrope: Syrope | None = None
     hydrodynamics: Hydrodynamics = field(default_factory=lambda: CYLINDER)
@@ -88,30 +100,55 @@ class ExportLine:
     def __post_init__(self) -> None:
         """Check that somebody has said what the curve is and where it is from."""
         freeze_arrays(self)
-        for name, text in (("name", self.identifier.strip("_")), ("curve", self.curve.strip())):
-            if not text:
-                raise SettingsError(
-                    f"a line for export has no {name}", needed="a branch or a mean, in words"
-                    if name == "curve" else "letters or digits",
-                )  # fmt: skip
+        for name, needed in (
+            ("name", "letters or digits"),
+            ("curve", "a branch or a mean, in words"),
+        ):
+            if not re.search(r"\w", getattr(self, name)):
+                raise SettingsError(f"a line for export has no {name}", needed=needed)
+        if self.wet_linear_density >= self.linear_density:
+            raise SettingsError(
+                f"{self.name} is not lighter in water than in air",
+                found=f"{self.wet_linear_density:g} kg/m in water, {self.linear_density:g} kg/m in "
+                "air",
+                needed="a wet linear density below the dry one",
+            )
         if not self.sources:
             raise SettingsError(f"{self.name} has no source", needed="where its numbers are from")
 
     @property
     def identifier(self) -> str:
-        """The name as one word that every format takes."""
-        return re.sub(r"[^A-Za-z0-9_-]+", "_", re.sub("-{2,}", "-", self.name)).strip("-")
+        """The name as one ASCII word that every code takes; accents are left away."""
+        bare = unicodedata.normalize("NFKD", self.name)
+        bare = "".join(sign for sign in bare if not unicodedata.combining(sign))
+        word = re.sub(r"[^A-Za-z0-9_-]+", "_", re.sub("-{2,}", "-", bare)).strip("-")
+        if not word.strip("_"):
+            raise SettingsError(
+                "the name has no sign that a mooring code takes", found=self.name,
+                needed="letters A to Z or digits", hint="csv, json and netcdf take any name.",
+            )  # fmt: skip
+        return word
 
     @property
     def volume_diameter(self) -> tuple[float, str]:
         """Diameter of the cylinder that displaces as much water, and how it was found. [m]."""
-        displaced = self.linear_density - self.wet_linear_density
-        if displaced > 0:
-            return (
-                math.sqrt(4 * displaced / (math.pi * SEA_WATER)),
-                f"diameter: of the displaced volume, from dry and wet mass in water of "
-                f"{SEA_WATER:g} kg/m3",
+        displaced = (self.linear_density - self.wet_linear_density) / SEA_WATER
+        words = f"dry and wet mass in water of {SEA_WATER:g} kg/m3"
+        density = FIBRE_DENSITY.get(self.material.strip().lower(), math.nan)
+        if not math.isfinite(displaced):
+            displaced = self.linear_density / density
+            words = (
+                f"the mass a length and the density of {self.material} fibre, {density:g} kg/m3 "
+                "(Bigon and Regazzoni, The Morrow Guide to Knots, p. 14), since no wet mass is "
+                "stated"
             )
+        if displaced > 0:
+            diameter = math.sqrt(4 * displaced / math.pi)
+            nominal = "" if math.isnan(self.diameter) else (
+                f"; drag refers to it, and not to the nominal {1000 * self.diameter:.4g} mm"
+            )  # fmt: skip
+            found = f"{1000 * diameter:.4g} mm, of the displaced volume"
+            return diameter, f"diameter: {found}, from {words}{nominal}"
         return (
             self.needed("diameter"),
             "diameter: nominal; the displaced volume of a rope is smaller",

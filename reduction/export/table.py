@@ -16,6 +16,7 @@ import xarray as xr
 from reduction import __version__
 from reduction.archive.whole import whole_file
 from reduction.errors import ArchiveError, SettingsError
+from reduction.export.guards import range_of
 from reduction.export.header import number
 from reduction.export.product import ExportLine
 from reduction.export.thin import curve_from_zero
@@ -65,7 +66,7 @@ def curve_table(line: ExportLine) -> ValueTable:
             TableColumn("is_tested", "", "inside the strains that were tested", tested),
         ),
         sources=line.sources,
-        notes=(*line.notes, *((f"at the start: {words}",) if words else ())),
+        notes=(*line.notes, range_of(line), *((f"at the start: {words}",) if words else ())),
         is_synthetic=line.is_synthetic,
     )
 

@@ -55,8 +55,8 @@ def test_orcaflex_and_cable_have_them_as_their_grammar_is(export):
     text = export("whoi-cable", *WATER)
     _, rows = cable_material(text)
     assert (float(rows["Cdn"]), float(rows["Cdt"])) == (1.6, 0.02)
-    # added mass of 0.9 times the displaced 12.7 mm
-    assert float(rows["am"]) == pytest.approx(0.9 * 1025 * 3.141592653589793 / 4 * 0.0127**2)
+    # added mass of 0.9 times the displaced polyester, 1380 kg/m3
+    assert float(rows["am"]) == pytest.approx(0.9 * 1025 * 0.11 / 1380)
     assert "added mass along the line, 0.1, left out: Cable has none" in whole(text)
 
 

@@ -1,0 +1,34 @@
+import math
+
+import numpy as np
+import pytest
+from export_lines import line
+
+from reduction.export.guards import guards_of, range_of
+from reduction.export.product import SEA_WATER
+
+
+def test_the_straight_start_is_said_not_to_be_measured():
+    assert range_of(line()) == (
+        "tested from strain 0.1 to 1.4; the start, a line from 0 0 up to strain 0.1, was NOT "
+        "measured on this curve"
+    )
+    assert range_of(line(tested=(0.0, 1.4))) == "tested from strain 0 to 1.4"
+    assert range_of(line(tested=(math.nan, math.nan))) == "nothing was tested"
+
+
+def test_a_line_that_floats_or_is_heavier_than_a_rod_of_its_fibre_is_doubtful():
+    # 26 mm displace 0.544 kg/m
+    assert SEA_WATER * np.pi / 4 * 0.026**2 == pytest.approx(0.5442, abs=5e-5)
+    (text,) = (one for one in guards_of(line(linear_density=0.5)) if one.startswith("DOUBTFUL"))
+    assert "floats: 0.5 kg/m displaces 0.5442 kg/m" in text
+    assert not any(one.startswith("DOUBTFUL") for one in guards_of(line()))
+    # a rod of nylon of 26 mm has 1140 * 5.309e-4 m2 = 0.605 kg/m
+    heavy = guards_of(line(linear_density=0.61, material="nylon"))
+    assert "do not fit" in heavy[-1]
+    assert "do not fit" not in guards_of(line(linear_density=0.6, material="nylon"))[-1]
+
+
+def test_without_mass_or_diameter_the_range_alone_is_said():
+    assert len(guards_of(line(linear_density=math.nan))) == 1
+    assert len(guards_of(line(diameter=math.nan))) == 1
