@@ -12,11 +12,16 @@ import math
 from reduction.export.header import number
 from reduction.export.product import ExportLine
 
-__all__ = ["SEGMENT_LENGTH", "deck", "line_type"]
+__all__ = ["NO_GRAVITY", "SEGMENT_LENGTH", "WEIGHTLESS", "deck", "line_type"]
 
 _LENGTH, _SEGMENTS = 10.0, 5
 SEGMENT_LENGTH = _LENGTH / _SEGMENTS
 """Of the line of a deck. [m]"""
+NO_GRAVITY = "0 g"
+WEIGHTLESS = (
+    f"NO GRAVITY in this deck ({NO_GRAVITY}), so that its tension is that of its strain: put 9.81, "
+    "or take the line type into a deck of your own"
+)
 _COURANT = 0.1
 _SHORTEST_STEP, _LONGEST_STEP = 1e-4, 0.02
 _COLUMNS = (
@@ -75,6 +80,7 @@ def deck(
     return "\n".join(
         [
             "MoorDyn input file with one line type, in a deck that tries it",
+            WEIGHTLESS,
             *head,
             f"{rule} LINE TYPES {rule}",
             *_COLUMNS,
@@ -92,7 +98,7 @@ def deck(
             f"{rule} OPTIONS {rule}",
             "0 writeLog",
             "1 disableOutTime",
-            "0 g",
+            NO_GRAVITY,
             "200 WtrDpth",
             f"{step:.3g} dtM",
             "10 TmaxIC",

@@ -132,6 +132,11 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
         None,
         *_said(line),
         *_stiffness_words(part),
+        ""
+        if form == "static-dynamic"
+        else "MoorDyn takes the running tension of the slow part for "
+        "the mean: about it K_ap of a cycle is 2 to 4 percent above that of static-dynamic on the "
+        "published lines",
         f"BA_d {fast:.4g} N s: {_FAST_SHARE:g} of critical for segments of {SEGMENT_LENGTH:g} "
         "m, numerical, not measured; without it the integration grows",
     )

@@ -9,13 +9,16 @@ References
 
 from __future__ import annotations
 
+from reduction.export.deck import NO_GRAVITY, WEIGHTLESS
 from reduction.export.header import header_lines
 from reduction.export.moordyn import MoorDynForm, moordyn_files
 from reduction.export.product import ExportLine
 
 __all__ = ["openfast_files"]
 
-_ONLY_C = ("0 writeLog", "1 disableOutTime", "10 TmaxIC", "0.1 dtIC")
+# OpenFAST hands its own gravity to the module, unless the file has another
+_LEFT_OUT = ("0 writeLog", "1 disableOutTime", "10 TmaxIC", "0.1 dtIC", NO_GRAVITY, WEIGHTLESS)
+_ABOUT_GRAVITY = "gravity is that of OpenFAST: the line sags, and has more tension than its strain"
 
 
 def openfast_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -> dict[str, str]:
@@ -41,7 +44,7 @@ def openfast_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") 
         As `reduction.export.moordyn.moordyn_files`.
     """
     files = moordyn_files(line, stem, form=form)
-    remarks = ["grammar of MoorDyn, not run in OpenFAST"]
+    remarks = ["grammar of MoorDyn, not run in OpenFAST", _ABOUT_GRAVITY]
     if form in ("table", "syrope"):
         remarks.append(
             "files that are named here are sought beside the executable: put them there, or write "
@@ -52,5 +55,5 @@ def openfast_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") 
     first, *rest = files.pop("").split("\n")
     said = header_lines(line, None, *remarks)
     said = said[next(place for place, text in enumerate(said) if text.startswith("Remark")) :]
-    kept = [row for row in rest if row not in _ONLY_C]
+    kept = [row for row in rest if row not in _LEFT_OUT]
     return {"": "\n".join([first, *said, *kept]), **files}
