@@ -120,5 +120,5 @@ def _library(line: ExportLine) -> str:
     }
     text = [f"    {name}: {real_number(value)}" for name, value in rows.items()]
     return "\n".join(
-        [f"# {one}" for one in head] + ["lineProps:", f"  {line.identifier}:", *text, ""]
+        [f"# {one}" for one in head] + ["lineProps:", f'  "{line.identifier}":', *text, ""]
     )

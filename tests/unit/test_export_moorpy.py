@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import pytest
 import yaml
@@ -41,3 +42,20 @@ def test_the_library_is_over_break_strength_and_diameter():
 def test_what_the_line_has_not_is_refused(fields, form, message):
     with pytest.raises(SettingsError, match=message):
         moorpy_files(line(**fields), "x", form=form)
+
+
+def test_without_a_dashpot_the_dynamic_stiffness_is_that_of_the_cycle():
+    """K_0 20 kN, K_1 30 kN, tau 18 s and 0.01 Hz: K_ap of eq. 1, not the 50 kN of a fast pull."""
+    part = replace(growing(), frequency=0.01)
+    one = line(viscoelasticity=part, rated_break_strength=5e4)
+    turned = 2j * math.pi * 0.01 * 9e5 / 3e4
+    expected = abs(2e4 + 3e4 * turned / (1 + turned))
+    text = moorpy_files(one, "x", form="library")[""]
+    props = yaml.safe_load(text)["lineProps"]["new_tether"]
+    assert props["EAd_MBL"] * 5e4 + props["EAD_LM"] * 2000 == pytest.approx(expected)
+    assert "K_ap at that frequency" in text
+
+
+def test_a_name_that_yaml_takes_for_a_number_stays_text():
+    one = line(name="1", viscoelasticity=growing(), rated_break_strength=5e4)
+    assert list(yaml.safe_load(moorpy_files(one, "x", form="library")[""])["lineProps"]) == ["1"]

@@ -2,6 +2,7 @@ import math
 
 import numpy as np
 import pytest
+import yaml
 from export_lines import line, rubber
 from export_readers import orcaflex
 
@@ -34,3 +35,12 @@ def test_every_number_is_a_number_of_yaml():
 def test_a_line_without_mass_is_refused():
     with pytest.raises(SettingsError, match="linear density"):
         orcaflex_text(line(linear_density=math.nan))
+
+
+@pytest.mark.parametrize("name", ["12.5", "1", "no", "null", "1e3"])
+def test_a_name_that_yaml_takes_for_something_else_stays_text(name):
+    found = yaml.safe_load(orcaflex_text(line(name=name)))
+    (kind,) = found["LineTypes"]
+    assert kind["Name"] == line(name=name).identifier
+    (stiffness,) = found["VariableData"]["Axialstiffness"]
+    assert kind["EA"] == stiffness["Name"]
