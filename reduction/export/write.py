@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from hashlib import sha256
 from pathlib import Path
 from typing import get_args
 
@@ -41,6 +42,8 @@ _ALONE: dict[str, Callable[..., str]] = {
     "orcaflex": orcaflex_text,
     "abaqus": abaqus_text,
 }
+_TAILS = ("_table", "_owc", "_syrope", "_moorpy")
+_DIGITS = 8
 FORMATS = (*_TABLES, *FORMS)
 
 
@@ -86,9 +89,7 @@ def export_line(
     if to in _ALONE:
         files = {"": _ALONE[to](line, **said)}
     else:
-        # a name in a deck ends at a blank or at a sign of its grammar
-        stem = re.sub(r"[^A-Za-z0-9_]+", "_", path.stem).strip("_") or "line"
-        files = _WITH_OTHERS[to](line, stem, **said)
+        files = _WITH_OTHERS[to](line, _stem_beside(path), **said)
     beside = {path.with_name(name): text for name, text in files.items() if name}
     # what is named is there before what names it
     for place, text in {**beside, path: files[""]}.items():
@@ -127,6 +128,19 @@ def export_table(table: ValueTable, to: str, path: Path, *, units: UnitSystem = 
     else:
         write_whole(path, table_text_of(table, to, units=units))
     return [path]
+
+
+def _stem_beside(path: Path) -> str:
+    """How the names of the files beside one begin, other for every other file of a folder.
+
+    A name in a deck ends at a blank or at a sign of its grammar; where one is left out, or the file
+    does not end in ``.dat``, the name of the file is told apart by a digest of it.
+    """
+    stem = re.sub(r"[^A-Za-z0-9_]+", "_", path.stem).strip("_") or "line"
+    # `leg_table.dat` beside `leg.dat` would else find its own name taken
+    if path.name == f"{stem}.dat" and not stem.endswith(_TAILS):
+        return stem
+    return f"{stem}_{sha256(path.name.encode()).hexdigest()[:_DIGITS]}"
 
 
 def _refuse_form(to: str, form: str | None, forms: tuple[str, ...]) -> None:

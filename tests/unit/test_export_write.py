@@ -38,3 +38,14 @@ def test_unknown_formats_and_forms_are_refused(tmp_path):
         export_line(line(), "moorpy", tmp_path / "a", form="syrope")
     assert set(FORMS) < set(FORMATS)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_every_deck_of_a_folder_has_a_table_of_its_own(tmp_path):
+    """The second must not take the table of the first, whatever both are called."""
+    names = ["leg 1.dat", "leg-1.txt", "leg_1.dat", "leg.dat", "leg.txt", "leg_table.dat", "leg"]
+    tables = [export_line(line(), "moordyn", tmp_path / name)[0] for name in names]
+    assert len(set(tables)) == len(names)
+    assert not set(tables) & {tmp_path / name for name in names}
+    for name, table in zip(names, tables, strict=True):
+        assert f" {table.name} " in (tmp_path / name).read_text()
+    assert export_line(line(), "moordyn", tmp_path / "leg 1.dat")[0] == tables[0]
