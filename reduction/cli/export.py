@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Literal, cast
 
@@ -17,6 +17,7 @@ from reduction.export.fromarchive import CurveName, line_from_archive
 from reduction.export.fromassembly import line_from_assembly
 from reduction.export.fromcomposite import line_from_composite
 from reduction.export.fromlookup import line_from_lookup
+from reduction.export.guards import guards_of
 from reduction.export.product import ExportLine
 from reduction.export.write import export_line
 from reduction.lookup.source import compose
@@ -62,6 +63,8 @@ def export_source(
         raise SettingsError(
             "--curve is not known", found=repr(curve), needed="mean, ascending or descending"
         )
+    if not out.name:
+        raise SettingsError("--out names no file", found=repr(str(out)), needed="a file")
     values: dict[str, Any] = {
         name: parse_quantity(text, _DIMENSIONS[name])
         for name, text in stated.items()
@@ -77,12 +80,14 @@ def export_source(
         extrapolate=cast('Literal["refuse", "flag"]', extrapolate),
     )
     units = cast("UnitSystem", outcome.units)
+    there = set(out.parent.iterdir()) if out.parent.is_dir() else set()
     paths = export_line(line, to, out, form=form, units=units)
+    notes = (*guards_of(line), *line.notes)
     outcome.say(f"{line.name}: {line.curve}")
-    for text in (*line.sources, *(f"note: {note}" for note in line.notes)):
+    for text in (*line.sources, *(f"note: {note}" for note in notes)):
         outcome.say(f"  {text}")
     for path in paths:
-        outcome.say(f"written: {path}")
+        outcome.say(f"{'written over' if path in there else 'written'}: {path}")
     outcome.answer(
         {
             "line": line.name,
@@ -92,7 +97,7 @@ def export_source(
             "tested": {"strain": plain(line.tested), "unit": "1"},
             "files": [str(path) for path in paths],
             "sources": list(line.sources),
-            "notes": list(line.notes),
+            "notes": list(notes),
             "synthetic": line.is_synthetic,
             "hydrodynamics": asdict(line.hydrodynamics),
             **{
@@ -142,7 +147,9 @@ def line_of(
                 found=f"--curve {curve}" if curve == "mean" else f"--specimen {specimen}",
                 needed="--curve ascending or descending, or neither",
             )
-        strength = float(stated.get("rated_break_strength", line.rated_break_strength))
+        # levels mean at the export what they mean at the look-up
+        own = line.rated_break_strength
+        strength = own if own > 0 else float(stated.get("rated_break_strength", own))
         at = {
             name: parse_quantity(
                 text,
@@ -151,9 +158,14 @@ def line_of(
             )
             for name, text in levels.items()
         }
-        return line_from_lookup(
+        made = line_from_lookup(
             line, branch=curve, levels=at or None, extrapolate=extrapolate, **stated
         )
+        if not any("%" in text for text in levels.values()):
+            return made
+        whose = "the source" if own > 0 else "the export"
+        said = f"levels in percent of the break strength: of {strength:.6g} N, that of {whose}"
+        return replace(made, sources=(*made.sources, said))
     path = Path(source)
     if not path.is_file():
         words = source.lower().replace("-", " ").split()

@@ -101,3 +101,51 @@ def test_levels_choose_nothing_in_an_archive(command, synthetic, tmp_path):
     )  # fmt: skip
     assert done.returncode == 2
     assert "choose nothing in an archive" in done.stderr
+
+
+NYLON = "nylon-double-braid-0.5in-new"
+LEVELS = ("--frequency", "0.3 Hz", "--mean-tension", "21 %RBS", "--tension-amplitude", "8.5 %RBS")
+
+
+def test_percent_of_the_break_strength_means_what_it_means_at_the_look_up(command, tmp_path):
+    """6,400 lbf is the strength of the source; 30 kN is what the rope of the user has."""
+    out = tmp_path / "p.csv"
+    done = command(
+        "export", NYLON, "--to", "csv", "--out", out, *LEVELS, "--rated-break-strength", "30 kN"
+    )
+    assert done.returncode == 0, done.stderr
+    assert "of 28468.6 N, that of the source" in done.stdout
+    # 21 % of 6,400 lbf at K_0 of the look-up
+    wanted = command(
+        "lookup", NYLON, "--quantity", "quasi_static_spring_constant", "--mean-tension",
+        "1344 lbf", "--json",
+    )  # fmt: skip
+    (value,) = np.ravel(json.loads(wanted.stdout)["value"])
+    assert f"quasi_static_spring_constant {value:.6g} N" in done.stdout
+
+
+def test_what_is_doubtful_is_on_the_screen_and_a_file_that_was_there_is_named(command, tmp_path):
+    out = tmp_path / "t.dat"
+    arguments = (
+        "export", "rubber-tether-new-T-5", "--to", "moordyn", "--out", out, "--linear-density",
+        "0.3 kg/m",
+    )  # fmt: skip
+    done = command(*arguments)
+    assert done.returncode == 0, done.stderr
+    assert "was NOT measured on this curve" in done.stdout
+    assert "DOUBTFUL: the line floats" in done.stdout
+    assert f"written: {out}" in done.stdout
+    assert f"written over: {out}" in command(*arguments).stdout
+
+
+def test_a_wet_mass_above_the_dry_one_and_an_empty_path_are_refused(command, tmp_path):
+    done = command(
+        "export", NYLON, "--to", "csv", "--out", tmp_path / "x.csv", "--linear-density",
+        "0.1 kg/m", "--wet-linear-density", "0.5 kg/m",
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "not lighter in water than in air" in done.stderr
+    for to in ("csv", "netcdf", "moordyn"):
+        done = command("export", NYLON, "--to", to, "--out", "", "--linear-density", "0.1 kg/m")
+        assert done.returncode == 2
+        assert "--out names no file" in done.stderr
