@@ -21,6 +21,7 @@ from reduction.lookup.product import DesignValues, LineSource
 from reduction.lookup.search import find_lines
 from reduction.record import Floats
 from reduction.units import UnitSystem, display_unit
+from reduction.vocabulary import quantity as quantity_of
 
 __all__ = [
     "fold_last",
@@ -37,15 +38,19 @@ def list_sources(source: str, search: Mapping[str, Any], *, outcome: Outcome) ->
     """Print what SOURCE holds: each line, its quantities, and over which range."""
     lines = find_lines(lines_of(source), **search)
     unit, factor = ("in", 1 / 0.0254) if outcome.units == "us" else ("mm", 1e3)
+    force, scale = display_unit("N", cast("UnitSystem", outcome.units))
     table = table_of(
         "line", "source", "material", "construction", "condition", f"diameter\n[{unit}]",
-        "quantities", texts=5,
+        f"%RBS are of\n[{force}]", "quantities", texts=5,
     )  # fmt: skip
     fold_last(table)
     for line in lines:
         table.add_row(
             line.name, line.source, line.material, line.construction, line.condition,
-            short(factor * line.diameter, 4), ", ".join(line.quantities),
+            short(factor * line.diameter, 4),
+            short(scale * line.rated_break_strength)
+            + (f"\n({line.strength_of})" if line.strength_of else ""),
+            ", ".join(line.quantities),
         )  # fmt: skip
     outcome.show(table)
     outcome.answer({"lines": [_described(line) for line in lines]})
@@ -61,11 +66,14 @@ def _described(line: LineSource) -> dict[str, Any]:
         "condition": line.condition,
         "diameter": plain(line.diameter),
         "rated_break_strength": plain(line.rated_break_strength),
+        "rated_break_strength_of": line.strength_of or None,
+        "tensile_strength": plain(line.tensile_strength),
         "linear_density": plain(line.linear_density),
         "wet_linear_density": plain(line.wet_linear_density),
         "units": {
             "diameter": "m",
             "rated_break_strength": "N",
+            "tensile_strength": "N",
             "linear_density": "kg m-1",
             "wet_linear_density": "kg m-1",
         },
@@ -77,6 +85,20 @@ def _described(line: LineSource) -> dict[str, Any]:
                 for place, name in enumerate(line.factor_names)
             }
             for quantity, surface in line.surfaces.items()
+        },
+        "curves": [
+            {
+                "quantity": curve.quantity,
+                "variable": curve.variable,
+                "branch": curve.branch or None,
+                "range": [curve.low, curve.high],
+                "range_note": curve.range_note or None,
+            }
+            for curve in line.curves
+        ],
+        "range_units": {
+            name: quantity_of(name).unit
+            for name in (*line.factor_names, *(curve.variable for curve in line.curves))
         },
         "rule": line.rule,
         "notes": list(line.notes),
@@ -117,39 +139,69 @@ def _show(
     unit, factor = display_unit(found.unit, system)
     branch = f", {found.branch} branch" if found.branch else ""
     outcome.say(f"{found.quantity} of {line.name}{branch}; {found.source}")
+    if outcome.is_text:
+        outcome.show(_table(line, found, points, unit, factor, system))
+    said_of_lines(outcome, (line, found))
+
+
+def _table(
+    line: LineSource,
+    found: DesignValues,
+    points: Mapping[str, Floats],
+    unit: str,
+    factor: float,
+    system: UnitSystem,
+) -> Table:
+    """One row a point; of the intervals those that are known."""
     heads, levels = shown_levels(points, line.rated_break_strength, found.value.size, system)
+    intervals = [
+        (head, low.ravel(), high.ravel())
+        for head, low, high in (
+            ("95 % of\none more run", found.low, found.high),
+            (
+                f"95 % of\nthe {'surface' if found.interval_of else 'one test'}",
+                found.surface_low,
+                found.surface_high,
+            ),
+            ("95 % of\nanother line", found.line_low, found.line_high),
+        )
+        if np.isfinite(low).any()
+    ]
+    is_weaker = np.isfinite(line.tensile_strength)
     table = table_of(
-        *heads, f"value\n[{unit}]", "95 % of\none more test", "95 % of\nthe surface",
-        "peak\n[%RBS]", "minimum\n[%RBS]", "remark", texts=0,
+        *heads, f"value\n[{unit}]", *(head for head, _, _ in intervals),
+        "peak\n[%RBS]", "minimum\n[%RBS]",
+        *(("peak [% of what\nit still has]",) if is_weaker else ()), "remark", texts=0,
     )  # fmt: skip
     fold_last(table)
-    names = (
-        "value", "low", "high", "surface_low", "surface_high", "peak_share", "minimum_share",
-        "is_inside", "is_untested", "is_above_rule",
-    )  # fmt: skip
+    shares = [found.peak_share, found.minimum_share, *([found.own_peak_share] if is_weaker else [])]
     for place, numbers in enumerate(levels):
-        at = {name: getattr(found, name).ravel()[place] for name in names}
-        remarks = [
-            word
-            for word, is_so in (
-                ("OUTSIDE what was tested", not at["is_inside"]),
-                ("untested corner", at["is_untested"]),
-                ("peak above the rule", at["is_above_rule"]),
-                ("below zero: no value", at["value"] < 0),
-            )
-            if is_so
-        ]
         table.add_row(
             *numbers,
-            short(factor * float(at["value"])),
-            span(factor, at["low"], at["high"]),
-            span(factor, at["surface_low"], at["surface_high"]),
-            short(100 * float(at["peak_share"]), 4),
-            short(100 * float(at["minimum_share"]), 4),
-            "; ".join(remarks),
+            short(factor * float(found.value.ravel()[place])),
+            *(span(factor, low[place], high[place]) for _, low, high in intervals),
+            *(short(100 * float(share.ravel()[place]), 4) for share in shares),
+            "; ".join(_remarks(found, place)),
         )
-    outcome.show(table)
-    said_of_lines(outcome, (line, found))
+    return table
+
+
+def _remarks(found: DesignValues, place: int) -> list[str]:
+    def at(values: Any) -> Any:
+        return values.ravel()[place]
+
+    return [
+        word
+        for word, is_so in (
+            ("OUTSIDE what was tested", not at(found.is_inside)),
+            ("untested corner", at(found.is_untested)),
+            ("peak above the strength it has", at(found.own_peak_share) >= 1),
+            ("peak above the rule", at(found.is_above_rule)),
+            ("snap load: goes slack", at(found.is_slack) and at(found.peak_tension) > 0),
+            ("below zero: no value", at(found.is_below_zero)),
+        )
+        if is_so
+    ]
 
 
 def said_of_lines(outcome: Outcome, *pairs: tuple[LineSource, DesignValues]) -> None:
@@ -187,7 +239,8 @@ def shown_levels(
 
 def fold_last(table: Table) -> None:
     """Let the last column, of words, take the room that numbers leave."""
-    table.columns[-1].justify, table.columns[-1].no_wrap = "left", False
+    last = table.columns[-1]
+    last.justify, last.no_wrap, last.overflow = "left", False, "fold"
 
 
 def span(factor: float, low: float, high: float) -> str:
@@ -218,18 +271,34 @@ def _document(
         "quantity": found.quantity,
         "branch": found.branch or None,
         "levels": {name: of(values) for name, values in points.items()},
+        "level_units": {name: quantity_of(name).unit for name in points},
         "value": of(found.value),
         "unit": found.unit,
+        "below_zero": of(found.is_below_zero),
         "interval": [of(found.low), of(found.high)],
+        "interval_of": found.interval_of or None,
         "surface_interval": [of(found.surface_low), of(found.surface_high)],
+        "surface_interval_of": found.surface_interval_of or None,
+        "kind_interval": [of(found.kind_low), of(found.kind_high)],
+        "kind_interval_of": "the mean of all lines of the kind",
+        "line_interval": [of(found.line_low), of(found.line_high)],
+        "line_interval_of": "another line of the kind",
         "inside": of(found.is_inside),
         "untested": of(found.is_untested),
         "peak_tension": of(found.peak_tension),
         "minimum_tension": of(found.minimum_tension),
         "peak_share": of(found.peak_share),
         "minimum_share": of(found.minimum_share),
+        "tension_unit": "N",
+        "own_peak_share": of(found.own_peak_share),
+        "own_minimum_share": of(found.own_minimum_share),
+        "slack": of(found.is_slack),
         "above_rule": of(found.is_above_rule),
         "rule": found.rule,
+        "rated_break_strength": plain(line.rated_break_strength),
+        "rated_break_strength_of": line.strength_of or None,
+        "tensile_strength": plain(line.tensile_strength),
+        "strength_unit": "N",
         "linear_density": plain(line.linear_density),
         "wet_linear_density": plain(line.wet_linear_density),
         "linear_density_unit": "kg m-1",

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, cast
 
 import numpy as np
+from rich.table import Table
 
 from reduction.cli.lookup import fold_last, said_of_lines, shown_levels, span, write_table
 from reduction.cli.lookuppoints import Wanted, points_of
@@ -19,6 +20,7 @@ from reduction.lookup.product import DesignValues, LineSource
 from reduction.lookup.search import find_lines
 from reduction.record import Bools, Floats
 from reduction.units import UnitSystem, display_unit
+from reduction.vocabulary import quantity as quantity_of
 
 __all__ = ["look_up_against"]
 
@@ -72,10 +74,29 @@ def _show(
             )
             + "; loads are those of the first"
         )
+    if outcome.is_text:
+        outcome.show(_table(first, found, points, unit, factor, system))
+    outcome.say("differ: zero is not in the 95 % interval that follows from those of both lines")
+    outcome.say(
+        "these lines: the two surfaces, of the lines that were tested; the kinds, another line of "
+        "each: with how lines differ among each other, where a source says it"
+    )
+    said_of_lines(outcome, (first, found.first), (second, found.second))
+
+
+def _table(
+    first: LineSource,
+    found: LineDifference,
+    points: Mapping[str, Floats],
+    unit: str,
+    factor: float,
+    system: UnitSystem,
+) -> Table:
     heads, levels = shown_levels(points, first.rated_break_strength, found.difference.size, system)
     table = table_of(
         *heads, f"first\n[{unit}]", f"second\n[{unit}]", f"difference\n[{unit}]", "ratio",
-        "95 % of the\ndifference", "means", "one test\nof each", "remark", texts=0,
+        "95 % of the\ndifference", "these\nlines", "the kinds", "another line\nof each", "remark",
+        texts=0,
     )  # fmt: skip
     fold_last(table)
     numbers = ("difference", "ratio", "surface_low", "surface_high")
@@ -91,12 +112,11 @@ def _show(
             short(at["ratio"], 4),
             span(factor, at["surface_low"], at["surface_high"]),
             _verdict(found.is_known, found.is_different, place),
-            _verdict(found.is_test_known, found.is_test_different, place),
+            _verdict(found.is_kind_known, found.is_kind_different, place),
+            _verdict(found.is_line_known, found.is_line_different, place),
             _remark(found, place),
         )
-    outcome.show(table)
-    outcome.say("differ: zero is not in the 95 % interval that follows from those of both lines")
-    said_of_lines(outcome, (first, found.first), (second, found.second))
+    return table
 
 
 def _verdict(is_known: Bools, is_different: Bools, place: int) -> str:
@@ -112,8 +132,12 @@ def _remark(found: LineDifference, place: int) -> str:
             words.append(f"{which}: OUTSIDE")
         if one.is_untested.ravel()[place]:
             words.append(f"{which}: untested corner")
-        if one.is_above_rule.ravel()[place]:
+        if one.own_peak_share.ravel()[place] >= 1:
+            words.append(f"{which}: peak above the strength it has")
+        elif one.is_above_rule.ravel()[place]:
             words.append(f"{which}: peak above the rule")
+        if one.is_below_zero.ravel()[place]:
+            words.append(f"{which}: below zero, no value")
     return "; ".join(words)
 
 
@@ -136,13 +160,22 @@ def _document(
         return {
             "line": line.name,
             "levels": {name: of(values) for name, values in at.items()},
+            "level_units": {name: quantity_of(name).unit for name in at},
             "value": of(one.value),
             "interval": [of(one.low), of(one.high)],
+            "interval_of": one.interval_of or None,
             "surface_interval": [of(one.surface_low), of(one.surface_high)],
+            "surface_interval_of": one.surface_interval_of or None,
+            "kind_interval": [of(one.kind_low), of(one.kind_high)],
+            "line_interval": [of(one.line_low), of(one.line_high)],
+            "below_zero": of(one.is_below_zero),
             "inside": of(one.is_inside),
             "untested": of(one.is_untested),
             "peak_share": of(one.peak_share),
             "minimum_share": of(one.minimum_share),
+            "own_peak_share": of(one.own_peak_share),
+            "own_minimum_share": of(one.own_minimum_share),
+            "tensile_strength": plain(line.tensile_strength),
             "above_rule": of(one.is_above_rule),
             "rule": one.rule,
             "source": one.source,
@@ -160,9 +193,15 @@ def _document(
         "ratio": of(found.ratio),
         "surface_interval": [of(found.surface_low), of(found.surface_high)],
         "interval": [of(found.low), of(found.high)],
+        "kind_interval": [of(found.kind_low), of(found.kind_high)],
+        "line_interval": [of(found.line_low), of(found.line_high)],
         "known": of(found.is_known),
         "different": of(found.is_different),
         "test_known": of(found.is_test_known),
         "test_different": of(found.is_test_different),
+        "kind_known": of(found.is_kind_known),
+        "kind_different": of(found.is_kind_different),
+        "line_known": of(found.is_line_known),
+        "line_different": of(found.is_line_different),
         "inside": of(found.is_inside),
     }

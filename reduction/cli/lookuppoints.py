@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,7 +16,7 @@ from reduction.lookup.product import LineSource
 from reduction.record import Floats
 from reduction.units import Dimension, parse_quantity
 
-__all__ = ["Wanted", "parsed_search", "points_of"]
+__all__ = ["MOST_POINTS", "Wanted", "parsed_search", "points_of"]
 
 _DIMENSIONS: dict[str, Dimension] = {
     "frequency": "frequency",
@@ -25,6 +26,8 @@ _DIMENSIONS: dict[str, Dimension] = {
     "strain": "strain",
 }
 _ROUNDING = 1e-12
+MOST_POINTS = 100_000
+"""Of a grid: what a table of text, or one JSON object, can reasonably hold."""
 
 
 @dataclass(frozen=True)
@@ -85,15 +88,16 @@ def points_of(
     Raises
     ------
     SettingsError
-        If a level has no or a wrong unit, or several values without a grid.
+        If a level has no or a wrong unit, or several values without a grid; or a grid has too
+        many points.
     DataError
-        If the boxes have nothing in common.
+        If the boxes have nothing in common, or a line would be pushed at every point of a grid.
     """
     lines = (line, *others)
     filled = _filled(wanted, lines) if wanted.grid else {}
     # in the order of the factors, whatever was said first
     names = list(dict.fromkeys([*filled, *wanted.levels]))
-    points = []
+    points: list[dict[str, Floats]] = []
     for one in lines:
         levels = [
             _numbers(name, wanted.levels[name], one) if name in wanted.levels else filled[name]
@@ -101,6 +105,13 @@ def points_of(
         ]
         if not wanted.grid and any(values.size > 1 for values in levels):
             raise SettingsError("several values of a level make a grid", needed="--table with them")
+        size = math.prod(values.size for values in levels)
+        if size > MOST_POINTS:
+            raise SettingsError(
+                "a grid has too many points for a table", found=f"{size:,}",
+                needed=f"at most {MOST_POINTS:,}",
+                hint="`reduction.lookup.line.look_up` takes any number at once.",
+            )  # fmt: skip
         axes = np.meshgrid(*levels, indexing="ij") if levels else []
         points.append({name: axis.ravel() for name, axis in zip(names, axes, strict=True)})
     if not (wanted.grid and {"mean_tension", "tension_amplitude"} <= set(names)):
@@ -108,6 +119,12 @@ def points_of(
     taut = np.all(
         [at["tension_amplitude"] <= at["mean_tension"] * (1 + _ROUNDING) for at in points], axis=0
     )
+    if not taut.any():
+        raise DataError(
+            "no combination of the grid has an amplitude of at most its mean tension",
+            found=f"{taut.size} combinations",
+            needed="a mean tension that is above an amplitude",
+        )
     kept = [{name: values[taut] for name, values in at.items()} for at in points]
     return kept, not taut.all()
 
@@ -141,9 +158,12 @@ def _ends(wanted: Wanted, line: LineSource) -> dict[str, tuple[float, float]]:
             name: (float(surface.low[place]), float(surface.high[place]))
             for place, name in enumerate(line.factor_names)
         }
-    for curve in line.curves:
+    of_name = [curve for curve in line.curves if curve.quantity == name]
+    for curve in of_name:
         is_meant = not wanted.levels or curve.variable in wanted.levels
-        if curve.quantity == name and curve.branch in ("", wanted.branch) and is_meant:
+        # where one branch alone is known it need not be asked for
+        is_branch = curve.branch == wanted.branch or not curve.branch or len(of_name) == 1
+        if is_branch and is_meant:
             return {curve.variable: (curve.low, curve.high)}
     return {}
 

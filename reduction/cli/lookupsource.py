@@ -15,7 +15,7 @@ from reduction.archive.linesource import (
 )
 from reduction.archive.open import open_archive
 from reduction.archive.products import archives_of_tests
-from reduction.errors import SettingsError
+from reduction.errors import ArchiveError, SettingsError
 from reduction.lookup.product import LineSource
 from reduction.published.linesource import published_sources
 
@@ -41,7 +41,7 @@ def lines_of(source: str) -> list[LineSource]:
     SettingsError
         If nothing has that name.
     ArchiveError
-        If an archive cannot be read.
+        If an archive cannot be read, or has nothing to look up.
     """
     published = published_sources()
     if source == "published":
@@ -50,7 +50,13 @@ def lines_of(source: str) -> list[LineSource]:
         return [published[source]]
     path = Path(source)
     if path.is_file():
-        return lines_of_archive(path)
+        lines = lines_of_archive(path)
+        if not lines:
+            raise ArchiveError(
+                "the archive has nothing that can be looked up", found=str(path),
+                needed="moduli of a cyclic test, a slow pull, or surfaces of an experiment",
+            )  # fmt: skip
+        return lines
     if path.is_dir():
         paths = archives_of_tests(path)
         paths += [path / "surfaces.nc"] if (path / "surfaces.nc").is_file() else []

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import typer
 from rich.console import Console
+from rich.measure import Measurement
 from rich.table import Table
 
 from reduction.errors import ReductionError, SettingsError
@@ -39,11 +40,28 @@ class Outcome:
         if not (self.json or self.quiet):
             typer.echo(text)
 
+    @property
+    def is_text(self) -> bool:
+        """Text is said: neither JSON nor nothing was asked for."""
+        return not (self.json or self.quiet)
+
     def show(self, table: Table) -> None:
-        """A table on standard output, where text is said; 160 columns where no terminal is."""
-        if not (self.json or self.quiet):
-            width = None if sys.stdout.isatty() else 160
+        """A table on standard output, where text is said, with every digit of its numbers.
+
+        At least 160 columns where no terminal is; where a terminal has too few, row by row.
+        """
+        if not self.is_text:
+            return
+        if not sys.stdout.isatty():
+            plenty = Console(width=160, highlight=False)
+            width = max(160, _least_width(table, plenty, words=30))
             Console(width=width, highlight=False).print(table)
+            return
+        console = Console(highlight=False)
+        if _least_width(table, console, words=10) <= console.width:
+            console.print(table)
+        else:
+            typer.echo(_row_by_row(table, console))
 
     def answer(self, document: object) -> None:
         """The JSON object of ``--json``; the only thing on standard output then."""
@@ -58,6 +76,38 @@ class Outcome:
     def raise_status(self, status: int) -> None:
         """Keep the highest status seen."""
         self.status = max(self.status, status)
+
+
+def _least_width(table: Table, console: Console, *, words: int) -> int:
+    """Columns in which no number is cut, and a column of words has as many as that at most."""
+    options = console.options.update(max_width=10_000)
+    total = 0
+    for column in table.columns:
+        sizes = [Measurement.get(console, options, cell) for cell in (column.header, *column.cells)]
+        if column.no_wrap:
+            total += max(size.maximum for size in sizes)
+        else:
+            total += min(words, max(size.maximum for size in sizes))
+    return total + 2 * len(table.columns)
+
+
+def _row_by_row(table: Table, console: Console) -> str:
+    """A table as lines of a heading and a cell, rows parted by an empty line."""
+
+    def words(cell: object) -> str:
+        return " ".join(console.render_str(str(cell)).plain.split())
+
+    heads = [words(column.header) for column in table.columns]
+    size = max(map(len, heads), default=0)
+    rows = zip(*(list(column.cells) for column in table.columns), strict=True)
+    blocks = [
+        "\n".join(
+            f"{head:{size}}  {words(cell)}".rstrip() for head, cell in zip(heads, row, strict=True)
+        )
+        for row in rows
+    ]
+    title = [words(table.title)] if table.title else []
+    return "\n\n".join([*title, *blocks])
 
 
 @contextmanager
