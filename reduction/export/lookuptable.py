@@ -27,6 +27,7 @@ _OF_SUFFIX = {
     ".nc": "netcdf",
 }
 _PERCENT = "percent_of_break_strength"
+_NO_INTERVAL = "nothing: no scatter is known"
 
 
 def format_of_file(path: Path) -> str:
@@ -84,18 +85,23 @@ def table_of_values(
     columns = [
         *_levels(line, found, levels),
         _column(found.quantity, unit, _meaning(found.quantity), found.value),
-        _column("interval_low", unit, "lower end of 95 % of one more test", found.low),
-        _column("interval_high", unit, "upper end of 95 % of one more test", found.high),
-        _column("surface_interval_low", unit, "lower end of 95 % of the mean", found.surface_low),
-        _column("surface_interval_high", unit, "upper end of 95 % of the mean", found.surface_high),
+        *_interval("interval", unit, found.interval_of or _NO_INTERVAL, found.low, found.high),
+        *_interval("surface_interval", unit, found.surface_interval_of or _NO_INTERVAL,
+                   found.surface_low, found.surface_high),
+        *_between_lines(found),
+        _column("is_below_zero", "", "below zero, which it cannot be", found.is_below_zero),
         _column("is_inside", "", "inside what was tested", found.is_inside),
         _column("is_untested", "", "inside, farther from the runs than any", found.is_untested),
         _column("peak_tension", "N", "greatest tension of the cycle", found.peak_tension),
         _column("minimum_tension", "N", "least tension of the cycle", found.minimum_tension),
         _column(f"peak_{_PERCENT}", "%", "the greatest tension so", 100 * found.peak_share),
         _column(f"minimum_{_PERCENT}", "%", "the least tension so", 100 * found.minimum_share),
+        _column(f"peak_{_PERCENT}_in_its_condition", "%",
+                "the greatest tension, of the strength that the line still has",
+                100 * found.own_peak_share),
+        _column("is_slack", "", "the least tension is zero", found.is_slack),
         _column("is_above_rule", "", "peak above the rule of the source", found.is_above_rule),
-    ]
+    ]  # fmt: skip
     return ValueTable(
         title=f"{found.quantity} of {line.name}{_branch(found)}",
         columns=tuple(columns),
@@ -142,19 +148,31 @@ def table_of_difference(
         _column(f"other_{name}", unit, f"{_meaning(name)}, {second.name}", b.value),
         _column("difference", unit, "the second less the first", found.difference),
         _column("ratio", "1", "the second over the first", found.ratio),
-        _column("surface_interval_low", unit, "lower end of 95 % of the difference of the means",
+        _column("surface_interval_low", unit, "lower end of 95 % of what the surfaces differ by",
                 found.surface_low),
-        _column("surface_interval_high", unit, "upper end of 95 % of the difference of the means",
+        _column("surface_interval_high", unit, "upper end of 95 % of what the surfaces differ by",
                 found.surface_high),
-        _column("interval_low", unit, "the same of one more test of each", found.low),
-        _column("interval_high", unit, "the same of one more test of each", found.high),
-        _column("is_known", "", "both means have an interval", found.is_known),
-        _column("is_different", "", "the means differ by more than both intervals allow",
-                found.is_different),
-        _column("is_test_known", "", "both have an interval of one more test",
+        _column("interval_low", unit, "the same of one more run of the same lines", found.low),
+        _column("interval_high", unit, "the same of one more run of the same lines", found.high),
+        _column("kind_interval_low", unit, "the same of all lines of the kinds", found.kind_low),
+        _column("kind_interval_high", unit, "the same of all lines of the kinds",
+                found.kind_high),
+        _column("line_interval_low", unit, "the same of another line of each", found.line_low),
+        _column("line_interval_high", unit, "the same of another line of each", found.line_high),
+        _column("is_known", "", "both surfaces have an interval", found.is_known),
+        _column("is_different", "", "the surfaces of these lines differ", found.is_different),
+        _column("is_test_known", "", "both have an interval of one more run",
                 found.is_test_known),
-        _column("is_test_different", "", "one more test of each would differ",
+        _column("is_test_different", "", "one more run of the same lines would differ",
                 found.is_test_different),
+        _column("is_kind_known", "", "of both kinds the scatter between lines is known",
+                found.is_kind_known),
+        _column("is_kind_different", "", "the means of the two kinds of line differ",
+                found.is_kind_different),
+        _column("is_line_known", "", "both have an interval of another line",
+                found.is_line_known),
+        _column("is_line_different", "", "another line of each would differ",
+                found.is_line_different),
         _column("is_inside", "", "inside what was tested, first line", a.is_inside),
         _column("other_is_inside", "", "inside what was tested, second line", b.is_inside),
         _column("is_untested", "", "inside, farther from the runs than any, first line",
@@ -181,6 +199,26 @@ def table_of_difference(
 def _column(name: str, unit: str, meaning: str, values: NDArray[np.generic]) -> TableColumn:
     kind = np.bool_ if values.dtype == np.bool_ else np.float64
     return TableColumn(name, unit, meaning, np.array(values.ravel(), dtype=kind))
+
+
+def _between_lines(found: DesignValues) -> list[TableColumn]:
+    """Intervals with the scatter between lines; none where that is not known."""
+    if not np.isfinite(found.line_low).any():
+        return []
+    unit = found.unit
+    return [
+        *_interval("kind_interval", unit, "the mean of all lines of the kind",
+                   found.kind_low, found.kind_high),
+        *_interval("line_interval", unit, "another line of the kind",
+                   found.line_low, found.line_high),
+    ]  # fmt: skip
+
+
+def _interval(name: str, unit: str, of: str, low: Floats, high: Floats) -> list[TableColumn]:
+    return [
+        _column(f"{name}_low", unit, f"lower end of 95 % of {of}", low),
+        _column(f"{name}_high", unit, f"upper end of 95 % of {of}", high),
+    ]
 
 
 def _levels(
@@ -225,7 +263,14 @@ def _source(line: LineSource, found: DesignValues) -> str:
 def _about(line: LineSource) -> list[str]:
     """What is stated of the line itself."""
     stated = (
-        ("break strength", line.rated_break_strength, "N"),
+        (
+            f"break strength of {line.strength_of}, of which levels are shares,"
+            if line.strength_of
+            else "break strength",
+            line.rated_break_strength,
+            "N",
+        ),
+        ("strength that it has in its condition", line.tensile_strength, "N"),
         ("diameter", line.diameter, "m"),
         ("linear density in air", line.linear_density, "kg/m"),
         ("linear density in water", line.wet_linear_density, "kg/m"),

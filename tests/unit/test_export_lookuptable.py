@@ -63,13 +63,27 @@ def test_value_intervals_flags_and_errata_are_those_of_the_look_up(table, found)
     for name, expected in (
         ("hysteresis_energy", found.value), ("interval_low", found.low),
         ("surface_interval_high", found.surface_high), ("is_untested", found.is_untested),
-        ("is_inside", found.is_inside), ("minimum_tension", found.minimum_tension),
+        ("is_inside", found.is_inside), 
+        ("is_slack", found.is_slack), ("is_below_zero", found.is_below_zero),
+        ("peak_percent_of_break_strength_in_its_condition", 100 * found.own_peak_share), ("minimum_tension", found.minimum_tension),
     ):  # fmt: skip
         np.testing.assert_array_equal(column(table, name).values, expected)
+    assert column(table, "interval_low").meaning.endswith("one more run of the same lines")
     # Table 11 prints the column of another quantity: CG-5
     assert "errata that touch it: CG-5" in table.sources[0]
     assert any(note.startswith("rule: peak at most 60 %") for note in table.notes)
     assert not table.is_synthetic
+
+
+def test_what_is_known_of_other_lines_stands_where_it_is_known(line, table):
+    stiff = look_up(line, "apparent_spring_constant", **LEVELS)
+    known = table_of_values(line, stiff, LEVELS)
+    for name, expected in (
+        ("line_interval_low", stiff.line_low), ("kind_interval_high", stiff.kind_high),
+    ):  # fmt: skip
+        np.testing.assert_array_equal(column(known, name).values, expected)
+    # of hysteresis no report says how lines differ
+    assert "line_interval_low" not in {one.name for one in table.columns}
 
 
 def read_text(path, form):
