@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,10 +11,16 @@ import xarray as xr
 
 from reduction.archive.shared import components_of
 from reduction.errors import ArchiveError, SettingsError
+from reduction.record import Floats
 from reduction.uncertainty.budget import Budget, budget_of
 from reduction.uncertainty.product import Component
 
-__all__ = ["budget_from_archive", "quantities_with_budget"]
+__all__ = [
+    "all_budgets",
+    "budget_from_archive",
+    "degrees_of_freedom",
+    "quantities_with_budget",
+]
 
 _CONTRIBUTION = "_uncertainty_contribution"
 _RANDOM = "_random_standard_uncertainty"
@@ -79,18 +86,76 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
         raise ArchiveError(
             f"there is no {name} there", found=", ".join(f"{dim}={place[dim]}" for dim in dims)
         )
+    return _budget_at(archive, name, place)
+
+
+def all_budgets(archive: xr.Dataset, quantity: str) -> list[Budget]:
+    """Read the budget of every number of a quantity.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        Of a reduced test, or of experiments.
+    quantity : str
+        As the archive names it.
+
+    Returns
+    -------
+    budgets : list of Budget
+        In the order of the archive; none where nothing is known of its shared errors.
+    """
+    if quantity not in quantities_with_budget(archive):
+        return []
+    variable = archive[quantity]
+    dims = [str(dim) for dim in variable.dims]
+    return [
+        _budget_at(archive, quantity, dict(zip(dims, map(int, place), strict=True)))
+        for place in np.argwhere(np.isfinite(variable.values))
+    ]
+
+
+def degrees_of_freedom(archive: xr.Dataset, name: str) -> Floats:
+    """Degrees of freedom of the random part of a quantity.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        Of a reduced test, or of experiments.
+    name : str
+        As the archive names it.
+
+    Returns
+    -------
+    freedom : ndarray, in the shape of the quantity or a single number
+        Of the regression where it is a coefficient; else cycles less one, of those that reach the
+        number or of all after the break-in; at least 1. [1]
+    """
+    base = name.removesuffix("_engineering").removesuffix("_coefficient")
+    terms = f"{base}_term_degrees_of_freedom"
+    if terms in archive:
+        return np.asarray(archive[terms].values, dtype=np.float64)
+    if f"{name}_count" in archive:
+        return np.maximum(np.asarray(archive[f"{name}_count"].values, dtype=np.float64) - 1, 1.0)
+    settings = json.loads(str(archive.attrs.get("settings") or "{}"))
+    break_in = settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0)
+    return np.asarray(max(archive.sizes.get("cycle", 0) - break_in - 1.0, 1.0))
+
+
+def _budget_at(archive: xr.Dataset, name: str, place: Mapping[str, int]) -> Budget:
+    variable = archive[name]
     rows = archive[f"{name}{_CONTRIBUTION}"].isel(place).values
     components = components_of(archive, place.get("experiment"))
     found: dict[Component, float] = {
         one: float(value) for one, value in zip(components, rows, strict=False) if value != 0
     }
+    freedom = np.broadcast_to(degrees_of_freedom(archive, name), variable.shape)
     return budget_of(
         name,
         str(variable.attrs.get("units", "")),
-        number,
+        float(variable.isel(place)),
         found,
         random=float(archive[f"{name}{_RANDOM}"].isel(place)),
-        degrees_of_freedom=_freedom(archive, name, place),
+        degrees_of_freedom=float(freedom[tuple(place[str(dim)] for dim in variable.dims)]),
         place={dim: str(_label(archive, dim, index)) for dim, index in place.items()},
     )
 
@@ -124,17 +189,3 @@ def _bin(archive: xr.Dataset, dim: str, strain: float) -> int:
             f"{dim} has no bin at {strain:g}", needed=f"{bounds.min():.4g} to {bounds.max():.4g}"
         )
     return int(inside[0])
-
-
-def _freedom(archive: xr.Dataset, name: str, place: Mapping[str, int]) -> float:
-    """Degrees of freedom of the random part: of the regression, or cycles less one."""
-    base = name.removesuffix("_engineering").removesuffix("_coefficient")
-    terms = f"{base}_term_degrees_of_freedom"
-    if terms in archive:
-        return float(
-            archive[terms].isel({str(dim): place[str(dim)] for dim in archive[terms].dims})
-        )
-    if f"{name}_count" in archive:
-        return max(float(archive[f"{name}_count"].isel(place)) - 1, 1.0)
-    cycles = archive.sizes.get("cycle", 0)
-    return max(float(cycles - 1), 1.0)

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.archive.budget import budget_from_archive, quantities_with_budget
+from reduction.archive.budget import (
+    all_budgets,
+    budget_from_archive,
+    degrees_of_freedom,
+    quantities_with_budget,
+)
 from reduction.errors import ArchiveError, SettingsError
 
 
@@ -102,3 +107,22 @@ def test_what_has_a_budget_is_listed(archive):
 def test_what_is_no_number_of_the_archive_is_refused(archive, quantity, at, error, words):
     with pytest.raises(error, match=words):
         budget_from_archive(archive, quantity, at)
+
+
+def test_every_number_of_a_quantity_has_its_budget_and_what_is_no_number_has_none(archive):
+    found = all_budgets(archive, "segment_modulus")
+    assert [one.value for one in found] == [1e6, 2e6, 3e6]
+    assert [one.place["segment"] for one in found] == ["1", "1", "2"]
+    assert found[1] == budget_from_archive(
+        archive, "segment_modulus", {"branch": "descending", "segment": "1"}
+    )
+    assert all_budgets(archive, "peak_tension") == []
+    assert all_budgets(archive, "no_such_quantity") == []
+
+
+def test_cycles_of_the_break_in_are_not_in_a_mean_and_give_no_degree_of_freedom(archive):
+    assert degrees_of_freedom(archive, "segment_modulus") == 2
+    settings = '{"reduction": {"cycles": {"break_in_cycles": 1}}}'
+    assert degrees_of_freedom(archive.assign_attrs(settings=settings), "segment_modulus") == 1
+    assert degrees_of_freedom(archive.drop_dims("cycle"), "segment_modulus") == 1
+    assert degrees_of_freedom(archive, "tangent_modulus").tolist() == [[9, 3]]
