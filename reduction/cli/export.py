@@ -13,6 +13,7 @@ from reduction.cli.hydrodynamics import stated_hydrodynamics
 from reduction.cli.numbers import plain
 from reduction.cli.outcome import Outcome
 from reduction.errors import SettingsError
+from reduction.export.closeness import closeness_of
 from reduction.export.fromarchive import CurveName, line_from_archive
 from reduction.export.fromassembly import line_from_assembly
 from reduction.export.fromcomposite import line_from_composite
@@ -82,7 +83,7 @@ def export_source(
     units = cast("UnitSystem", outcome.units)
     there = set(out.parent.iterdir()) if out.parent.is_dir() else set()
     paths = export_line(line, to, out, form=form, units=units)
-    notes = (*guards_of(line), *line.notes)
+    notes = (*guards_of(line), *closeness_of(line, to, form), *line.notes)
     outcome.say(f"{line.name}: {line.curve}")
     for text in (*line.sources, *(f"note: {note}" for note in notes)):
         outcome.say(f"  {text}")

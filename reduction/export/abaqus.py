@@ -13,9 +13,10 @@ from reduction.export.header import header_lines, real_number
 from reduction.export.product import ExportLine
 from reduction.export.thin import thin_curve
 
-__all__ = ["abaqus_text"]
+__all__ = ["ABAQUS_POINTS", "abaqus_text"]
 
-_MOST_POINTS = 200
+ABAQUS_POINTS = 200
+"""Rows of a table. [1]"""
 
 
 def abaqus_text(line: ExportLine) -> str:
@@ -43,7 +44,7 @@ def abaqus_text(line: ExportLine) -> str:
     Stress is tension over the area at zero tension, of the nominal diameter.  The potential of
     Marlow takes the data as they are; it needs the origin among them.
     """
-    curve = thin_curve(line.strain, line.tension, most=_MOST_POINTS)
+    curve = thin_curve(line.strain, line.tension, most=ABAQUS_POINTS)
     diameter = line.needed("diameter")
     area = math.pi / 4 * diameter**2
     head = header_lines(

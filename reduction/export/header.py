@@ -8,7 +8,7 @@ import textwrap
 from reduction import __version__
 from reduction.export.guards import guards_of, range_of
 from reduction.export.product import ExportLine
-from reduction.export.thin import ThinnedCurve
+from reduction.export.thin import ThinnedCurve, local_words
 
 __all__ = ["header_lines", "number", "one_line", "real_number"]
 
@@ -59,7 +59,7 @@ def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) ->
             f"tension {curve.tension[-1]:.6g} N; beyond it nothing is known; some codes keep the "
             "last tension there",
             f"{curve.strain.size} points of {line.strain.size}; greatest error "
-            f"{curve.error:.3g} N, {curve.share:.2e} of the greatest tension",
+            f"{curve.error:.3g} N, {curve.share:.2e} of the greatest tension; {local_words(curve)}",
         ]
         if curve.words:
             told.append(f"At the start: {curve.words}")

@@ -15,9 +15,10 @@ from reduction.export.header import header_lines, real_number
 from reduction.export.product import ExportLine
 from reduction.export.thin import thin_curve
 
-__all__ = ["orcaflex_text"]
+__all__ = ["ORCAFLEX_POINTS", "orcaflex_text"]
 
-_MOST_POINTS = 100
+ORCAFLEX_POINTS = 100
+"""Rows of a table. [1]"""
 _PER_KILO = 1e-3
 
 
@@ -41,7 +42,7 @@ def orcaflex_text(line: ExportLine) -> str:
     DataError
         If the curve cannot be exported.
     """
-    curve = thin_curve(line.strain, line.tension, most=_MOST_POINTS)
+    curve = thin_curve(line.strain, line.tension, most=ORCAFLEX_POINTS)
     volume, words = line.volume_diameter
     mass, water = line.needed("linear_density"), line.hydrodynamics
     head = header_lines(

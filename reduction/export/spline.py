@@ -19,7 +19,7 @@ import numpy as np
 from scipy.interpolate import BSpline, PPoly
 from scipy.optimize import nnls
 
-from reduction.export.thin import curve_from_zero, thin_curve
+from reduction.export.thin import curve_from_zero, local_share, thin_curve
 from reduction.record import Floats, freeze_arrays
 
 __all__ = ["SmoothCurve", "fit_smooth_curve"]
@@ -47,6 +47,9 @@ class SmoothCurve:
     error, share : float
         Greatest difference in tension from the curve that was given [N], and over the greatest
         tension. [1]
+    local : float
+        The greatest difference over the tension at its place, or a thousandth of the greatest
+        tension. [1]
     words : str
         What was added at the start.
     """
@@ -56,6 +59,7 @@ class SmoothCurve:
     coefficient: Floats
     error: float
     share: float
+    local: float
     words: str
 
     def __post_init__(self) -> None:
@@ -115,7 +119,10 @@ def fit_smooth_curve(strain: Floats, tension: Floats) -> SmoothCurve:
         off, worst = _greatest_error(fitted, at, load)
         if off < error:
             best, error = fitted, off
-    return SmoothCurve(best.x[:-1].copy(), end, best.c[::-1].T.copy(), error, error / top, words)
+    local = local_share(best(grid) - wanted, wanted, top)
+    return SmoothCurve(
+        best.x[:-1].copy(), end, best.c[::-1].T.copy(), error, error / top, local, words
+    )
 
 
 def _greatest_error(fitted: PPoly, at: Floats, load: Floats) -> tuple[float, float]:

@@ -8,7 +8,9 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,13 +18,29 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.record import Floats, Integers, freeze_arrays
 
-__all__ = ["LIFT", "ThinnedCurve", "curve_from_zero", "thin_curve"]
+__all__ = [
+    "LEAST_SHARE",
+    "LIFT",
+    "ThinnedCurve",
+    "curve_from_zero",
+    "local_share",
+    "local_words",
+    "thin_curve",
+]
 
 LIFT = 1e-6
 """Share of the greatest tension that is added over the curve where it does not rise. [1]"""
-_HALVINGS = 48
+LEAST_SHARE = 1e-3
+"""Tension, over the greatest, below which an error counts as if it were that much. [1]"""
+_HALVINGS = 56
+_ENOUGH, _LOOSER = 0.01, 1.25
 _ROUNDING = 1e-12
 _DIGITS = 10
+
+
+class _Close(Protocol):
+    @property
+    def local(self) -> float: ...
 
 
 @dataclass(frozen=True)
@@ -30,13 +48,15 @@ class ThinnedCurve:
     """A curve from 0 0, strictly rising; arrays have the shape (n_points,).
 
     ``error`` is the greatest difference in tension from the curve that was given [N], ``share``
-    the same over the greatest tension, ``words`` what was done, ``n_given`` of how many points.
+    the same over the greatest tension, ``local`` the greatest difference over the tension there,
+    ``words`` what was done.
     """
 
     strain: Floats
     tension: Floats
     error: float
     share: float
+    local: float
     words: str
 
     def __post_init__(self) -> None:
@@ -151,30 +171,31 @@ def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCu
 
     Notes
     -----
+    Small tensions are where a line works, great ones where it breaks: first the error relative to
+    the tension at its place (to a thousandth of the greatest one where it is below that) is made
+    least; then the error over the greatest tension, with the first held to a hundredth, or to a
+    quarter more than its least where that is above a hundredth.
+
     From each kept point the farthest one is taken whose chord leaves all points between them
-    within a tolerance (a cone of slopes, [1]_); the tolerance is halved between what is enough
+    within a tolerance (a cone of slopes, [1]_); its share is halved between what is enough
     and what is not. The error is then taken from the points as they are written.
 
     Examples
     --------
     >>> at = np.linspace(0, 1, 5000)
     >>> curve = thin_curve(at, 100 * at**2, most=30)
-    >>> print(curve.strain.size, round(curve.error, 3))
-    30 0.03
+    >>> print(curve.strain.size, curve.error < 0.1, curve.local < 0.01)
+    30 True True
     """
     at, load, words = curve_from_zero(strain, tension)
     high = float(load[-1])
     chosen: Integers = np.arange(at.size)
     if at.size > most:
-        low, tolerance = 0.0, high
-        chosen = np.array([0, at.size - 1])
-        for _ in range(_HALVINGS):
-            middle = max((low + tolerance) / 2, _ROUNDING * high)
-            found = _within(at, load, middle, most)
-            if found is None:
-                low = middle
-            else:
-                chosen, tolerance = found, middle
+        scale = np.maximum(load, LEAST_SHARE * high)
+        chosen, least = _fewest(at, load, lambda share: share * scale, most)
+        near = max(_ENOUGH, _LOOSER * least) * scale
+        closer, _ = _fewest(at, load, lambda share: np.minimum(share * high, near), most)
+        chosen = closer if closer.size > 2 else chosen
     kept, held = _written(at[chosen]), _written(load[chosen])
     if np.any(np.diff(kept) <= 0) or np.any(np.diff(held) <= 0):
         kept, held = at[chosen], load[chosen]
@@ -183,11 +204,80 @@ def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCu
     own = given >= 0
     difference = np.interp(given[own], kept, held) - np.maximum(measured[own], 0.0)
     error = float(np.abs(difference).max(initial=0.0))
-    return ThinnedCurve(kept, held, error, error / high, words)
+    local = local_share(difference, measured[own], high)
+    return ThinnedCurve(kept, held, error, error / high, local, words)
 
 
-def _within(at: Floats, load: Floats, tolerance: float, most: int) -> Integers | None:
-    """Points whose chords stay within the tolerance; None where they are too many."""
+def local_words(curve: _Close) -> str:
+    """How far a curve is off at small tensions.
+
+    Parameters
+    ----------
+    curve : ThinnedCurve or SmoothCurve
+        As written.
+
+    Returns
+    -------
+    words : str
+        A part of a sentence.
+
+    Raises
+    ------
+    AttributeError
+        If it is no such curve.
+    """
+    return f"{curve.local:.2e} of the tension there, or of {LEAST_SHARE:g} of the greatest"
+
+
+def local_share(difference: ArrayLike, tension: ArrayLike, greatest: float) -> float:
+    """Greatest difference over the tension at its place, or a thousandth of the greatest one.
+
+    Parameters
+    ----------
+    difference : array_like, shape (n_points,)
+        Of two curves. [N]
+    tension : array_like, shape (n_points,)
+        At the points. [N]
+    greatest : float
+        Of the curve. [N]
+
+    Returns
+    -------
+    share : float
+        Zero where there is no point. [1]
+
+    Raises
+    ------
+    ValueError
+        If differences and tensions do not pair up.
+
+    Examples
+    --------
+    >>> print(local_share([1.0, 10.0], [20.0, 1000.0], 1000.0))
+    0.05
+    """
+    scale = np.maximum(np.asarray(tension, dtype=np.float64), LEAST_SHARE * greatest)
+    return float(np.max(np.abs(np.asarray(difference)) / scale, initial=0.0))
+
+
+def _fewest(
+    at: Floats, load: Floats, allowed: Callable[[float], Floats], most: int
+) -> tuple[Integers, float]:
+    """Points of the least share whose tolerances leave few enough, and that share."""
+    chosen: Integers = np.array([0, at.size - 1])
+    low, high = 0.0, 1 / LEAST_SHARE
+    for _ in range(_HALVINGS):
+        middle = max((low + high) / 2, _ROUNDING)
+        found = _within(at, load, allowed(middle), most)
+        if found is None:
+            low = middle
+        else:
+            chosen, high = found, middle
+    return chosen, high
+
+
+def _within(at: Floats, load: Floats, tolerance: Floats, most: int) -> Integers | None:
+    """Points whose chords stay within the tolerances; None where they are too many."""
     last = at.size - 1
     chosen = [0]
     while chosen[-1] < last:
@@ -196,8 +286,8 @@ def _within(at: Floats, load: Floats, tolerance: float, most: int) -> Integers |
         here = chosen[-1]
         run, rise = at[here + 1 :] - at[here], load[here + 1 :] - load[here]
         slope = rise / run
-        steepest = np.minimum.accumulate((rise + tolerance) / run)
-        flattest = np.maximum.accumulate((rise - tolerance) / run)
+        steepest = np.minimum.accumulate((rise + tolerance[here + 1 :]) / run)
+        flattest = np.maximum.accumulate((rise - tolerance[here + 1 :]) / run)
         reached = np.flatnonzero((slope >= flattest) & (slope <= steepest))
         chosen.append(here + 1 + int(reached[-1]))
     return np.array(chosen)

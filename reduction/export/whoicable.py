@@ -25,13 +25,14 @@ from reduction.errors import SettingsError
 from reduction.export.header import header_lines, one_line, real_number
 from reduction.export.product import SEA_WATER, ExportLine
 from reduction.export.spline import SmoothCurve, fit_smooth_curve
-from reduction.export.thin import thin_curve
+from reduction.export.thin import local_words, thin_curve
 from reduction.record import Floats
 
-__all__ = ["WhoiCableForm", "whoicable_text"]
+__all__ = ["CABLE_POINTS", "WhoiCableForm", "whoicable_text"]
 
 WhoiCableForm = Literal["expression", "table"]
-_MOST_POINTS = 100
+CABLE_POINTS = 100
+"""Pairs of a table. [1]"""
 _GRAVITY = 9.80665
 _SMALL = 1e-4  # bending and torsion were not measured, and zero is singular
 
@@ -66,13 +67,13 @@ def whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> s
             needed="expression or table",
         )
     smooth = fit_smooth_curve(line.strain, line.tension)
-    curve = thin_curve(line.strain, line.tension, most=_MOST_POINTS)
+    curve = thin_curve(line.strain, line.tension, most=CABLE_POINTS)
     powers = smooth.coefficient
     tension = _expression(smooth, powers)
     remarks = [
         f"expressions: {smooth.start.size} cubic pieces, greatest error {smooth.error:.3g} N, "
-        f"{smooth.share:.2e} of the greatest tension; beyond strain {smooth.end:.6g} the last "
-        "piece goes on and nothing is known"
+        f"{smooth.share:.2e} of the greatest tension; {local_words(smooth)}; beyond strain "
+        f"{smooth.end:.6g} the last piece goes on and nothing is known"
     ]
     if form == "table":
         pairs = zip(curve.strain, curve.tension, strict=True)

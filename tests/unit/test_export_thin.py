@@ -6,12 +6,35 @@ from reduction.export.thin import LIFT, curve_from_zero, thin_curve
 
 
 def test_chords_of_a_parabola_have_the_error_of_even_steps():
-    """T = 100 e^2 over n even steps: the chord is off by 100 h^2 / 4."""
+    """T = 100 e + 10 e^2 over n even steps: the chord is off by 10 h^2 / 4."""
     strain = np.linspace(0, 1, 5000)
-    found = thin_curve(strain, 100 * strain**2, most=30)
+    found = thin_curve(strain, 100 * strain + 10 * strain**2, most=30)
     assert found.strain.size == 30
-    assert found.error == pytest.approx(25 / 29**2, rel=0.01)
-    assert found.share == found.error / 100
+    assert found.error == pytest.approx(2.5 / 29**2, rel=0.01)
+    assert found.share == found.error / 110
+
+
+def test_small_tensions_are_as_close_as_great_ones():
+    """A line that locks up: 60 N where it works, 320 kN where it breaks."""
+    strain = np.linspace(0, 1.2, 5000)
+    tension = 300 * strain + 2e6 * np.maximum(strain - 0.8, 0) ** 2
+    found = thin_curve(strain, tension, most=30)
+    assert np.interp(0.2, found.strain, found.tension) == pytest.approx(60, rel=0.011)
+    # no tension above a thousandth of the greatest is off by more than a hundredth
+    off = np.abs(np.interp(strain, found.strain, found.tension) - tension)
+    counted = tension > 1e-3 * tension[-1]
+    assert (off[counted] / tension[counted]).max() <= found.local <= 0.01
+    # and the top is as close as ever: 28 even steps of the parabola would be off by 102 N
+    assert found.error < 2.5 * 2e6 * (0.4 / 28) ** 2 / 4
+
+
+def test_where_few_points_cannot_hold_a_hundredth_both_errors_are_stated():
+    strain = np.linspace(0, 1, 5000)
+    found = thin_curve(strain, 100 * strain**3, most=5)
+    off = np.abs(np.interp(strain, found.strain, found.tension) - 100 * strain**3)
+    assert found.local == pytest.approx((off / np.maximum(100 * strain**3, 0.1)).max(), rel=1e-6)
+    assert found.local > 0.01
+    assert found.error == pytest.approx(off.max(), rel=1e-6)
 
 
 def test_a_curve_with_few_points_is_kept():

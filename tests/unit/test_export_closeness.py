@@ -1,0 +1,31 @@
+import numpy as np
+import pytest
+from export_lines import constant, line
+
+from reduction.export.closeness import closeness_of
+from reduction.export.write import FORMATS, export_line
+
+
+@pytest.mark.parametrize(
+    "to", ["moordyn", "moorpy", "openfast", "whoi-cable", "orcaflex", "abaqus"]
+)
+def test_what_is_said_of_a_curve_is_what_its_header_says(to, tmp_path):
+    (words,) = closeness_of(line(), to, None)
+    error = words.split("off by up to ")[1].split(";")[0]
+    *_, path = export_line(line(), to, tmp_path / "x.dat")
+    bare = " ".join(path.read_text().replace("*", " ").replace("/", " ").replace("#", " ").split())
+    assert f"greatest error {error};" in bare
+
+
+def test_a_step_that_a_smooth_function_cannot_follow_is_doubtful():
+    one = line(
+        strain=np.array([0.0, 0.5, 0.5 + 1e-7, 1.0]), tension=np.array([0.0, 10.0, 1e3, 1.1e3])
+    )
+    assert closeness_of(one, "whoi-cable", None)[0].startswith("DOUBTFUL")
+    assert "up to 0 N" in closeness_of(one, "whoi-cable", "table")[0]
+
+
+def test_where_no_curve_is_thinned_nothing_is_said():
+    assert closeness_of(line(viscoelasticity=constant()), "moordyn", "static-dynamic") == ()
+    tables = [to for to in FORMATS if closeness_of(line(), to, None) == ()]
+    assert tables == ["csv", "json", "latex", "markdown", "netcdf"]
