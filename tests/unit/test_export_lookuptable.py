@@ -63,9 +63,10 @@ def test_value_intervals_flags_and_errata_are_those_of_the_look_up(table, found)
     for name, expected in (
         ("hysteresis_energy", found.value), ("interval_low", found.low),
         ("surface_interval_high", found.surface_high), ("is_untested", found.is_untested),
-        ("is_inside", found.is_inside), 
+        ("is_inside", found.is_inside),
         ("is_slack", found.is_slack), ("is_below_zero", found.is_below_zero),
-        ("peak_percent_of_break_strength_in_its_condition", 100 * found.own_peak_share), ("minimum_tension", found.minimum_tension),
+        ("peak_percent_of_break_strength_in_its_condition", 100 * found.own_peak_share),
+        ("minimum_tension", found.minimum_tension),
     ):  # fmt: skip
         np.testing.assert_array_equal(column(table, name).values, expected)
     assert column(table, "interval_low").meaning.endswith("one more run of the same lines")
