@@ -26,6 +26,8 @@ from reduction.strain.remarks import remarks_on
 
 __all__ = ["fit_strain_model", "zero_strain_position"]
 
+_BY_POSITION: tuple[StrainMethod, ...] = ("marks", "strain-ratio", "constant-fraction")
+
 _EXACT_LENGTH = (
     "the gauge length counts as exact: its standard uncertainty is not stated, and that of strain "
     "leaves it out"
@@ -112,6 +114,16 @@ def _default_method(
     )
 
 
+def _splice_law(readings: PooledMarks) -> dict[str, float]:
+    """Law of tension of the same splices; empty where the marks do not follow one."""
+    if readings.stretched_rows("tension-driven").size == 0:
+        return {}
+    try:
+        return fit_to_marks("tension-driven", readings).coefficients
+    except FitError:
+        return {}
+
+
 def fit_strain_model(
     specimen: Specimen,
     *,
@@ -174,7 +186,8 @@ def fit_strain_model(
 
     The covariance holds reading errors of the tape, or the stated standard uncertainty of the
     gauge length, which all samples share; not
-    the choice of the method, which `strain_slope_ratio` and the residuals show.
+    the choice of the method, which `strain_slope_ratio` and the residuals show.  A method that
+    knows position alone keeps the law of tension of its marks as ``splice_law``.
 
     Examples
     --------
@@ -221,6 +234,8 @@ def fit_strain_model(
             raise
         notes = (f"{specimen.name}: tension-driven strain was given up for marks: {error}",)
         model = fit_to_marks("marks", readings)
+    if model.method in _BY_POSITION:
+        model = replace(model, splice_law=_splice_law(readings))
     at_start = None
     if model.method == "tension-driven" and mark_tension_at_start is not None:
         early = replace(readings, tension=np.asarray(mark_tension_at_start, dtype=np.float64))

@@ -140,4 +140,5 @@ def with_free_length(model: StrainModel, free_length: float) -> StrainModel:
         mark_tension=np.empty(0),
         mark_strain_residual=np.empty(0),
         notes=(*model.notes, f"of another free length: {length:.4g} m"),
+        splice_law={},
     )

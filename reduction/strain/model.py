@@ -49,6 +49,9 @@ class StrainModel:
         is the inverse of this times the modulus here. NaN without marks. [1]
     notes : tuple of str
         What a reader has to know.
+    splice_law : dict of str to float
+        Of a method that knows position alone: the coefficients of ``tension-driven`` fitted to
+        the same marks, by which its error is judged; empty where there is no such law.
     """
 
     specimen: str
@@ -68,6 +71,7 @@ class StrainModel:
     mark_strain_residual: Floats = field(default_factory=_empty)
     strain_slope_ratio: float = float("nan")
     notes: tuple[str, ...] = ()
+    splice_law: dict[str, float] = field(default_factory=dict)
 
     @property
     def relaxed_length(self) -> float:

@@ -27,6 +27,7 @@ from reduction.strain.evaluate import strain_by_model, strain_sensitivity_of
 from reduction.strain.inverse import position_by_model
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.product import Component, InstrumentErrors
+from reduction.uncertainty.splicemethod import splice_method_error
 
 __all__ = ["ErrorField", "error_field"]
 
@@ -106,7 +107,8 @@ def error_field(
     the splice law is fitted to them: an error of that cell is in the law too, and a splice
     strains at its marks what the tape says, whatever the cell reads.  A wrong gain then leaves
     strain as it is, and a wrong zero nearly so; without that, 1 % of gain would be 0.14 % of
-    strain on the tethers of [2]_.  An extensometer knows neither position nor splices.
+    strain on the tethers of [2]_.  An extensometer knows neither; what position alone misses is
+    `splice_method_error`.
 
     Examples
     --------
@@ -125,17 +127,19 @@ def error_field(
         *_of_position(errors, model, at, load),
         *_of_coefficients(errors, model, at, load),
     ]
+    missed = splice_method_error(model, strain=at, tension=load)
+    if missed is not None:
+        rows = _rows(load, strain=missed[0], strain_slope=missed[1],
+                     strain_slope_over_tension=missed[2])  # fmt: skip
+        parts.append((Component("splice_method", errors.specimen), rows))
     if errors.stiffness:
         # the rubber is warmer or colder than the test says: the cell reads what there is
-        component = Component("temperature", errors.test)
-        u = errors.stiffness
-        parts.append((component, _rows(load, tension=u * load, tension_slope=u)))
+        rows = _rows(load, tension=errors.stiffness * load, tension_slope=errors.stiffness)
+        parts.append((Component("temperature", errors.test), rows))
     if errors.strain_gain:
-        u = errors.strain_gain
-        component = Component("strain_gain", errors.strain_model or errors.specimen)
-        parts.append((component, _rows(load, strain=u * at, strain_slope=u)))
-    empty = np.empty((0, 5, *load.shape))
-    table = np.stack([rows for _, rows in parts]) if parts else empty
+        rows = _rows(load, strain=errors.strain_gain * at, strain_slope=errors.strain_gain)
+        parts.append((Component("strain_gain", errors.strain_model or errors.specimen), rows))
+    table = np.stack([rows for _, rows in parts]) if parts else np.empty((0, 5, *load.shape))
     return ErrorField(tuple(one for one, _ in parts), *np.moveaxis(table, 1, 0))
 
 
@@ -144,7 +148,7 @@ def _rows(
     *,
     tension: Floats | float = 0.0,
     strain: Floats | float = 0.0,
-    tension_slope: float = 0.0,
+    tension_slope: Floats | float = 0.0,
     strain_slope: Floats | float = 0.0,
     strain_slope_over_tension: Floats | float = 0.0,
 ) -> Floats:
