@@ -266,6 +266,30 @@ def test_what_there_is(command):
             "none of 9 lines has loss_factor; needed one of apparent_spring_constant",
         ),
         ((NYLON, "--quantity", "strain", "--line", "x", "--tension", "1 kN"), 2, "no line 'x'"),
+        (
+            (
+                NYLON, "--quantity", "relaxation_time", "--frequency", "-0.3 Hz", *LEVELS[2:],
+                "--extrapolate", "flag",
+            ),
+            2,
+            "a frequency is not positive; found -0.3 Hz",
+        ),
+        (
+            (NYLON, "--quantity", "relaxation_time", *LEVELS, "--branch", "ascending"), 2,
+            "does not differ by branch",
+        ),
+        (
+            (NYLON, "--quantity", "quasi_static_spring_constant", "--mean-tension", "1344 lbf",
+             "--frequency", "3 Hz"),
+            2,
+            "does not vary with frequency",
+        ),
+        (
+            (NYLON, "--quantity", "relaxation_time", "--table", "--tension-amplitude", "2000 lbf",
+             "--mean-tension", "1344 lbf"),
+            4,
+            "no combination of the grid",
+        ),
     ],
 )  # fmt: skip
 def test_what_cannot_be_looked_up_ends_with_its_status(command, arguments, status, told):
@@ -273,3 +297,84 @@ def test_what_cannot_be_looked_up_ends_with_its_status(command, arguments, statu
     assert done.returncode == status, done.stdout + done.stderr
     assert told in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_an_archive_with_nothing_to_look_up_is_refused(command, tmp_path):
+    xr.Dataset(attrs={"title": "nothing"}).to_netcdf(tmp_path / "empty.nc")
+    done = command("lookup", tmp_path / "empty.nc")
+    assert done.returncode == 6
+    assert "empty.nc" in done.stderr
+
+
+def test_json_says_of_what_each_number_is(command):
+    done = command(
+        "lookup", f"{BRAID}-5-years", "--quantity", "apparent_spring_constant", "--frequency",
+        "0.3 Hz", "--mean-tension", "30 %RBS", "--tension-amplitude", "12 %RBS", "--json",
+    )  # fmt: skip
+    answer = json.loads(done.stdout)
+    assert answer["level_units"] == {
+        "frequency": "Hz", "mean_tension": "N", "tension_amplitude": "N",
+    }  # fmt: skip
+    assert answer["tension_unit"] == "N"
+    assert answer["interval_of"] == "one more run of the same lines"
+    assert answer["line_interval"][1] > answer["interval"][1]
+    assert answer["below_zero"] is False
+    # 42 % of 7,000 lb is 2,940 lb; Table 10: 3,241 lb
+    assert answer["peak_share"] == pytest.approx(0.42)
+    assert answer["own_peak_share"] == pytest.approx(2940 / 3241)
+    assert answer["above_rule"] is True
+    assert answer["tensile_strength"] == pytest.approx(3241 * LBF)
+    text = command(
+        "lookup", f"{BRAID}-5-years", "--quantity", "apparent_spring_constant", "--frequency",
+        "0.3 Hz", "--mean-tension", "30 %RBS", "--tension-amplitude", "12 %RBS",
+    ).stdout  # fmt: skip
+    assert "90.71" in text
+    assert "peak above the rule" in text
+    assert "another line" in text
+
+
+def test_a_list_says_whose_strength_it_is_and_in_which_units(command):
+    largest = "nylon-double-braid-1.25in-new"
+    (line,) = json.loads(command("lookup", largest, "--list", "--json").stdout)["lines"]
+    assert line["rated_break_strength_of"] == "the 1 in line"
+    assert line["range_units"]["mean_tension"] == "N"
+    old = "nylon-double-braid-0.5in-5-years"
+    (line,) = json.loads(command("lookup", old, "--list", "--json").stdout)["lines"]
+    strain = next(one for one in line["curves"] if one["quantity"] == "strain")
+    assert strain["range"][1] == pytest.approx(2596.5 * LBF, rel=1e-3)
+    assert "falls under more load" in strain["range_note"]
+    assert "(the 1 in line)" in command("lookup", largest, "--list").stdout
+
+
+def test_a_value_below_zero_has_a_field_of_its_own(command):
+    # K_0 of plaited nylon is below zero to some 153 lb: Table 6
+    done = command(
+        "lookup", "nylon-8-strand-plaited-0.5in-new", "--quantity", "quasi_static_spring_constant",
+        "--mean-tension", "100 lbf", "--extrapolate", "flag", "--json",
+    )  # fmt: skip
+    answer = json.loads(done.stdout)
+    assert answer["below_zero"] is True
+    assert answer["inside"] is False
+
+
+@pytest.mark.parametrize("level", ["2000 lbf", "1e6 lbf"])
+def test_no_number_of_a_table_is_cut(command, level):
+    asked = ("lookup", "nylon-double-braid-1in-new", "--quantity", "apparent_spring_constant",
+             "--table", "--extrapolate", "flag", "--mean-tension", level)  # fmt: skip
+    text = command(*asked).stdout
+    assert "\N{HORIZONTAL ELLIPSIS}" not in text
+    for value in json.loads(command(*asked, "--json").stdout)["value"]:
+        assert f"{value:.5g}" in text
+
+
+def test_kinds_are_told_apart_with_the_scatter_between_lines_alone(command):
+    pair = ("lookup", f"{BRAID}-new", "--quantity", "apparent_spring_constant", "--against",
+            f"{BRAID}-4-years", *LEVELS)  # fmt: skip
+    answer = json.loads(command(*pair, "--json").stdout)
+    assert answer["different"] is True
+    assert answer["kind_known"] is True
+    assert answer["kind_different"] is False
+    assert answer["kind_interval"][0] < 0 < answer["kind_interval"][1]
+    text = command(*pair).stdout
+    assert "not told apart" in text
+    assert "lines of this kind differ among each other by about 50 %" in text

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.cli.lookuppoints import Wanted, points_of
-from reduction.errors import SettingsError
+from reduction.errors import DataError, SettingsError
 from reduction.lookup.product import LineCurve, LineSource
 
 
@@ -59,3 +59,23 @@ def test_combinations_that_would_push_a_line_are_left_out():
     points, left_out = points_of(Wanted("relaxation_time", shares, grid=True), ONE, OTHER)
     assert [one["tension_amplitude"].tolist() for one in points] == [[90.0], [45.0]]
     assert left_out
+
+
+def test_a_grid_without_any_point_is_refused():
+    levels = {"mean_tension": "100 N", "tension_amplitude": "200 N,300 N"}
+    with pytest.raises(DataError, match="no combination of the grid .* found 2 combinations"):
+        points_of(Wanted("relaxation_time", levels, grid=True), ONE)
+
+
+def test_a_grid_that_no_table_can_hold_is_refused_before_it_is_made():
+    values = ",".join(f"{one} N" for one in range(1, 1002))
+    levels = {"mean_tension": values, "tension_amplitude": values}
+    with pytest.raises(SettingsError, match="too many points for a table; found 1,002,001"):
+        points_of(Wanted("relaxation_time", levels, grid=True), ONE)
+
+
+def test_a_grid_of_the_one_branch_that_is_known_needs_no_branch():
+    (points,), _ = points_of(Wanted("tangent_modulus", {}, grid=True), OTHER)
+    assert points["strain"].tolist() == [1.0, 2.0, 3.0]
+    (points,), _ = points_of(Wanted("tangent_modulus", {}, grid=True), ONE)
+    assert points == {}

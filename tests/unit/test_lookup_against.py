@@ -209,3 +209,37 @@ def test_lines_that_are_one_are_told_apart_in_at_most_one_of_twenty(like):
 def test_what_does_not_belong_together_is_refused(like, change, message):
     with pytest.raises(SettingsError, match=message):
         compare_values(like, replace(like, **change))
+
+
+def test_old_and_new_are_apart_as_these_lines_and_not_as_kinds(lines):
+    # sec. 4.4.1: lines in a kind differ by a tenth, and by half after years in the sea
+    found = pair(lines, f"polyester-{BRAID}", 4, "apparent_spring_constant")
+    assert found.is_different
+    assert found.is_kind_known
+    assert not found.is_kind_different
+    assert not found.is_line_different
+    t = stats.t.ppf(0.975, 5)
+    # down from four old lines, up from three new ones; surfaces are of less account
+    down = t * np.sqrt(np.log(1.25) / 4)
+    up = t * np.sqrt(np.log(1.01) / 3)
+    old, new = found.second.value, found.first.value
+    about = found.difference - np.hypot(old * (1 - np.exp(-down)), new * (np.exp(up) - 1))
+    assert found.kind_low == pytest.approx(about, rel=0.05)
+    assert found.line_low < found.kind_low < found.surface_low
+
+
+def test_kinds_that_are_far_apart_are_told_apart(lines):
+    # B1 of Table 3, 6.317 against 3.088e4 lb: new lines, at the centres of their designs
+    found = compare_values(
+        at_centre(lines[f"nylon-{PLAIT}-new"], "apparent_spring_constant"),
+        at_centre(lines[f"polyester-{PLAIT}-new"], "apparent_spring_constant"),
+    )
+    assert found.is_kind_different
+    assert found.is_line_different
+
+
+def test_where_no_scatter_between_lines_is_printed_kinds_are_not_compared(lines):
+    found = pair(lines, f"polyester-{BRAID}", 4, "hysteresis_energy")
+    assert found.is_known
+    assert not found.is_kind_known
+    assert not found.is_kind_different

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -156,3 +158,118 @@ def test_points_of_another_number_of_factors_are_refused():
         evaluate_surface(SURFACE, [[0.3, 200.0]])
     with pytest.raises(DataError, match="low does not fit the surface"):
         LineSurface("x", B, EXPONENTS, LOW[:2], HIGH, INVERSE, 1.0, 5.0, 0.75)
+
+
+def test_the_intervals_say_of_what_they_are():
+    surface = look_up(LINE, "apparent_spring_constant", **CENTRE)
+    assert surface.interval_of == "one more run of the same lines"
+    assert surface.surface_interval_of == "the surface of these lines"
+    assert np.isnan(surface.line_low)
+    curve = look_up(LINE, "strain", tension=200.0)
+    assert (curve.interval_of, curve.surface_interval_of) == ("", "")
+    assert np.isnan(curve.low)
+
+
+def test_a_curve_of_one_test_has_students_interval_of_its_cycles_and_no_other():
+    measured = LineCurve(
+        "tangent_modulus", "strain", 0.0, 2.0, at=np.array([0.0, 1.0, 2.0]),
+        value=np.array([1e6, 2e6, 3e6]), standard_uncertainty=np.full(3, 1e4),
+        count=np.array([6.0, 6.0, 6.0]), spread_of="the mean over the cycles of this one test",
+    )  # fmt: skip
+    found = look_up(replace(LINE, curves=(measured,)), "tangent_modulus", strain=1.5)
+    assert found.surface_high - found.value == pytest.approx(2.570582 * 1e4, rel=1e-6)
+    assert np.isnan(found.high)
+    assert np.isnan(found.line_high)
+    assert found.surface_interval_of == "the mean over the cycles of this one test"
+    assert any("how lines differ among each other is not in it" in note for note in found.notes)
+
+
+def test_what_lies_between_two_measured_bins_is_outside():
+    measured = LineCurve(
+        "strain", "tension", 0.0, 400.0, at=np.array([0.0, 100.0, 300.0, 400.0]),
+        value=np.array([0.0, 0.1, 0.3, 0.4]), gaps=np.array([[100.0, 300.0]]),
+    )  # fmt: skip
+    line = replace(LINE, curves=(measured,))
+    assert look_up(line, "strain", tension=[100.0, 300.0, 350.0]).is_inside.all()
+    with pytest.raises(DataError, match="needed 0 to 400 N, nothing between 100 and 300"):
+        look_up(line, "strain", tension=[50.0, 200.0])
+    flagged = look_up(line, "strain", tension=200.0, extrapolate="flag")
+    assert not flagged.is_inside
+    assert flagged.value == pytest.approx(0.2)
+
+
+def test_where_two_pieces_meet_both_values_are_told():
+    pieces = LineCurve(
+        "tangent_modulus", "strain", 0.0, 2.0, at=np.array([0.0, 1.0, 1.0, 2.0]),
+        value=np.array([1e6, 1e6, 2e6, 2e6]), branch="ascending",
+    )  # fmt: skip
+    line = replace(LINE, curves=(pieces,))
+    # one branch alone is known: it need not be asked for, and the value says which
+    found = look_up(line, "tangent_modulus", strain=1.0)
+    assert found.branch == "ascending"
+    assert "at strain 1 two pieces meet: 1e+06 Pa below, 2e+06 above" in found.notes
+    assert not any(
+        "two pieces" in one for one in look_up(line, "tangent_modulus", strain=0.9).notes
+    )
+
+
+def test_both_choices_of_the_levels_are_in_the_intervals():
+    other = (np.array([0.1, 110.0, 50.0]), np.array([0.5, 330.0, 150.0]))
+    open_levels = replace(SURFACE, alternative_boxes=(other,))
+    line = replace(LINE, surfaces={"apparent_spring_constant": open_levels})
+    found = look_up(line, "apparent_spring_constant", **CENTRE)
+    one, two = (
+        evaluate_surface(replace(SURFACE, low=low, high=high), [[0.3, 200.0, 100.0]])
+        for low, high in ((LOW, HIGH), other)
+    )
+    assert found.value == one.value
+    # 200 N is the centre of the one box, and (200 - 220)/110 of the other
+    coded = -20 / 110
+    assert two.value == pytest.approx(1e4 + 2000 * coded - 200 * coded**2)
+    assert found.low == min(one.low, two.low)
+    assert found.high == max(one.high, two.high)
+    assert found.surface_low == two.surface_low
+
+
+def test_a_level_within_the_rounding_of_its_print_is_inside():
+    rounded = replace(SURFACE, rounding=np.array([0.0, 0.5, 0.5]))
+    line = replace(LINE, surfaces={"apparent_spring_constant": rounded})
+    at = CENTRE | {"mean_tension": [99.5, 300.5], "tension_amplitude": 90.0}
+    assert look_up(line, "apparent_spring_constant", **at).is_inside.all()
+    with pytest.raises(DataError, match="mean_tension 300.6 N, tested 100 to 300 N"):
+        look_up(line, "apparent_spring_constant", **(CENTRE | {"mean_tension": 300.6}))
+    with pytest.raises(DataError, match="rounding does not fit the surface"):
+        replace(SURFACE, rounding=np.zeros(2))
+
+
+@pytest.mark.parametrize(
+    ("quantity", "levels", "message"),
+    [
+        ("apparent_spring_constant", CENTRE | {"frequency": "0.3"}, "frequency is no real number"),
+        ("apparent_spring_constant", CENTRE | {"frequency": 0.3 + 1j}, "frequency is no real nu"),
+        ("apparent_spring_constant", CENTRE | {"frequency": [[1.0], [1, 2]]}, "no real number"),
+        ("apparent_spring_constant", CENTRE | {"frequency": -0.3}, "not positive; found -0.3 Hz"),
+        ("apparent_spring_constant", CENTRE | {"frequency": 0.0}, "a frequency is not positive"),
+        (
+            "apparent_spring_constant", CENTRE | {"frequency": [0.1, 0.2], "mean_tension": [1.0] * 3},
+            "levels do not pair up; found frequency of shape",
+        ),
+        ("apparent_spring_constant", CENTRE | {"branch": "ascending"}, "does not differ by branch"),
+        ("strain", {"tension": 1.0, "branch": "ascending"}, "does not differ by branch; found asc"),
+        ("strain", {"tension": 1.0, "mean_tension": 2.0}, "does not vary with mean_tension"),
+        ("strain", {"tension": 1.0, "frequency": 3.0}, "does not vary with frequency"),
+    ],
+)  # fmt: skip
+def test_levels_that_say_nothing_of_the_quantity_are_refused(quantity, levels, message):
+    with pytest.raises(SettingsError, match=message):
+        look_up(LINE, quantity, extrapolate="flag", **levels)
+
+
+def test_a_damping_has_no_branch():
+    parts = {
+        name: replace(SURFACE, quantity=name)
+        for name in ("dissipation_spring_constant", "relaxation_time")
+    }
+    line = replace(LINE, surfaces=parts)
+    with pytest.raises(SettingsError, match="dashpot_coefficient of rope does not differ by br"):
+        look_up(line, "dashpot_coefficient", branch="ascending", **CENTRE)

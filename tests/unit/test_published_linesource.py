@@ -1,5 +1,7 @@
 """Published lines as they are looked up, against numbers typed from the tables."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -163,3 +165,80 @@ def test_no_report_prints_a_linear_density(lines):
     for line in lines.values():
         assert np.isnan(line.linear_density)
         assert np.isnan(line.wet_linear_density)
+
+
+def test_the_largest_line_has_the_strength_of_another_and_says_so(lines):
+    line = lines["nylon-double-braid-1.25in-new"]
+    # Table 1, footnote 3: 33,600 lb is of the 1 in line
+    assert line.strength_of == "the 1 in line"
+    assert any("its own is not printed" in note for note in line.notes)
+    assert lines["nylon-double-braid-1in-new"].strength_of == ""
+    assert line.rated_break_strength == lines["nylon-double-braid-1in-new"].rated_break_strength
+
+
+@pytest.mark.parametrize(
+    ("name", "pounds"),
+    # Table 10; of polyester braid none of four years was broken
+    [
+        ("nylon-double-braid-0.5in-5-years", 2783),
+        ("nylon-8-strand-plaited-0.5in-4-years", 3525),
+        ("nylon-8-strand-plaited-0.5in-5-years", 4416),
+        ("polyester-8-strand-plaited-0.5in-4-years", 5096),
+        ("polyester-double-braid-0.5in-5-years", 3241),
+        ("polyester-double-braid-0.5in-4-years", 3241),
+    ],
+)
+def test_an_old_line_has_the_strength_of_table_10(lines, name, pounds):
+    assert lines[name].tensile_strength == pytest.approx(pounds * LBF)
+    assert np.isnan(lines[f"{name.rpartition('in-')[0]}in-new"].tensile_strength)
+
+
+def test_a_level_of_the_design_in_percent_is_inside_though_pounds_are_printed(lines):
+    # 12 % of 5,760 lb is 691.2 lb, printed 691
+    line = lines["nylon-8-strand-plaited-0.5in-new"]
+    found = look_up(
+        line, "apparent_spring_constant", frequency=0.1, mean_tension=0.21 * 5760 * LBF,
+        tension_amplitude=0.12 * 5760 * LBF,
+    )  # fmt: skip
+    assert found.is_inside
+    assert not found.is_untested
+    assert line.surfaces["apparent_spring_constant"].high[2] == pytest.approx(691 * LBF)
+
+
+def test_open_levels_widen_the_intervals_and_old_lines_say_that_theirs_are_others(lines):
+    # levels of polyester braid: shares of 6,400 lb (Table 3) or of 7,000 lb (Table 5)
+    line = lines["polyester-double-braid-0.5in-new"]
+    at = {"frequency": 0.3, "mean_tension": 1344 * LBF, "tension_amplitude": 544 * LBF}
+    found = look_up(line, "hysteresis_energy", **at)
+    alone = replace(line.surfaces["hysteresis_energy"], alternative_boxes=())
+    one = look_up(replace(line, surfaces={"hysteresis_energy": alone}), "hysteresis_energy", **at)
+    assert found.high - found.low > one.high - one.low
+    assert any("the intervals span both" in note for note in found.notes)
+    for age in ("4-years", "5-years"):
+        told = lines[f"polyester-double-braid-0.5in-{age}"].notes
+        assert any("one %RBS is two tensions" in note for note in told)
+    assert not any("two tensions" in one for one in lines["nylon-double-braid-0.5in-5-years"].notes)
+
+
+def test_what_the_report_gives_for_documentation_alone_says_so(lines):
+    for age in (4, 5):
+        line = lines[f"nylon-8-strand-plaited-0.5in-{age}-years"]
+        found = look_up(line, "apparent_spring_constant", **centre(line))
+        assert any("no inference is drawn from it" in note for note in found.notes)
+        assert "the surface is of 2 lines" in found.notes
+    new = lines["nylon-8-strand-plaited-0.5in-new"]
+    notes = look_up(new, "apparent_spring_constant", **centre(new)).notes
+    assert "the surface is of 3 lines" in notes
+    assert not any("inference" in note for note in notes)
+
+
+def test_a_remark_on_a_cell_says_that_it_is_one(lines):
+    notes = {
+        note
+        for line in lines.values()
+        if line.is_tether
+        for one in line.curves
+        for note in one.notes
+    }
+    assert "remark on a printed cell: stray dash" in notes
+    assert "stray dash" not in notes
