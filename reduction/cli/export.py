@@ -20,6 +20,7 @@ from reduction.export.fromcomposite import line_from_composite
 from reduction.export.fromlookup import line_from_lookup
 from reduction.export.guards import guards_of
 from reduction.export.product import ExportLine
+from reduction.export.start import siblings_of
 from reduction.export.write import export_line
 from reduction.lookup.source import compose
 from reduction.published.linesource import published_sources
@@ -160,7 +161,12 @@ def line_of(
             for name, text in levels.items()
         }
         made = line_from_lookup(
-            line, branch=curve, levels=at or None, extrapolate=extrapolate, **stated
+            line,
+            branch=curve,
+            siblings=siblings_of(line, tuple(published.values())),
+            levels=at or None,
+            extrapolate=extrapolate,
+            **stated,
         )
         if not any("%" in text for text in levels.values()):
             return made

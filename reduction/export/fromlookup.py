@@ -9,7 +9,8 @@ References
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ import numpy as np
 from reduction.errors import DataError, SettingsError
 from reduction.export.linedynamics import line_dynamics
 from reduction.export.product import ExportLine
+from reduction.export.start import start_against
 from reduction.lookup.curve import evaluate_curve
 from reduction.lookup.product import LineCurve, LineSource
 from reduction.record import Floats
@@ -24,6 +26,7 @@ from reduction.record import Floats
 __all__ = ["line_from_lookup"]
 
 _POINTS = 201
+_LARGE_CONSTANT = 0.01
 _MOST_CUT, _LEAST_CUT = 0.9, 0.05  # shares of the greatest tension that a cut may leave or take
 _STRAIN = ("strain", "quasi_static_strain")
 _TENSION = ("tension", "branch_tension")
@@ -34,6 +37,7 @@ def line_from_lookup(
     source: LineSource,
     *,
     branch: Branch | None = None,
+    siblings: Sequence[LineSource] = (),
     levels: Mapping[str, float] | None = None,
     extrapolate: Literal["refuse", "flag"] = "refuse",
     **stated: Any,
@@ -46,6 +50,9 @@ def line_from_lookup(
         Published, or of a campaign.
     branch : {"ascending", "descending"}, optional
         Where curves differ by it.
+    siblings : sequence of LineSource
+        Other tests of the same tether: what they measured below the first point of the curve is
+        held against the straight line that stands there.
     levels : mapping of str to float, optional
         ``frequency``, ``mean_tension`` and ``tension_amplitude`` at which static and dynamic
         stiffness are taken; without them the line has a curve alone. [Hz], [N], [N]
@@ -73,9 +80,10 @@ def line_from_lookup(
     K_0 + K_1 at the mean tension, N = K_1 tau ([1]_), identified so that the line gives back its
     own K_ap and H.
     """
-    curve = _curve_of(source, branch)
+    curve = _trusted(source, _curve_of(source, branch))
     strain, tension, cut = _points(source, curve)
-    notes = [*source.notes, *curve.notes, *cut]
+    start = start_against(strain, tension, curve.branch, siblings)
+    notes = [*source.notes, *curve.notes, curve.range_note, *cut, *start]
     words = "of a pull" if not curve.branch else f"{curve.branch} branch"
     sources = [f"{source.source}: {curve.quantity} over {curve.variable}, {words}"]
     if curve.errata:
@@ -102,6 +110,9 @@ def line_from_lookup(
             "material",
         )
     }
+    own["rated_break_strength"], said = _strength(source)
+    if "rated_break_strength" not in given:
+        notes.append(said)
     return ExportLine(
         name=source.name,
         strain=strain,
@@ -110,9 +121,26 @@ def line_from_lookup(
         tested=_tested(curve, strain, tension),
         viscoelasticity=part,
         sources=tuple(sources),
-        notes=tuple(dict.fromkeys(notes)),
+        notes=tuple(note for note in dict.fromkeys(notes) if note),
         **own | given,
     )
+
+
+def _strength(source: LineSource) -> tuple[float, str]:
+    """Strength that a code is told where none is stated, and why it is not the rated one. [N]."""
+    if source.strength_of:
+        return math.nan, (
+            f"no break strength is exported: that of the source is of {source.strength_of}; state "
+            "--rated-break-strength"
+        )
+    left = source.tensile_strength
+    # NaN where the line is new: then the rated one stands
+    if left < source.rated_break_strength:
+        return left, (
+            f"break strength {left:.5g} N: what the line has in its condition; new it was rated "
+            f"{source.rated_break_strength:.5g} N"
+        )
+    return source.rated_break_strength, ""
 
 
 def _curve_of(source: LineSource, branch: Branch | None) -> LineCurve:
@@ -142,6 +170,15 @@ def _curve_of(source: LineSource, branch: Branch | None) -> LineCurve:
             needed=" or ".join(one.branch for one in found),
         )
     return of_branch[0]
+
+
+def _trusted(source: LineSource, curve: LineCurve) -> LineCurve:
+    """The curve as far as its slope can be trusted, where the source gives K_0 by that slope."""
+    for rest in source.curves:
+        if rest.is_inverse_slope and rest.high < curve.high and curve.variable == "tension":
+            why = f"{curve.range_note}; {rest.range_note}" if curve.range_note else rest.range_note
+            return replace(curve, high=rest.high, range_note=why)
+    return curve
 
 
 def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[str]]:
@@ -179,7 +216,30 @@ def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[
             f"the polynomial has no strain up to {tension[below][-1]:.4g} N; that part is left out"
         )
         strain, tension = strain[~below], tension[~below]
+    if curve.coefficient.size and strain[0] > 0 and tension[0] == 0:
+        strain, tension, said = _without_constant(strain, tension)
+        notes.append(said)
     return strain, tension, notes
+
+
+def _without_constant(strain: Floats, tension: Floats) -> tuple[Floats, Floats, str]:
+    """The curve of a regression from where its constant weighs little.
+
+    A pull starts at no strain and no tension; what a cubic has there is an error of its fit, and
+    no slack that anybody measured.  Its share in the strain is a half at twice the constant; there,
+    or at a twentieth of the greatest tension, the straight line from 0 0 joins the curve.
+    """
+    constant = float(strain[0])
+    joins = (strain >= 2 * constant) | (tension >= _LEAST_CUT * tension[-1])
+    first = int(np.argmax(joins))
+    doubt = "DOUBTFUL: " if constant > _LARGE_CONSTANT else ""
+    said = (
+        f"{doubt}the regression has strain {constant:.4g} at no tension, a constant of its fit and "
+        f"no slack that was measured: in its place a straight line from 0 0 joins it at strain "
+        f"{strain[first]:.4g} and {tension[first]:.4g} N; as slack it would be "
+        f"{100 * constant:.2g} m in 100 m of line"
+    )
+    return strain[first:], tension[first:], said
 
 
 def _tested(curve: LineCurve, strain: Floats, tension: Floats) -> tuple[float, float]:

@@ -15,6 +15,7 @@ from reduction.export.product import SEA_WATER, ExportLine
 __all__ = ["guards_of", "range_of"]
 
 _SAME = 1e-9
+_LEAST_FILL = 0.6  # of the diameter: a third of the area, where ropes have two thirds
 
 
 def range_of(line: ExportLine) -> str:
@@ -66,8 +67,8 @@ def guards_of(line: ExportLine) -> tuple[str, ...]:
 
     Notes
     -----
-    A rope of a fibre that is heavier than water does not float, and no rope has more mass than a
-    rod of its fibre; densities of fibres as in [1]_.
+    A rope of a fibre that is heavier than water does not float, no rope has more mass than a rod of
+    its fibre, and none a third of it; densities of fibres as in [1]_.
     """
     words = [range_of(line)]
     mass, diameter = line.linear_density, line.diameter
@@ -85,5 +86,10 @@ def guards_of(line: ExportLine) -> tuple[str, ...]:
         words.append(
             f"DOUBTFUL: the displaced volume has a diameter of {1000 * volume:.4g} mm, above the "
             f"nominal one of {1000 * diameter:.4g} mm: mass a length and diameter do not fit"
+        )
+    elif volume < _LEAST_FILL * diameter:
+        words.append(
+            f"DOUBTFUL: the displaced volume has a diameter of {1000 * volume:.4g} mm, far below "
+            f"the nominal one of {1000 * diameter:.4g} mm: mass a length and diameter do not fit"
         )
     return tuple(words)

@@ -289,7 +289,10 @@ def _growth(
 def _totals(source: LineSource, over: Mapping[str, Floats], *, is_identified: bool) -> Floats:
     """K_0 + K_1 at points, NaN where there is none. [N]."""
     rest = _value(source, _REST, over, "flag")
-    if not is_identified:
-        return np.asarray(rest.value + _value(source, _SPRING, over, "flag").value)
-    measured = {name: _value(source, name, over, "flag") for name in (_APPARENT, _ENERGY)}
-    return np.asarray(rest.value + _identified(rest, measured, over).dissipation_spring_constant)
+    if is_identified:
+        measured = {name: _value(source, name, over, "flag") for name in (_APPARENT, _ENERGY)}
+        spring = _identified(rest, measured, over).dissipation_spring_constant
+    else:
+        spring = _value(source, _SPRING, over, "flag").value
+    # a K_0 that is not trusted says nothing of the growth
+    return np.where(rest.is_inside, rest.value + spring, np.nan)

@@ -154,6 +154,7 @@ def test_the_traps_are_what_they_are_said_to_be(tmp_path):
     write(tmp_path, files)
     assert at_rest(tmp_path, [1.7])[0] == pytest.approx(float(rows[-1].split()[1]), rel=1e-6)
     # a table beside a dynamic stiffness is replaced by the secant of its last row
+    (step,) = (row[0] for row in moordyn_sections(files[""])["OPTIONS"] if row[1] == "dtM")
     end = np.array(rows[-1].split(), dtype=float)
     write(
         tmp_path,
@@ -162,6 +163,8 @@ def test_the_traps_are_what_they_are_said_to_be(tmp_path):
             "": files[""]
             .replace(" deck_table.txt ", " deck_table.txt|50000 ")
             .replace(" -1 0 ", " 1000|10 0 ")
+            # the step of the deck is that of its table, and 50 kN ask for a tenth of it
+            .replace(f"{step} dtM", "0.0005 dtM")
         },
     )
     assert at_rest(tmp_path, [0.3])[0] == pytest.approx(0.3 * end[1] / end[0], rel=1e-6)

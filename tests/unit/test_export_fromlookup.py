@@ -1,10 +1,14 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from export_sources import LEVELS, source
 
 from reduction.errors import DataError, SettingsError
 from reduction.export.fromlookup import line_from_lookup
-from reduction.lookup.product import LineCurve
+from reduction.export.start import siblings_of
+from reduction.export.thin import curve_from_zero
+from reduction.lookup.product import LineCurve, LineSource
 
 
 def test_strain_over_tension_becomes_tension_over_strain():
@@ -116,3 +120,81 @@ def test_a_joint_that_stands_twice_is_one_point_and_one_branch_need_not_be_asked
     assert "ascending branch" in found.curve
     with pytest.raises(SettingsError, match="differs by branch"):
         line_from_lookup(source(curves=(twice,)), branch="descending")
+
+
+@pytest.mark.parametrize(("constant", "join", "doubt"), [(0.004, 40.0, False), (0.04, 200.0, True)])
+def test_the_constant_of_a_regression_is_no_slack(constant, join, doubt):
+    """Strain of A + 1e-4 T: twice A at A / 1e-4 N, or a twentieth of 4,000 N before that."""
+    pull = LineCurve("strain", "tension", 0.0, 4000.0, coefficient=np.array([constant, 1e-4]))
+    found = line_from_lookup(source(curves=(pull,)))
+    assert found.tension[0] == pytest.approx(join)
+    assert found.strain[0] == pytest.approx(constant + 1e-4 * join)
+    assert found.tested == pytest.approx((constant + 1e-4 * join, constant + 0.4))
+    (said,) = (note for note in found.notes if "constant of its fit" in note)
+    assert said.startswith("DOUBTFUL") == doubt
+    assert f"{100 * constant:.2g} m in 100 m" in said
+    at, load, _ = curve_from_zero(found.strain, found.tension)
+    assert load[1] > 0
+    assert at[1] == found.strain[0]
+
+
+def test_a_slack_that_was_measured_stays():
+    slack = LineCurve(
+        "tension", "strain", 0.0, 1.0, at=np.array([0.1, 0.2, 1.0]), value=np.array([0.0, 3.0, 9.0])
+    )
+    found = line_from_lookup(source(curves=(slack,)))
+    np.testing.assert_array_equal(found.strain, [0.1, 0.2, 1.0])
+
+
+def test_the_curve_ends_where_its_slope_is_not_trusted():
+    pull = LineCurve("strain", "tension", 0.0, 4000.0, coefficient=np.array([0, 1e-4, -1e-8]))
+    rest = LineCurve(
+        "quasi_static_spring_constant", "mean_tension", 0.0, 2500.0,
+        coefficient=pull.coefficient, is_inverse_slope=True, range_note="trusted to 2500 N",
+    )  # fmt: skip
+    found = line_from_lookup(source(curves=(pull, rest)))
+    assert found.tension[-1] == pytest.approx(2500.0)
+    assert found.tested[1] == pytest.approx(1e-4 * 2500 - 1e-8 * 2500**2)
+    assert "trusted to 2500 N" in found.notes
+
+
+def test_the_strength_is_that_of_the_line_as_it_is():
+    assert line_from_lookup(source()).rated_break_strength == 28e3
+    old = replace(source(), tensile_strength=12e3)
+    found = line_from_lookup(old)
+    assert found.rated_break_strength == 12e3
+    assert "new it was rated 28000 N" in found.notes[-1]
+    assert line_from_lookup(old, rated_break_strength=9e3).rated_break_strength == 9e3
+    other = line_from_lookup(replace(source(), strength_of="the 1 in line"))
+    assert np.isnan(other.rated_break_strength)
+    assert "of the 1 in line" in other.notes[-1]
+
+
+def tether(name, at, value, **changed):
+    curve = LineCurve(
+        "branch_tension", "strain", at[0], at[-1], at=np.array(at), value=np.array(value),
+        branch="ascending",
+    )  # fmt: skip
+    one = LineSource(name, "a report", "rubber", "tether", "new", 0.026, 3e3, curves=(curve,))
+    return replace(one, kind="rubber tether", **changed)
+
+
+def test_the_straight_start_is_held_against_other_tests_of_the_tether():
+    """From 0 0 to 552 N at 1.72 it has 192.6 N at 0.6, where another test has 276 N: 30 % less."""
+    line = tether("T-5", [1.72, 2.19], [552.0, 800.0])
+    others = [
+        line,
+        tether("T-2", [0.6, 1.2, 1.8], [276.0, 565.0, 600.0]),
+        tether("T-3", [1.0, 1.7], [321.0, 546.0]),
+        tether("T-4", [1.8, 2.0], [560.0, 700.0]),
+        tether("U-2", [0.6, 1.2], [100.0, 200.0], condition="used"),
+    ]
+    siblings = siblings_of(line, others)
+    assert [one.name for one in siblings] == ["T-2", "T-3", "T-4"]
+    notes = line_from_lookup(line, siblings=siblings).notes
+    assert len(notes) == 2
+    # 552 / 1.72 * 1.2 is 385 N
+    assert notes[0].startswith("DOUBTFUL: the straight start is off by -32 percent at strain 1.2")
+    assert "T-2 has 565 N" in notes[0]
+    assert notes[1].startswith("the straight start is off by -0 percent")
+    assert siblings_of(source(), others) == ()
