@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from reduction.archive.linecurves import curves_of_specimen
 from reduction.archive.surface_read import surface_names, surfaces_of
 from reduction.errors import ArchiveError
-from reduction.lookup.line import Branch
-from reduction.lookup.product import LineCurve, LineSource, LineSurface
+from reduction.lookup.product import LineSource, LineSurface
 from reduction.record import Floats
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.terms import model_matrix
@@ -19,7 +19,6 @@ from reduction.surface.variance import variance_factor
 from reduction.vocabulary import RESPONSES, quantity
 
 __all__ = [
-    "CURVES",
     "Facts",
     "facts_of_specimens",
     "line_of_experiment",
@@ -29,13 +28,6 @@ __all__ = [
 
 _SCALES = ("log_", "box_cox_", "")
 """A surface on a scale that was asked for stands before the one of the quantity itself."""
-_OVER_STRAIN = ("tangent_modulus", "branch_tension")
-_OVER_TENSION = {
-    "quasi_static_spring_constant": ("quasi_static_spring_constant", "mean_tension"),
-    "quasi_static_strain": ("strain", "tension"),
-}
-CURVES = (*_OVER_STRAIN, *_OVER_TENSION)
-"""Variables of a reduced test that are looked up as curves."""
 _TEXTS = {
     "kind": "specimen_kind",
     "material": "specimen_material",
@@ -147,6 +139,10 @@ def _surface(
     runs = model_matrix(fitted.coded[used], fitted.exponents)
     n_terms = len(fitted.exponents)
     notes = [] if name == response else [f"from the surface of {name}, brought back"]
+    notes.append(
+        "the intervals are of the scatter of the runs: what all runs share, as the load cell, is "
+        "in the uncertainty of the coefficients alone"
+    )
     if not np.isfinite(fitted.coefficient[index]).all():
         notes.append("the surface was refused")
     return LineSurface(
@@ -219,15 +215,7 @@ def line_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
         )
     place = known.index(specimen)
     strength = "rated_break_strength"
-    curves = (
-        *(
-            curve
-            for name in _OVER_STRAIN
-            if name in dataset
-            for curve in _branches(dataset, name, place)
-        ),
-        *_of_pull(dataset, place),
-    )
+    curves = curves_of_specimen(dataset, place)
     if not curves:
         raise ArchiveError(
             f"the archive of test {dataset.attrs.get('test', '')} has no curve",
@@ -244,67 +232,6 @@ def line_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
         notes=_synthetic(dataset),
         **_facts(dataset, place),
     )
-
-
-def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
-    spread, counted = f"{name}_standard_uncertainty", "tangent_modulus_count"
-    strain = dataset["strain_bin"].values
-    curves = []
-    branches: tuple[Branch, Branch] = ("ascending", "descending")
-    for index, branch in enumerate(branches):
-        value = dataset[name].values[place, index]
-        seen = np.isfinite(value)
-        if seen.sum() < 2:
-            continue
-        at = strain[seen]
-        # bins without a cycle between two that have one are not known
-        missing = np.flatnonzero(np.diff(np.flatnonzero(seen)) > 1)
-        curves.append(
-            LineCurve(
-                quantity=name,
-                variable="strain",
-                low=float(at[0]),
-                high=float(at[-1]),
-                at=np.array(at),
-                value=np.array(value[seen]),
-                standard_uncertainty=np.array(dataset[spread].values[place, index][seen])
-                if spread in dataset
-                else np.empty(0),
-                count=np.array(dataset[counted].values[place, index][seen], dtype=np.float64)
-                if counted in dataset
-                else np.empty(0),
-                spread_of="the mean over the cycles of this one test",
-                gaps=np.stack([at[missing], at[missing + 1]], axis=1),
-                branch=branch,
-                notes=(f"{missing.size} gaps between bins were not measured",)
-                if missing.size
-                else (),
-            )
-        )
-    return curves
-
-
-def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
-    """K_0 and strain of a slow pull, by its cubic, over its range of use."""
-    if "pull_strain_coefficient" not in dataset:
-        return []
-    coefficient = np.array(dataset["pull_strain_coefficient"].values[place])
-    if not np.isfinite(coefficient).all():
-        return []
-    return [
-        LineCurve(
-            quantity=name,
-            variable=variable,
-            low=float(dataset["pull_tension_low"].values[place]),
-            high=float(dataset["pull_tension_high"].values[place]),
-            coefficient=coefficient,
-            is_inverse_slope=name != "strain",
-            at=np.array(dataset["tension_grid"].values),
-            standard_uncertainty=np.array(dataset[f"{stored}_standard_uncertainty"].values[place]),
-            spread_of="the curve of this one pull",
-        )
-        for stored, (name, variable) in _OVER_TENSION.items()
-    ]
 
 
 def _synthetic(dataset: xr.Dataset) -> tuple[str, ...]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from reduction.archive.linecurves import CURVES
 from reduction.archive.linesource import (
-    CURVES,
     Facts,
     facts_of_specimens,
     line_of_experiment,

@@ -56,7 +56,7 @@ def values_of_curve(
 
     Notes
     -----
-    The interval is Student's, with one less than the count of cycles at the point.
+    The interval is Student's; between points its factor is on a straight line.
 
     Examples
     --------
@@ -119,10 +119,10 @@ def values_of_curve(
 
 def _factor(curve: LineCurve, at: Floats) -> Floats:
     """Half width of a 95 % interval over the standard uncertainty."""
-    if not curve.count.size:
+    if not curve.degrees_of_freedom.size:
         return np.asarray(stdtrit(np.inf, _BOTH_SIDES))
-    freedom = np.maximum(np.interp(at, curve.at, curve.count) - 1, 1)
-    return np.asarray(stdtrit(freedom, _BOTH_SIDES))
+    factors = stdtrit(np.maximum(curve.degrees_of_freedom, 1.0), _BOTH_SIDES)
+    return np.interp(at, curve.at, factors)
 
 
 def _joints(curve: LineCurve, at: Floats) -> list[str]:

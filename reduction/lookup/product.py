@@ -125,8 +125,8 @@ class LineCurve:
         Points, rising; straight lines between them. [SI]
     standard_uncertainty : ndarray, shape (n_points,)
         At the points, of a polynomial too; empty where not known. [SI]
-    count : ndarray, shape (n_points,)
-        Cycles that the uncertainty is of; empty where it is of no count. [1]
+    degrees_of_freedom : ndarray, shape (n_points,)
+        Of the uncertainty; empty where they are many, or not known. [1]
     spread_of : str
         What the uncertainty is of, in words: there is none between tests in it.
     gaps : ndarray, shape (n_gaps, 2)
@@ -149,7 +149,7 @@ class LineCurve:
     at: Floats = field(default_factory=lambda: np.empty(0))
     value: Floats = field(default_factory=lambda: np.empty(0))
     standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
-    count: Floats = field(default_factory=lambda: np.empty(0))
+    degrees_of_freedom: Floats = field(default_factory=lambda: np.empty(0))
     spread_of: str = ""
     gaps: Floats = field(default_factory=lambda: np.empty((0, 2)))
     range_note: str = ""

@@ -3,7 +3,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import stats
 
+from reduction.archive.linecurves import CURVES
 from reduction.archive.linesource import line_of_experiment, line_of_test, specimens_of
 from reduction.archive.open import open_archive
 from reduction.archive.surface_read import surfaces_of
@@ -206,3 +208,48 @@ def test_a_pull_that_was_refused_and_a_test_without_a_curve_give_no_line(folder)
             ArchiveError, match="has no curve; needed a cyclic test, or a slow pull"
         ):
             line_of_test(one, name)
+
+
+def test_an_archive_without_a_curve_is_refused_by_its_name(folder, tmp_path):
+    with open_archive(folder / "R01.nc") as archive:
+        bare = archive.load().drop_vars(list(CURVES), errors="ignore")
+    path = tmp_path / "bare.nc"
+    bare.to_netcdf(path, engine="netcdf4")
+    with pytest.raises(ArchiveError, match=r"nothing that can be looked up; found .*bare\.nc"):
+        lines_of(str(path))
+
+
+def test_bins_without_a_cycle_between_others_are_no_part_of_the_range(folder):
+    with open_archive(folder / "R01.nc") as archive:
+        test = archive.load().copy(deep=True)
+    name = str(test["specimen"].to_numpy()[0])
+    at = test["strain_bin"].to_numpy()
+    seen = np.flatnonzero(np.isfinite(test["tangent_modulus"].to_numpy()[0, 0]))
+    test["tangent_modulus"][0, 0, seen[2:5]] = np.nan
+    line = line_of_test(test, name)
+    with pytest.raises(DataError, match="nothing between"):
+        look_up(line, "tangent_modulus", strain=at[seen[3]], branch="ascending")
+    ends = at[seen[[1, 5]]]
+    assert look_up(line, "tangent_modulus", strain=ends, branch="ascending").is_inside.all()
+    flagged = look_up(
+        line, "tangent_modulus", strain=at[seen[3]], branch="ascending", extrapolate="flag"
+    )
+    assert not flagged.is_inside
+    assert "gaps between bins, where nothing was measured: 1" in flagged.notes
+
+
+def test_the_interval_of_a_curve_is_students_over_its_cycles(folder):
+    with open_archive(folder / "R01.nc") as archive:
+        test = archive.load()
+    line = line_of_test(test, str(test["specimen"].to_numpy()[0]))
+    place = np.flatnonzero(np.isfinite(test["tangent_modulus"].to_numpy()[0, 0]))[3]
+    count = int(test["tangent_modulus_count"].to_numpy()[0, 0, place])
+    spread = float(test["tangent_modulus_standard_uncertainty"].to_numpy()[0, 0, place])
+    at = float(test["strain_bin"].to_numpy()[place])
+    found = look_up(line, "tangent_modulus", strain=at, branch="ascending")
+    random = test["tangent_modulus_random_standard_uncertainty"].to_numpy()[0, 0, place]
+    # Welch and Satterthwaite: the load cell does not scatter
+    half = stats.t.ppf(0.975, (count - 1) * (spread / random) ** 4) * spread
+    assert found.surface_high - found.value == pytest.approx(half, rel=1e-9)
+    assert np.isnan(found.high)
+    assert found.surface_interval_of == "the mean over the cycles of this one test"

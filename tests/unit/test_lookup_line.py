@@ -174,7 +174,7 @@ def test_a_curve_of_one_test_has_students_interval_of_its_cycles_and_no_other():
     measured = LineCurve(
         "tangent_modulus", "strain", 0.0, 2.0, at=np.array([0.0, 1.0, 2.0]),
         value=np.array([1e6, 2e6, 3e6]), standard_uncertainty=np.full(3, 1e4),
-        count=np.array([6.0, 6.0, 6.0]), spread_of="the mean over the cycles of this one test",
+        degrees_of_freedom=np.full(3, 5.0), spread_of="the mean over the cycles of this one test",
     )  # fmt: skip
     found = look_up(replace(LINE, curves=(measured,)), "tangent_modulus", strain=1.5)
     assert found.surface_high - found.value == pytest.approx(2.570582 * 1e4, rel=1e-6)

@@ -1,0 +1,121 @@
+"""Curves of a reduced test as they are looked up: moduli and tensions over strain, slow pulls."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from reduction.lookup.line import Branch
+from reduction.lookup.product import LineCurve
+from reduction.record import Floats
+
+__all__ = ["CURVES", "curves_of_specimen"]
+
+_OVER_STRAIN = ("tangent_modulus", "branch_tension")
+_OVER_TENSION = {
+    "quasi_static_spring_constant": ("quasi_static_spring_constant", "mean_tension"),
+    "quasi_static_strain": ("strain", "tension"),
+}
+CURVES = (*_OVER_STRAIN, *_OVER_TENSION)
+"""Variables of a reduced test that are looked up as curves."""
+
+
+def curves_of_specimen(dataset: xr.Dataset, place: int) -> tuple[LineCurve, ...]:
+    """Curves of one specimen of a reduced test.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An archive of a reduced test.
+    place : int
+        Of the specimen.
+
+    Returns
+    -------
+    curves : tuple of LineCurve
+        None where the test has none.
+    """
+    return (
+        *(
+            curve
+            for name in _OVER_STRAIN
+            if name in dataset
+            for curve in _branches(dataset, name, place)
+        ),
+        *_of_pull(dataset, place),
+    )
+
+
+def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
+    spread = f"{name}_standard_uncertainty"
+    strain = dataset["strain_bin"].values
+    curves = []
+    branches: tuple[Branch, Branch] = ("ascending", "descending")
+    for index, branch in enumerate(branches):
+        value = dataset[name].values[place, index]
+        seen = np.isfinite(value)
+        if seen.sum() < 2:
+            continue
+        at = strain[seen]
+        # bins without a cycle between two that have one are not known
+        missing = np.flatnonzero(np.diff(np.flatnonzero(seen)) > 1)
+        curves.append(
+            LineCurve(
+                quantity=name,
+                variable="strain",
+                low=float(at[0]),
+                high=float(at[-1]),
+                at=np.array(at),
+                value=np.array(value[seen]),
+                standard_uncertainty=np.array(dataset[spread].values[place, index][seen])
+                if spread in dataset
+                else np.empty(0),
+                degrees_of_freedom=_freedom(dataset, name, (place, index))[seen]
+                if spread in dataset
+                else np.empty(0),
+                spread_of="the mean over the cycles of this one test",
+                gaps=np.stack([at[missing], at[missing + 1]], axis=1),
+                branch=branch,
+                notes=(f"gaps between bins, where nothing was measured: {missing.size}",)
+                if missing.size
+                else (),
+            )
+        )
+    return curves
+
+
+def _freedom(dataset: xr.Dataset, name: str, place: tuple[int, int]) -> Floats:
+    """Of Welch and Satterthwaite: cycles less one, and many for what does not scatter."""
+    spread = np.asarray(dataset[f"{name}_standard_uncertainty"].values[place], dtype=np.float64)
+    stored, counted = f"{name}_random_standard_uncertainty", "tangent_modulus_count"
+    if counted not in dataset:
+        return np.full(spread.shape, np.inf)
+    cycles = np.maximum(np.asarray(dataset[counted].values[place], dtype=np.float64) - 1, 1.0)
+    if stored not in dataset:
+        return cycles
+    random = np.asarray(dataset[stored].values[place], dtype=np.float64)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(random > 0, cycles * (spread / random) ** 4, np.inf)
+
+
+def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
+    """K_0 and strain of a slow pull, by its cubic, over its range of use."""
+    if "pull_strain_coefficient" not in dataset:
+        return []
+    coefficient = np.array(dataset["pull_strain_coefficient"].values[place])
+    if not np.isfinite(coefficient).all():
+        return []
+    return [
+        LineCurve(
+            quantity=name,
+            variable=variable,
+            low=float(dataset["pull_tension_low"].values[place]),
+            high=float(dataset["pull_tension_high"].values[place]),
+            coefficient=coefficient,
+            is_inverse_slope=name != "strain",
+            at=np.array(dataset["tension_grid"].values),
+            standard_uncertainty=np.array(dataset[f"{stored}_standard_uncertainty"].values[place]),
+            spread_of="the curve of this one pull",
+        )
+        for stored, (name, variable) in _OVER_TENSION.items()
+    ]
