@@ -62,13 +62,13 @@ def splices(tension: np.ndarray) -> np.ndarray:
 
 
 def true_state(time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Strain and tension: a slow rise from slack, then ten triangular cycles and half of one."""
+    """Strain and tension: a slow rise from slack, a hold, ten triangular cycles and half of one."""
     start = 20.0
     turn = (time - start) * FREQUENCY
     phase = np.mod(turn, 1.0)
     stroke = np.where(phase < 0.5, 2 * phase, 2 - 2 * phase)
     cycling = LOW + (HIGH - LOW) * stroke
-    strain = np.where(time < start, LOW * np.clip((time - 2) / (start - 4), 0, 1), cycling)
+    strain = np.where(time < start, LOW * np.clip((time - 2) / (start - 12), 0, 1), cycling)
     way = np.where(phase < 0.5, 1.0, -1.0) * (time >= start)
     return strain, np.where(strain > 0, middle(strain) * np.minimum(strain / 0.3, 1), 0) + way * (
         side(strain) * (time >= start)

@@ -23,6 +23,7 @@ __all__ = ["find_segments"]
 
 _REACHED = 0.9  # of the cycles: a bin that fewer reach has the mean tension of those few
 _FEWEST_BINS = 6  # two shortest segments
+_FEWEST_CYCLES = 4  # with a curve of their own, for a scatter
 
 
 def _choose(lines: tuple[PiecewiseLine, ...], n_points: int) -> PiecewiseLine:
@@ -72,8 +73,10 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     grid the mean of a few cycles stands beside the mean of all, and a line would follow
     the step between them.
 
-    The uncertainty is type A: that of the tangent modulus, root mean square over the
-    segment, over the root of the windows that fit in it.  It is that of the chord of the line.
+    The uncertainty is type A and of the chord of the line: the scatter from cycle to cycle of
+    the mean tangent modulus over the segment, over the root of the cycles.  Where fewer than
+    four cycles have a curve of their own it is that of the tangent modulus, root mean square
+    over the segment, over the root of the windows that fit in it.
     How far the branch is from the line stands beside it as ``segment_misfit`` (root mean
     square): who takes the segment for the curve adds what that means to him.
 
@@ -89,7 +92,8 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     >>> blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((1, 2, 20)))
     >>> curves = ModulusCurves(
     ...     **blank | {"strain_bin": x, "branch_tension": load, "window": 0.3,
-    ...     "tangent_modulus_count": np.full((1, 2, 20), 10)}
+    ...     "tangent_modulus_count": np.full((1, 2, 20), 10),
+    ...     "tangent_modulus_by_cycle": np.empty((1, 0, 2, 20))}
     ... )
     >>> segments = find_segments(curves, area=[1e-4], settings=ModulusSettings())
     >>> print((segments.segment_modulus[0, 0] / 1e6).round(6))
@@ -151,14 +155,28 @@ def _segment_columns(
     low, high = line.knot[:-1], line.knot[1:]
     modulus = np.diff(line.ordinate) / (area * (high - low))
     distance = tension - np.interp(strain, line.knot, line.ordinate)
-    variance = curves.tangent_modulus_standard_uncertainty[at][used] ** 2
     uncertainty, misfit = [], []
     for start, stop in zip(low, high, strict=True):
         inside = (strain >= start) & (strain <= stop)
         misfit.append(np.sqrt(np.mean(distance[inside] ** 2)))
-        regression = variance[inside & np.isfinite(variance)]
-        windows = max((stop - start) / curves.window, 1.0)
-        spread = np.sqrt(regression.mean() / windows) if regression.size else np.nan
-        uncertainty.append(spread)
+        uncertainty.append(
+            _spread(curves, at, used, inside, windows=(stop - start) / curves.window)
+        )
     rows = [modulus, uncertainty, low, high, line.ordinate[:-1], line.ordinate[1:], misfit]
     return np.array(rows, dtype=np.float64)
+
+
+def _spread(
+    curves: ModulusCurves, at: tuple[int, ...], used: Bools, inside: Bools, *, windows: float
+) -> float:
+    """Standard uncertainty of the mean modulus over the bins of a segment."""
+    of_cycles = curves.tangent_modulus_by_cycle[at[0], :, at[1]][:, used][:, inside]
+    seen = np.isfinite(of_cycles)
+    whole = seen.mean(axis=1) >= _REACHED if seen.size else np.zeros(0, dtype=bool)
+    if np.count_nonzero(whole) >= _FEWEST_CYCLES:
+        means = np.nanmean(of_cycles[whole], axis=1)
+        count = float(curves.tangent_modulus_count[at][used][inside].max())
+        return float(np.std(means, ddof=1) / np.sqrt(max(count, 1.0)))
+    variance = curves.tangent_modulus_standard_uncertainty[at][used][inside] ** 2
+    known = variance[np.isfinite(variance)]
+    return float(np.sqrt(known.mean() / max(windows, 1.0))) if known.size else float("nan")

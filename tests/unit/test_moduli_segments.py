@@ -26,6 +26,7 @@ def curves_of(tension, *, uncertainty=0.1, count=10, modulus_uncertainty=100.0):
             "branch_tension_standard_uncertainty": np.full(tension.shape, uncertainty),
             "tangent_modulus_count": np.full(tension.shape, count),
             "tangent_modulus_standard_uncertainty": np.full(tension.shape, modulus_uncertainty),
+            "tangent_modulus_by_cycle": np.empty((1, 0, 2, X.size)),
         }
     )
 
@@ -133,6 +134,25 @@ def test_uncertainty_is_that_of_the_windows_in_the_segment():
     assert segments.segment_modulus_standard_uncertainty[0, 0, 0] == pytest.approx(
         100 / np.sqrt(0.44 / 0.09)
     )
+
+
+def test_uncertainty_is_the_scatter_of_the_cycles_where_they_have_curves():
+    # ten cycles whose stiffness differs as a whole, and noise from bin to bin within each
+    rng = np.random.default_rng(3)
+    stiff = rng.normal(1e6, 2e4, 10)
+    noise = rng.normal(0, 1e5, (1, 10, 2, X.size))
+    by_cycle = stiff[None, :, None, None] + noise - noise.mean(axis=-1, keepdims=True)
+    curves = replace(curves_of(200 * X), tangent_modulus_by_cycle=by_cycle)
+    found = segments_of(curves).segment_modulus_standard_uncertainty[0, 0, 0]
+    assert found == pytest.approx(np.std(stiff, ddof=1) / np.sqrt(10))
+
+
+def test_kept_cycles_of_a_long_test_speak_for_all_of_them():
+    stiff = np.array([1.0, 1.1, 0.9, 1.05, 0.95]) * 1e6
+    by_cycle = np.broadcast_to(stiff[None, :, None, None], (1, 5, 2, X.size))
+    curves = replace(curves_of(200 * X, count=400), tangent_modulus_by_cycle=by_cycle)
+    found = segments_of(curves).segment_modulus_standard_uncertainty[0, 0, 0]
+    assert found == pytest.approx(np.std(stiff, ddof=1) / 20)
 
 
 def test_areas_that_do_not_pair_up_are_refused():
