@@ -63,6 +63,7 @@ def _ratio(strain: Floats, above: _Side, below: _Side) -> Ratio:
         ratio_high=high,
         is_different=(low > 1) | (high < 1),
         notes=tuple(notes),
+        degrees_of_freedom=freedom,
     )
 
 

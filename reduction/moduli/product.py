@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from reduction.record import Bools, Floats, Integers, freeze_arrays
 
 __all__ = [
@@ -229,7 +231,8 @@ class Slips:
 class Ratio:
     """Ratio of two specimens' (or two tests') modulus on one strain axis.
 
-    Arrays have shape (2, n_bins); the interval holds 95 %.
+    Arrays have shape (2, n_bins); the interval holds 95 %, by the ``degrees_of_freedom`` of the
+    standard uncertainty. ``notes`` begin with what is in the interval.
     """
 
     numerator: str
@@ -241,6 +244,7 @@ class Ratio:
     ratio_high: Floats
     is_different: Bools
     notes: tuple[str, ...] = ()
+    degrees_of_freedom: Floats = field(default_factory=lambda: np.array(np.inf))
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
