@@ -29,7 +29,7 @@ from reduction.phases.standstill import Standstills
 from reduction.provenance import Source, Step
 from reduction.record import Floats, Integers, Record, Specimen
 from reduction.strain.model import StrainModel
-from reduction.uncertainty.product import Contributions
+from reduction.uncertainty.product import Contributions, LineSpread
 
 __all__ = ["History", "ReducedTest", "TestDescription"]
 
@@ -86,7 +86,8 @@ class ReducedTest:
     None (or empty); `notes` are the quality notes a reader must see,
     `stage_lines` the lines of the history, `settings_json` every setting that was in force.
     ``line`` has one entry a cycle and ``line_of_test`` one a specimen, from the means over the
-    cycles, with ``quasi_static_standard_uncertainty`` [N] of the K_0 that both used; ``pulls``
+    cycles, with ``quasi_static_standard_uncertainty`` [N] of the K_0 that both used and, in
+    ``line_spread``, what random and shared errors together make of it; ``pulls``
     is what a slow pull gave, None for a specimen of which it gave nothing; ``rope_step`` is
     what the test gave as a step of a rope laboratory's programme.  Every uncertainty here is
     random (type A); ``contributions`` holds what errors that samples share add to curves,
@@ -132,6 +133,7 @@ class ReducedTest:
     line_of_test: LineParameters | None = None
     quasi_static_standard_uncertainty: Floats | None = None
     line_notes: tuple[str, ...] = ()
+    line_spread: LineSpread | None = None
     pulls: tuple[SlowPull | None, ...] = ()
     rope_step: RopeStep | None = None
     contributions: Contributions | None = None

@@ -15,7 +15,12 @@ from reduction.archive.curves import (
     stress_at_strain_values,
 )
 from reduction.archive.holds import hold_values, standstill_values
-from reduction.archive.line import line_values, pull_values, random_of_line
+from reduction.archive.line import (
+    line_values,
+    pull_values,
+    random_of_line,
+    spread_of_line_values,
+)
 from reduction.archive.notes import note_values
 from reduction.archive.per_cycle import (
     amplitude_values,
@@ -119,9 +124,12 @@ def _all_values(test: ReducedTest) -> Values:
     for name in ("slack_strain_at_unloading", "slack_strain_at_unloading_standard_uncertainty"):
         if getattr(test, name) is not None:
             values[name] = getattr(test, name)
-    return with_shared(
+    values = with_shared(
         values,
         test.contributions,
         test.shared_uncertainty_of_cycles,
         {} if test.line_of_test is None else random_of_line(test.line_of_test),
     )
+    if test.line_of_test is not None and test.line_spread is not None:
+        values |= spread_of_line_values(test.line_spread, values)
+    return values

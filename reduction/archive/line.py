@@ -8,7 +8,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.archive.reasons import AXIS, BOUND, SETTING, SPREAD, STATED
+from reduction.archive.reasons import AXIS, BOUND, PART, SETTING, SPREAD, STATED
 from reduction.archive.values import Values, texts
 from reduction.archive.variable import Variable, count, flag, label, measured, stated
 from reduction.line.product import LineParameters, SlowPull
@@ -18,8 +18,16 @@ from reduction.line.quasistatic import (
     strain_at_tension,
 )
 from reduction.record import Floats, Specimen
+from reduction.uncertainty.product import LINE_METHODS, LineSpread
 
-__all__ = ["LINE_REFUSALS", "LINE_ROWS", "line_values", "pull_values", "random_of_line"]
+__all__ = [
+    "LINE_REFUSALS",
+    "LINE_ROWS",
+    "line_values",
+    "pull_values",
+    "random_of_line",
+    "spread_of_line_values",
+]
 
 LINE_REFUSALS = {
     "given": 0,
@@ -49,6 +57,11 @@ LINE_ROWS: tuple[Variable, ...] = tuple(
         chain.from_iterable(measured(f"test_{name}", _S) for name in _LINE),
         stated("test_line_conditioning", _S, "a sensitivity"),
         flag("test_line_refusal", _S, LINE_REFUSALS),
+        flag("test_line_uncertainty_method", _S, LINE_METHODS),
+        stated("test_line_without_solution_share", _S, PART),
+        chain.from_iterable(
+            stated(f"test_{name}_{end}", _S, BOUND) for name in _LINE for end in ("low", "high")
+        ),
         stated("tension_grid", ("tension_grid",), AXIS),
         measured("quasi_static_spring_constant", _T),
         measured("quasi_static_strain", _T),
@@ -94,6 +107,21 @@ def random_of_line(test: LineParameters) -> Values:
     names = {f"test_{name}": test.random_uncertainty[name] for name in _LINE}
     constant = test.quasi_static_spring_constant
     return names | {"test_quasi_static_spring_constant": np.where(np.isnan(constant), np.nan, 0.0)}
+
+
+def spread_of_line_values(spread: LineSpread, values: Values) -> Values:
+    """Return interval and method of the line of a test, and its uncertainty where drawn."""
+    found: Values = {
+        "test_line_uncertainty_method": spread.method,
+        "test_line_without_solution_share": spread.without_solution_share,
+    }
+    drawn = spread.method == LINE_METHODS["monte_carlo"]
+    for name in _LINE:
+        key = f"test_{name}_standard_uncertainty"
+        found[key] = np.where(drawn, spread.standard_uncertainty[name], values[key])
+        found[f"test_{name}_low"] = spread.low[name]
+        found[f"test_{name}_high"] = spread.high[name]
+    return found
 
 
 def pull_values(pulls: tuple[SlowPull | None, ...], specimens: tuple[Specimen, ...]) -> Values:

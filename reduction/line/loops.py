@@ -19,6 +19,7 @@ from reduction.cycles.product import Loops
 from reduction.errors import DataError
 from reduction.line.identify import identify_by_amplitude, identify_by_fundamental
 from reduction.line.product import LineParameters
+from reduction.line.scatter import relative_deviations
 from reduction.line.sensitivity import (
     AMPLITUDE_INPUTS,
     FUNDAMENTAL_INPUTS,
@@ -255,11 +256,9 @@ def identify_run(
             needed="at least one cycle after it",
         )
     names = FUNDAMENTAL_INPUTS if reading == "fundamental" else AMPLITUDE_INPUTS
-    cycles = np.stack([getattr(loops, name)[:, break_in_cycles:] for name in names[:-1]])
-    whole = np.isfinite(cycles).all(axis=0)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        means = np.where(whole, cycles, 0.0).sum(axis=-1) / whole.sum(axis=-1)
-        deviations = np.where(whole, cycles, np.nan) / means[..., None] - 1
+    means, deviations = relative_deviations(
+        loops, names[:-1], break_in_cycles=break_in_cycles
+    )
     values = dict(zip(names[:-1], means, strict=True))
     stated = {"quasi_static_spring_constant": u_rest}
     if reading == "fundamental":

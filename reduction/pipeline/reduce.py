@@ -24,6 +24,7 @@ from reduction.moduli.slack import slack_strain_at_unloading
 from reduction.moduli.stepwise import reduce_stepwise
 from reduction.phases.standstill import Standstills
 from reduction.pipeline.cyclic import parts_of_cycles
+from reduction.pipeline.linespread import with_line_spread
 from reduction.pipeline.loading import parts_of_first_loading
 from reduction.pipeline.locate import HELD, PULLED, Located
 from reduction.pipeline.plausibility import plausibility_notes
@@ -176,15 +177,17 @@ def reduce_test(
         ),
         **parts,
     )
-    if not instruments:
-        return test
-    return replace(
-        test,
-        contributions=contributions_of_test(test, instruments, cycles=settings.cycles, pulls=pulls),
-        shared_uncertainty_of_cycles=shared_uncertainty_of_cycles(
-            test, instruments, cycles=settings.cycles
-        ),
-    )
+    if instruments:
+        test = replace(
+            test,
+            contributions=contributions_of_test(
+                test, instruments, cycles=settings.cycles, pulls=pulls
+            ),
+            shared_uncertainty_of_cycles=shared_uncertainty_of_cycles(
+                test, instruments, cycles=settings.cycles
+            ),
+        )
+    return with_line_spread(test, settings.cycles)
 
 
 def reduce_stepwise_test(

@@ -33,6 +33,13 @@ _LINE = (
     "test_dashpot_coefficient",
     "test_line_conditioning",
     "test_line_refusal",
+    "test_line_uncertainty_method",
+    "test_line_without_solution_share",
+    *(
+        f"test_{name}_{end}"
+        for name in ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
+        for end in ("low", "high")
+    ),
 )
 _AMPLITUDE = tuple(
     name

@@ -20,9 +20,12 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from reduction.errors import SettingsError
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, Integers, freeze_arrays
 
-__all__ = ["Component", "Contributions", "InstrumentErrors"]
+__all__ = ["LINE_METHODS", "Component", "Contributions", "InstrumentErrors", "LineSpread"]
+
+LINE_METHODS = {"not_given": 0, "linear": 1, "monte_carlo": 2}
+"""How the uncertainty of a line was found, by its code in `LineSpread`."""
 
 
 @dataclass(frozen=True)
@@ -138,3 +141,28 @@ class Contributions:
     def shared_standard_uncertainty(self, name: str) -> Floats:
         """Root of the sum of squares over the components, in the shape of the quantity."""
         return np.asarray(np.sqrt(np.sum(self.values[name] ** 2, axis=0)))
+
+
+@dataclass(frozen=True)
+class LineSpread:
+    """Uncertainty and 95 % interval of K_1, tau and N of a test, and how they were found.
+
+    Parameters
+    ----------
+    method : ndarray of int, shape (n_specimens,)
+        Of `LINE_METHODS`: linear where Monte Carlo agrees within 5 %, else Monte Carlo. [1]
+    without_solution_share : ndarray, shape (n_specimens,)
+        Of the draws. [1]
+    standard_uncertainty, low, high : dict of str to ndarray, each of shape (n_specimens,)
+        By name of the parameter; NaN where not given. [N], [s], [N s]
+    """
+
+    method: Integers
+    without_solution_share: Floats
+    standard_uncertainty: dict[str, Floats]
+    low: dict[str, Floats]
+    high: dict[str, Floats]
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)

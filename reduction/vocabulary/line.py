@@ -34,6 +34,44 @@ OF_LINE = (
         "relative error of K_1's excess over K_0 for a relative error of K_0: K_0 / (E' - K_0)",
     ),
     Quantity("test_line_refusal", "1", "why the test has no K_1 and tau"),
+    Quantity(
+        "test_dissipation_spring_constant_low",
+        "N",
+        "lower end of the 95 % interval of the dissipation spring constant of the test",
+    ),
+    Quantity(
+        "test_dissipation_spring_constant_high",
+        "N",
+        "upper end of the 95 % interval of the dissipation spring constant of the test",
+    ),
+    Quantity(
+        "test_relaxation_time_low",
+        "s",
+        "lower end of the 95 % interval of the relaxation time of the test",
+    ),
+    Quantity(
+        "test_relaxation_time_high",
+        "s",
+        "upper end of the 95 % interval of the relaxation time of the test",
+    ),
+    Quantity(
+        "test_dashpot_coefficient_low",
+        "N s",
+        "lower end of the 95 % interval of the dashpot coefficient of the test",
+    ),
+    Quantity(
+        "test_dashpot_coefficient_high",
+        "N s",
+        "upper end of the 95 % interval of the dashpot coefficient of the test",
+    ),
+    Quantity(
+        "test_line_uncertainty_method", "1", "how the uncertainty of K_1 and tau was propagated"
+    ),
+    Quantity(
+        "test_line_without_solution_share",
+        "1",
+        "share of Monte Carlo draws of loop and slow pull that have no K_1 and tau",
+    ),
     # the slow pull
     Quantity("tension_grid", "N", "tension at which the slow pull is given"),
     Quantity("quasi_static_strain", "1", "strain of the slow pull, by the cubic"),

@@ -38,7 +38,7 @@ from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
 from reduction.record import Quality, Record, Specimen
 from reduction.strain.model import StrainModel
-from reduction.uncertainty.product import Component, Contributions
+from reduction.uncertainty.product import Component, Contributions, LineSpread
 
 N_SAMPLES, N_CYCLES, N_BINS, N_SEGMENTS = 60, 4, 5, 3
 SOURCE = Source("T-1.csv", "ab" * 32, 12345)
@@ -360,6 +360,21 @@ def rich_test():
         line_of_test=make_line(np.random.default_rng(2), 2),
         quasi_static_standard_uncertainty=np.array([10.0, 20.0]),
         line_notes=("new: no slow pull",),
+        line_spread=LineSpread(
+            np.array([1, 2]),
+            np.array([0.0, 0.01]),
+            *(
+                {
+                    name: np.array([scale, 2 * scale])
+                    for name in (
+                        "dissipation_spring_constant",
+                        "relaxation_time",
+                        "dashpot_coefficient",
+                    )
+                }
+                for scale in (1.0, 10.0, 20.0)
+            ),
+        ),
         pulls=(make_pull(np.random.default_rng(3)), None),
         rope_step=make_rope_step(np.random.default_rng(4)),
         trend=PeakTrend(**{item.name: array(rng, 2) for item in fields(PeakTrend)}),
