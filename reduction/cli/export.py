@@ -12,6 +12,7 @@ from reduction.cli.compositesource import is_of_pieces, piece_source, rule_of
 from reduction.cli.hydrodynamics import stated_hydrodynamics
 from reduction.cli.numbers import plain
 from reduction.cli.outcome import Outcome
+from reduction.cli.syrope import with_syrope
 from reduction.errors import SettingsError
 from reduction.export.closeness import closeness_of
 from reduction.export.fromarchive import CurveName, line_from_archive
@@ -52,6 +53,7 @@ def export_source(
     specimen: str | None,
     stated: dict[str, str | None],
     water: tuple[str | None, str | None, str | None],
+    syrope: tuple[str | None, str | None],
     levels: dict[str, str | None],
     extrapolate: str,
     outcome: Outcome,
@@ -81,6 +83,7 @@ def export_source(
         levels={name: text for name, text in levels.items() if text is not None},
         extrapolate=cast('Literal["refuse", "flag"]', extrapolate),
     )
+    line = with_syrope(line, *syrope, form=form)
     units = cast("UnitSystem", outcome.units)
     there = set(out.parent.iterdir()) if out.parent.is_dir() else set()
     paths = export_line(line, to, out, form=form, units=units)

@@ -60,6 +60,12 @@ def export(
     frequency: Annotated[str | None, typer.Option(help='Of the stiffness, "0.3 Hz".')] = None,
     mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
     tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
+    working_curve: Annotated[
+        str | None, typer.Option(help='Of a Syrope line: form, k1, k2, "QUADRATIC, 0.2, 0.5".')
+    ] = None,
+    greatest_mean_tension: Annotated[
+        str | None, typer.Option(help="Of a Syrope line: that it has had before.")
+    ] = None,
     extrapolate: Annotated[
         str, typer.Option(help="Outside the levels: refuse or flag.")
     ] = "refuse",
@@ -86,6 +92,7 @@ def export(
                 "rated_break_strength": rated_break_strength,
             },
             water=(drag, added_mass, hydrodynamics_source),
+            syrope=(working_curve, greatest_mean_tension),
             levels={
                 "frequency": frequency,
                 "mean_tension": mean_tension,

@@ -21,6 +21,8 @@ from reduction.record import Floats, freeze_arrays
 
 __all__ = ["Syrope", "Viscoelasticity"]
 
+_STEPS = 201
+
 
 @dataclass(frozen=True)
 class Viscoelasticity:
@@ -200,6 +202,34 @@ class Syrope:
                 "would shrink as the tension grows",
                 found=f"between strains {self.strain[first]:g} and {self.strain[first + 1]:g}",
                 needed="alpha + beta T above the slope of the curve",
+            )
+
+        self._refuse_stiff_working_curve()
+
+    def _refuse_stiff_working_curve(self) -> None:
+        """MoorDyn starts such a line at another tension, without a word."""
+        along = np.linspace(0.0, 1.0, _STEPS)
+        top = float(np.interp(self.greatest_mean_tension, self.tension, self.strain))
+        share, slope = along, np.ones(_STEPS)
+        if self.form == "EXP":
+            share = np.expm1(self.k2 * along) / math.expm1(self.k2)
+            slope = self.k2 * np.exp(self.k2 * along) / math.expm1(self.k2)
+        elif self.form == "QUADRATIC":
+            share = along * (1 - self.k2 + self.k2 * along)
+            slope = 1 - self.k2 + 2 * self.k2 * along
+        if self.form == "LINEAR" and self.k1 >= 1:
+            slope = slope * self.k1
+        else:
+            slope = slope * self.greatest_mean_tension / (top * (1 - self.k1))
+        load = share * self.greatest_mean_tension
+        fast = self.dynamic_stiffness + self.dynamic_stiffness_per_mean_tension * load
+        if np.any(slope >= fast):
+            first = int(np.argmax(slope >= fast))
+            raise SettingsError(
+                "the working curve is stiffer than the dynamic stiffness: its slow part would "
+                "shrink as the tension grows",
+                found=f"{slope[first]:.5g} N at {load[first]:.5g} N, dynamic {fast[first]:.5g} N",
+                needed="a smaller k1, or a less bent form",
             )
 
     @property

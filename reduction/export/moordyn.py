@@ -37,7 +37,8 @@ from reduction.export.product import ExportLine
 from reduction.export.thin import ThinnedCurve, thin_curve
 
 __all__ = [
-    "MOST_POINTS", "NUMERICAL_DAMPING", "MoorDynForm", "moordyn_files", "table_text",
+    "MOST_POINTS", "NUMERICAL_DAMPING", "MoorDynForm", "fast_damping", "moordyn_files",
+    "table_text",
 ]  # fmt: skip
 
 MoorDynForm = Literal["table", "static-dynamic", "load-dependent", "syrope"]
@@ -61,6 +62,34 @@ def table_text(line: ExportLine, curve: ThinnedCurve) -> str:
     return "\n".join(
         [first, "Strain Tension", "(-) (N)", *(f"{number(e)} {number(t)}" for e, t in rows)]
     )
+
+
+def fast_damping(stiffness: float, linear_density: float) -> float:
+    """Numerical damping of the fast spring, a tenth of critical for the segments of a deck. [N s].
+
+    Parameters
+    ----------
+    stiffness : float
+        Of the fast spring. [N]
+    linear_density : float
+        In air. [kg m-1]
+
+    Returns
+    -------
+    damping : float
+        [N s]
+
+    Raises
+    ------
+    ValueError
+        If one is negative.
+
+    Examples
+    --------
+    >>> fast_damping(5e4, 0.5)
+    31.622776601683796
+    """
+    return _FAST_SHARE * SEGMENT_LENGTH * math.sqrt(stiffness * linear_density)
 
 
 def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -> dict[str, str]:
@@ -111,8 +140,7 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
             needed="K_0, K_1 and tau",
             hint="Export the curve instead: --form table.",
         )
-    fast = _FAST_SHARE * SEGMENT_LENGTH
-    fast *= math.sqrt(part.fast_stiffness * line.needed("linear_density"))
+    fast = fast_damping(part.fast_stiffness, line.needed("linear_density"))
     damping = f"{number(part.slow_dashpot_coefficient)}|{number(fast)}"
     if form == "static-dynamic":
         stiffness = f"{number(part.static_stiffness)}|{number(part.fast_stiffness)}"
@@ -195,6 +223,7 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
         raise SettingsError(
             f"{line.name} has no Syrope working curves",
             needed="original working curve, alpha, beta, k1, k2 and where the line starts",
+            hint="For a published line with levels: --working-curve, --greatest-mean-tension.",
         )
     curve = thin_curve(part.strain, part.tension, most=MOST_POINTS)
     working, settings = f"{stem}_owc.dat", f"{stem}_syrope.dat"

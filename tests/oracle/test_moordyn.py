@@ -13,6 +13,7 @@ from export_lines import constant, growing, line, syrope
 from export_readers import moordyn_sections, moordyn_table
 
 from reduction.cli.assembly import deployed_line
+from reduction.cli.syrope import with_syrope
 from reduction.export.fromassembly import line_from_assembly
 from reduction.export.fromcomposite import line_from_composite
 from reduction.export.fromlookup import line_from_lookup
@@ -247,3 +248,17 @@ def test_k_ap_is_that_of_the_look_up_within_2_percent(tmp_path, name, coded):
     turned = complex(sine, cosine) * np.exp(-2j * np.pi / 200)
     assert abs(turned) / amplitude == pytest.approx(wanted, rel=0.02)
     assert np.pi * amplitude * turned.imag == pytest.approx(energy, rel=0.1)
+
+
+@pytest.mark.parametrize("shape", ["LINEAR, 0.1", "QUADRATIC, 0.2, 0.5", "EXP, 0.1, 0.5"])
+def test_a_syrope_of_a_published_line_starts_at_its_mean_tension(tmp_path, shape):
+    levels = {"frequency": 0.3, "mean_tension": 5978.4, "tension_amplitude": 2419.8}
+    source = published_sources()["polyester-double-braid-0.5in-new"]
+    made = line_from_lookup(source, levels=levels, linear_density=0.1)
+    made = with_syrope(made, shape, "8 kN", form="syrope")
+    write(tmp_path, moordyn_files(made, "deck", form="syrope"))
+    start = made.syrope.initial_strain
+    tension = at_rest(
+        tmp_path, [start], step=0.5, rest=int(40 * made.viscoelasticity.relaxation_time)
+    )
+    assert tension[0] == pytest.approx(levels["mean_tension"], rel=2e-3)

@@ -62,3 +62,21 @@ def test_a_working_curve_ends_at_the_greatest_mean_tension_and_begins_at_its_sha
         at_zero = syrope(form=form, k1=k1, k2=k2, mean_tension=1e-3)
         assert at_zero.initial_strain == pytest.approx(0.008, abs=1e-9)
     assert syrope(k1=1e8).initial_strain == pytest.approx(0.04 - 2e6 / 1e8)
+
+
+@pytest.mark.parametrize(
+    ("form", "k1", "k2", "slope"),
+    [
+        # 3 MN over 0.04 (1 - k1) of strain, times 1, 1 + k2 and k2 / (1 - exp(-k2)) at the top
+        ("LINEAR", 0.5, 0.0, 3e6 / 0.02),
+        ("LINEAR", 1.6e8, 0.0, 1.6e8),
+        ("QUADRATIC", 0.2, 1.0, 3e6 / 0.032 * 2),
+        ("EXP", 0.2, 1.5, 3e6 / 0.032 * 1.5 / (1 - np.exp(-1.5))),
+    ],
+)
+def test_a_working_curve_that_is_stiffer_than_the_fast_spring_is_refused(form, k1, k2, slope):
+    """MoorDyn starts it a fifth below the tension that it is told."""
+    fields = {"form": form, "k1": k1, "k2": k2, "dynamic_stiffness_per_mean_tension": 0.0}
+    assert syrope(**fields, dynamic_stiffness=1.001 * slope).k1 == k1
+    with pytest.raises(SettingsError, match="working curve is stiffer than the dynamic stiffness"):
+        syrope(**fields, dynamic_stiffness=0.999 * slope)

@@ -1,0 +1,56 @@
+import numpy as np
+import pytest
+from export_lines import constant, line
+
+from reduction.cli.syrope import with_syrope
+from reduction.errors import SettingsError
+from reduction.export.dynamics import Viscoelasticity
+
+# 900 N at most: the fast spring has 2,000 N and 1 N more for each N of mean
+PART = Viscoelasticity(
+    static_stiffness=500.0, dynamic_stiffness=2000.0, dashpot_coefficient=900.0,
+    dynamic_stiffness_per_mean_tension=1.0, mean_tension=300.0,
+)  # fmt: skip
+
+
+def test_working_curves_are_stated_and_the_rest_is_of_the_three_parameters():
+    one = line(viscoelasticity=PART, linear_density=0.5)
+    assert with_syrope(one, None, None, form="table") is one
+    made = with_syrope(one, "quadratic, 0.2, 0.5", "400 N", form="syrope")
+    found = made.syrope
+    assert (found.form, found.k1, found.k2) == ("QUADRATIC", 0.2, 0.5)
+    assert (found.mean_tension, found.greatest_mean_tension) == (300.0, 400.0)
+    # EA_d 2,300 N of 500 N static: N (2300 / 1800)^2
+    assert found.slow_damping == pytest.approx(900 * (2300 / 1800) ** 2)
+    # a tenth of critical for segments of 2 m
+    assert found.fast_damping == pytest.approx(0.2 * np.sqrt(2300 * 0.5))
+    assert "stated at the export" in made.sources[-1]
+    assert with_syrope(one, "LINEAR, 0.2", "400 N", form="syrope").syrope.k2 == 0
+
+
+@pytest.mark.parametrize(
+    ("curve", "tension", "form", "message"),
+    [
+        ("LINEAR, 0.2", None, "syrope", "half a Syrope"),
+        (None, "400 N", "syrope", "half a Syrope"),
+        ("LINEAR, 0.2", "400 N", None, "of a Syrope line alone"),
+        ("LINEAR", "400 N", "syrope", "--working-curve is not understood"),
+        ("LINEAR, 1, 2, 3", "400 N", "syrope", "--working-curve is not understood"),
+        ("LINEAR, much", "400 N", "syrope", "--working-curve: "),
+        ("CUBIC, 0.2", "400 N", "syrope", "form of a Syrope working curve is not known"),
+        ("LINEAR, 0.2", "200 N", "syrope", "do not fit its original working curve"),
+    ],
+)
+def test_what_does_not_make_a_syrope_is_refused(curve, tension, form, message):
+    with pytest.raises(SettingsError, match=message):
+        with_syrope(line(viscoelasticity=PART), curve, tension, form=form)
+
+
+def test_a_line_without_dynamics_or_mass_is_refused():
+    with pytest.raises(SettingsError, match="needs the dynamics"):
+        with_syrope(line(), "LINEAR, 0.2", "400 N", form="syrope")
+    with pytest.raises(SettingsError, match="linear density"):
+        with_syrope(
+            line(viscoelasticity=constant(mean_tension=300.0), linear_density=np.nan),
+            "LINEAR, 0.2", "400 N", form="syrope",
+        )  # fmt: skip
