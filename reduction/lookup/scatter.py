@@ -88,5 +88,5 @@ def interval_between_lines(
     own = stdtrit(degrees_of_freedom, _BOTH_SIDES) * np.sqrt(np.log1p(line_scatter**2) * share)
     with np.errstate(divide="ignore", invalid="ignore"):
         known = np.where(value > 0, value, np.nan)
-        down, up = (np.hypot(own, (end - value) / known) for end in (low, high))
+        down, up = (np.sqrt(own**2 + ((end - value) / known) ** 2) for end in (low, high))
     return np.asarray(known * np.exp(-down)), np.asarray(known * np.exp(up))
