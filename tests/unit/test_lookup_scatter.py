@@ -93,3 +93,13 @@ def test_a_negative_scatter_is_refused():
         interval_between_lines(
             one, one, one, line_scatter=-0.1, n_lines=2, degrees_of_freedom=5, is_another=True
         )
+
+
+def test_it_is_never_narrower_than_what_it_is_made_from():
+    # exp(-0.9) is 0.41: the lower limit of one more run is farther out
+    value, low, high = np.array([1.0]), np.array([0.1]), np.array([1.9])
+    found = interval_between_lines(
+        value, low, high, line_scatter=0.1, n_lines=3, degrees_of_freedom=5, is_another=True
+    )
+    assert found[0] == low
+    assert found[1] > high
