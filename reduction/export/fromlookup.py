@@ -213,7 +213,8 @@ def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[
     below = (strain < 0) | ((strain == 0) & (tension > 0))
     if below.any() and tension[below][-1] < _LEAST_CUT * tension[-1]:
         notes.append(
-            f"the polynomial has no strain up to {tension[below][-1]:.4g} N; that part is left out"
+            f"the polynomial has strain below zero up to {tension[below][-1]:.4g} N, by the "
+            "constant of its fit; that part is left out"
         )
         strain, tension = strain[~below], tension[~below]
     if curve.coefficient.size and strain[0] > 0 and tension[0] == 0:

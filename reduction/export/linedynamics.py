@@ -138,8 +138,9 @@ def line_dynamics(
         ]
     slope, growth = _growth(source, levels, part.fast_stiffness, is_identified=is_identified)
     every = (rest, *measured.values(), *printed.values())
-    for found in every:
-        notes += [f"{found.quantity}: {text}" for text in found.notes if text not in source.notes]
+    texts = dict.fromkeys(text for found in every for text in found.notes)
+    for text in (one for one in texts if one not in source.notes):
+        notes.append(f"{', '.join(one.quantity for one in every if text in one.notes)}: {text}")
     part = replace(
         part,
         dynamic_stiffness=part.fast_stiffness - slope * float(levels["mean_tension"]),

@@ -106,7 +106,7 @@ def test_a_constant_below_zero_costs_the_first_points():
     low = LineCurve("strain", "tension", 0.0, 4000.0, coefficient=np.array([-0.002, 1e-4]))
     found = line_from_lookup(source(curves=(low,)))
     assert found.strain[0] >= 0
-    assert "has no strain up to 20 N" in found.notes[-1]
+    assert "has strain below zero up to 20 N" in found.notes[-1]
     assert found.tested[0] == found.strain[0]
 
 
