@@ -76,7 +76,8 @@ def guards_of(line: ExportLine) -> tuple[str, ...]:
         return tuple(words)
     volume, said = line.volume_diameter
     words.append(said)
-    if mass < SEA_WATER * math.pi / 4 * volume**2:
+    is_stated = math.isfinite(line.wet_linear_density)
+    if mass < SEA_WATER * math.pi / 4 * volume**2 and not is_stated:
         words.append(
             f"DOUBTFUL: the line floats: {mass:.4g} kg/m displaces "
             f"{SEA_WATER * math.pi / 4 * volume**2:.4g} kg/m of water. Unless it does, state "

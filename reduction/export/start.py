@@ -93,7 +93,7 @@ def start_against(
             doubt = "DOUBTFUL: " if abs(off[worst]) > _DOUBT else ""
             said.append(
                 f"{doubt}the straight start is off by {100 * off[worst]:+.0f} percent at strain "
-                f"{at[worst]:.4g}, where {other.name} has {measured[worst]:.4g} N; exported without "
-                "the test, the tether has what each measured"
+                f"{at[worst]:.4g}, where {other.name} has {measured[worst]:.4g} N; exported "
+                "without the test, the tether has what each measured"
             )
     return tuple(said)

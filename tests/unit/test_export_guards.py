@@ -23,6 +23,9 @@ def test_a_line_that_floats_or_is_heavier_than_a_rod_of_its_fibre_is_doubtful():
     (text,) = (one for one in guards_of(line(linear_density=0.5)) if one.startswith("DOUBTFUL"))
     assert "floats: 0.5 kg/m displaces 0.5442 kg/m" in text
     assert not any(one.startswith("DOUBTFUL") for one in guards_of(line()))
+    # who states a wet mass below zero has a line that floats
+    floating = guards_of(line(linear_density=0.5, wet_linear_density=-0.04))
+    assert not any("floats" in one for one in floating)
     # a rod of nylon of 26 mm has 1140 * 5.309e-4 m2 = 0.605 kg/m
     heavy = guards_of(line(linear_density=0.61, material="nylon"))
     assert "do not fit" in heavy[-1]
