@@ -50,6 +50,9 @@ class ErrorField:
         Of the strain's error, over strain at one tension. [1]
     strain_slope_over_tension : ndarray
         Of the strain's error, over tension at one strain. [N-1]
+    strain_by_tension : ndarray, shape (...)
+        Change of strain with the tension that is logged at one position: negative where the
+        splices are taken to stretch by it, else zero. [N-1]
     """
 
     component: tuple[Component, ...]
@@ -58,6 +61,7 @@ class ErrorField:
     tension_slope: Floats
     strain_slope: Floats
     strain_slope_over_tension: Floats
+    strain_by_tension: Floats
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -140,7 +144,23 @@ def error_field(
         rows = _rows(load, strain=errors.strain_gain * at, strain_slope=errors.strain_gain)
         parts.append((Component("strain_gain", errors.strain_model or errors.specimen), rows))
     table = np.stack([rows for _, rows in parts]) if parts else np.empty((0, 5, *load.shape))
-    return ErrorField(tuple(one for one, _ in parts), *np.moveaxis(table, 1, 0))
+    return ErrorField(
+        tuple(one for one, _ in parts),
+        *np.moveaxis(table, 1, 0),
+        _strain_by_tension(model, at, load),
+    )
+
+
+def _strain_by_tension(model: StrainModel, at: Floats, load: Floats) -> Floats:
+    """Slope of strain over the logged tension at one position."""
+    if model.method == "extensometer":
+        return np.zeros(load.shape)
+    position = position_by_model(model, strain=at, tension=load)
+    step = _STEP * np.maximum(np.abs(load), 1.0)
+    above, below = (
+        strain_by_model(model, position=position, tension=load + way * step) for way in (1, -1)
+    )
+    return np.asarray((above - below) / (2 * step))
 
 
 def _rows(
@@ -170,8 +190,7 @@ def _of_tension(
             continue
         step = _STEP * np.maximum(np.abs(load), 1.0)
         strain, above, below = (
-            _strain_by_tension(model, force, gain, offset)
-            for force in (load, load + step, load - step)
+            _splice_error(model, force, gain, offset) for force in (load, load + step, load - step)
         )
         found.append(
             (
@@ -188,7 +207,7 @@ def _of_tension(
     return found
 
 
-def _strain_by_tension(model: StrainModel, load: Floats, gain: float, offset: float) -> Floats:
+def _splice_error(model: StrainModel, load: Floats, gain: float, offset: float) -> Floats:
     """Error of the strain that a load cell's makes through the law of the splices."""
     if model.method != "tension-driven":
         return np.zeros(load.shape)

@@ -143,10 +143,12 @@ def loop_contributions(
         turn = 2 * np.pi * frequency * errors.lag
         work = _LAG_SHAPE[waveform] * frequency * tension_amplitude * strain_amplitude
         ramps = 1.0 if waveform == "sinusoidal" else speed_ratio
+        # splices that are taken to stretch by the late tension are late too
+        late = 1 - centre.strain_by_tension * apparent_spring_constant
         of_lag = {
-            "hysteresis_energy": -errors.lag * work * ramps,
-            "storage_spring_constant": turn * loss_spring_constant,
-            "loss_spring_constant": -turn * storage_spring_constant,
+            "hysteresis_energy": -errors.lag * work * ramps * late,
+            "storage_spring_constant": turn * loss_spring_constant * late,
+            "loss_spring_constant": -turn * storage_spring_constant * late,
         }
         component = (*component, Component("lag", errors.tension_instrument))
         none = np.zeros(frequency.shape)

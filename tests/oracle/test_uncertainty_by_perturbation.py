@@ -178,8 +178,9 @@ def of_curve(errors, model, exact):
     return {name: values.sum(axis=0) for name, values in rows.values.items()}
 
 
-def test_tension_that_is_logged_late_narrows_the_loop():
-    model, late = MODELS["gauge-length"], 1e-3
+@pytest.mark.parametrize("method", MODELS)
+def test_tension_that_is_logged_late_narrows_the_loop(method):
+    model, late = MODELS[method], 1e-3
     exact = quantities(*read(model))
     change = quantities(*read(model, late=late))["hysteresis_energy"] - exact["hysteresis_energy"]
     found = of_loop(InstrumentErrors("new", lag=late), model, exact)
@@ -188,8 +189,9 @@ def test_tension_that_is_logged_late_narrows_the_loop():
     assert change < 0
 
 
-def test_tension_that_is_logged_late_is_lower_where_it_rises():
-    model, late = MODELS["gauge-length"], 1e-3
+@pytest.mark.parametrize("method", MODELS)
+def test_tension_that_is_logged_late_is_lower_where_it_rises(method):
+    model, late = MODELS[method], 1e-3
     exact = quantities(*read(model))
     change = quantities(*read(model, late=late))["branch_tension"] - exact["branch_tension"]
     found = of_curve(InstrumentErrors("new", lag=late), model, exact)["branch_tension"]
