@@ -31,6 +31,9 @@ from reduction.uncertainty.splicemethod import splice_method_error
 
 __all__ = ["ErrorField", "error_field"]
 
+_ARRAYS = (
+    "tension", "strain", "tension_slope", "strain_slope", "strain_slope_over_tension",
+)  # fmt: skip
 _STEP = 1e-4  # of the strain 1, and of the tension: for the slopes of the field
 
 
@@ -144,10 +147,11 @@ def error_field(
         rows = _rows(load, strain=errors.strain_gain * at, strain_slope=errors.strain_gain)
         parts.append((Component("strain_gain", errors.strain_model or errors.specimen), rows))
     table = np.stack([rows for _, rows in parts]) if parts else np.empty((0, 5, *load.shape))
+    arrays = dict(zip(_ARRAYS, np.moveaxis(table, 1, 0), strict=True))
     return ErrorField(
         tuple(one for one, _ in parts),
-        *np.moveaxis(table, 1, 0),
-        _strain_by_tension(model, at, load),
+        **arrays,
+        strain_by_tension=_strain_by_tension(model, at, load),
     )
 
 
