@@ -1,10 +1,13 @@
 """The command export: what it writes of an archive and of a published line, and how it refuses."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 from export_readers import moordyn_sections, moordyn_table, orcaflex
+
+ROOT = Path(__file__).parents[2]
 
 
 def test_a_reduced_test_becomes_a_deck_and_its_table(command, synthetic, tmp_path):
@@ -149,3 +152,51 @@ def test_a_wet_mass_above_the_dry_one_and_an_empty_path_are_refused(command, tmp
         done = command("export", NYLON, "--to", to, "--out", "", "--linear-density", "0.1 kg/m")
         assert done.returncode == 2
         assert "--out names no file" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "source", ["rubber-tether-new", ROOT / "docs/assemblies/new-hampshire.toml"]
+)
+def test_composites_and_assemblies_pass_the_same_guards(command, tmp_path, source):
+    """26 mm displace 0.54 kg/m, more than the 0.3 kg/m that are stated."""
+    done = command(
+        "export", source, "--to", "moordyn", "--out", tmp_path / "c.dat", "--diameter", "26 mm",
+        "--linear-density", "0.3 kg/m",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "was NOT measured on this curve" in done.stdout
+    assert "DOUBTFUL: the line floats: 0.3 kg/m displaces 0.5442 kg/m" in done.stdout
+    assert "DOUBTFUL: the line floats" in (tmp_path / "c.dat").read_text()
+
+
+def test_the_screen_has_k_ap_of_the_look_up_and_what_the_printed_parameters_would_give(
+    command, tmp_path
+):
+    levels = [*LEVELS]
+    levels[1] = "0.5 Hz"
+    done = command(
+        "export", NYLON, "--to", "moordyn", "--form", "static-dynamic", "--linear-density",
+        "0.0967 kg/m", "--out", tmp_path / "d.dat", *levels,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    wanted = command("lookup", NYLON, "--quantity", "apparent_spring_constant", "--json", *levels)
+    (value,) = np.ravel(json.loads(wanted.stdout)["value"])
+    assert f"gives back K_ap {value:.5g} N" in done.stdout
+    # the printed 0.16 s at 0.5 Hz, beside K_0 82,930 N and K_1 83,582 N, by eq. 1 of the report
+    turned = 2j * np.pi * 0.5 * 0.16
+    off = abs(82929.8 + 83582.1 * turned / (1 + turned)) / value - 1
+    assert f"{100 * off:+.1f} percent; H" in done.stdout
+
+
+def test_a_syrope_of_a_published_line(command, tmp_path):
+    arguments = (
+        "export", "polyester-double-braid-0.5in-new", "--to", "moordyn", "--form", "syrope",
+        "--linear-density", "0.12 kg/m", "--out", tmp_path / "s.dat", *LEVELS,
+    )  # fmt: skip
+    done = command(*arguments)
+    assert done.returncode == 2
+    assert "--working-curve, --greatest-mean-tension" in done.stderr
+    done = command(*arguments, "--working-curve", "LINEAR, 0.1", "--greatest-mean-tension", "8 kN")
+    assert done.returncode == 0, done.stderr
+    assert moordyn_sections((tmp_path / "s.dat").read_text())["SYROPE IC"][-1][1] == "8000"
+    assert (tmp_path / "s_syrope.dat").read_text().split("\n")[1] == "LINEAR WCType"
