@@ -85,7 +85,8 @@ def line_of_experiment(
     for response in RESPONSES:
         name = next((f"{one}{response}" for one in _SCALES if f"{one}{response}" in names), None)
         if name is not None:
-            surfaces[response] = _surface(fitted, names.index(name), response, name, scale)
+            shared = _shared(dataset, row, name, len(fitted.exponents))
+            surfaces[response] = _surface(fitted, names.index(name), response, name, scale, shared)
     return LineSource(
         name=experiment,
         source=f"{dataset.attrs.get('id', 'surfaces')}, experiment {experiment}",
@@ -131,18 +132,33 @@ def _agreed(facts: Sequence[Facts]) -> dict[str, Any]:
     return agreed
 
 
+def _shared(dataset: xr.Dataset, row: int, name: str, n_terms: int) -> Floats:
+    """What each error that the runs share adds to the coefficients of a surface."""
+    rows = dataset.get(f"{name}_coefficient_uncertainty_contribution")
+    if rows is None:
+        return np.empty((0, n_terms))
+    own = rows.to_numpy()[row, :, :n_terms]
+    return np.asarray(own[np.isfinite(own).all(axis=1) & own.any(axis=1)])
+
+
 def _surface(
-    fitted: ResponseSurfaces, index: int, response: str, name: str, scale: Floats
+    fitted: ResponseSurfaces,
+    index: int,
+    response: str,
+    name: str,
+    scale: Floats,
+    shared: Floats,
 ) -> LineSurface:
     covariance = fitted.covariance_factor[fitted.pattern[index]]
     used = fitted.is_used[fitted.pattern[index]]
     runs = model_matrix(fitted.coded[used], fitted.exponents)
     n_terms = len(fitted.exponents)
     notes = [] if name == response else [f"from the surface of {name}, brought back"]
-    notes.append(
-        "the intervals are of the scatter of the runs: what all runs share, as the load cell, is "
-        "in the uncertainty of the coefficients alone"
-    )
+    if not shared.size:
+        notes.append(
+            "the intervals are of the scatter of the runs: of what all runs share, as the load "
+            "cell, nothing is stated"
+        )
     if not np.isfinite(fitted.coefficient[index]).all():
         notes.append("the surface was refused")
     return LineSurface(
@@ -158,6 +174,7 @@ def _surface(
             np.max(variance_factor(runs, covariance[:n_terms, :n_terms]), initial=0.0)
         ),
         exponent=float(fitted.transform_exponent[index]),
+        contribution=shared,
         notes=tuple(notes),
     )
 

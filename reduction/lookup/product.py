@@ -53,6 +53,9 @@ class LineSurface:
         Of any run: where a point has more, nothing was tested. [1]
     exponent : float
         Of Box and Cox; 1 where the quantity was fitted as it is, 0 for its logarithm. [1]
+    contribution : ndarray, shape (n_components, n_terms)
+        What each error that the runs share adds to the coefficients, signed; none where nothing
+        is known of any. [as coefficient]
     alternatives : ndarray, shape (n_alternatives, n_terms)
         Other coefficients that may be the right ones, where that is open: an interval spans
         them all. [as coefficient]
@@ -82,6 +85,7 @@ class LineSurface:
     degrees_of_freedom: float
     greatest_leverage: float
     exponent: float = 1.0
+    contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
     alternatives: Floats = field(default_factory=lambda: np.empty((0, 0)))
     alternative_boxes: tuple[tuple[Floats, Floats], ...] = ()
     rounding: Floats = field(default_factory=lambda: np.empty(0))

@@ -1,6 +1,10 @@
 r"""A quadratic surface at points, with its intervals, in one pass over blocks of points.
 
-.. math:: \hat y = x^T b, \qquad \hat y \pm t_\nu s \sqrt{1 + h}, \qquad h = x^T C x
+.. math:: \hat y = x^T b, \qquad
+          \hat y \pm \sqrt{t_\nu^2 s^2 (1 + h) + 1.96^2 \textstyle\sum_k (x^T c_k)^2}, \qquad
+          h = x^T C x
+
+with the contribution c_k of each error that the runs share.
 
 References
 ----------
@@ -32,6 +36,7 @@ _BLOCK = 16_384
 _EDGE = 1e-9
 """Rounding of the change of units, by which a point on the edge may lie outside."""
 _BOTH_SIDES = 0.975
+_NORMAL = 1.96
 
 
 @dataclass(frozen=True)
@@ -113,6 +118,10 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
         leverage = variance_factor(terms, surface.covariance_factor)
         centre = terms @ surface.coefficient
         half, own = factor * np.sqrt(1 + leverage), factor * np.sqrt(leverage)
+        if surface.contribution.size:
+            # one error of all runs moves the whole surface, and the next run with it
+            shared = _NORMAL * np.sqrt(np.sum((terms @ surface.contribution.T) ** 2, axis=1))
+            half, own = np.hypot(half, shared), np.hypot(own, shared)
         for name, values in (
             ("value", centre),
             ("low", centre - half),

@@ -45,8 +45,16 @@ def test_a_surface_is_looked_up_as_it_was_fitted(surfaces):
         line, "apparent_spring_constant", **dict(zip(line.factor_names, points.T, strict=True))
     )
     assert found.value == pytest.approx(expected.value[0], rel=1e-12)
-    interval = np.stack([found.low, found.high], axis=-1)
-    assert interval == pytest.approx(expected.prediction_interval[0], rel=1e-9)
+    # scatter of the runs, and what the load cell and the extensometer do to all of them
+    scatter = np.ptp(expected.prediction_interval[0], axis=-1) / 2
+    coded = (points - centre) / half
+    terms = np.prod(coded[:, None, :] ** fitted.exponents, axis=-1)
+    rows = surfaces["apparent_spring_constant_coefficient_uncertainty_contribution"].to_numpy()[0]
+    assert (np.abs(rows).max(axis=1) > 0).sum() == 3
+    shared = 1.96 * np.sqrt(((terms @ rows.T) ** 2).sum(axis=1))
+    assert shared.min() > 0.5 * scatter.max()
+    assert found.high - found.value == pytest.approx(np.hypot(scatter, shared), rel=1e-9)
+    assert found.value - found.low == pytest.approx(np.hypot(scatter, shared), rel=1e-9)
     assert found.is_untested.tolist() == expected.above_leverage.ravel().tolist()
 
 
