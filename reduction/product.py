@@ -29,6 +29,7 @@ from reduction.phases.standstill import Standstills
 from reduction.provenance import Source, Step
 from reduction.record import Floats, Integers, Record, Specimen
 from reduction.strain.model import StrainModel
+from reduction.uncertainty.lag import LagEstimate
 from reduction.uncertainty.product import Contributions, LineSpread
 
 __all__ = ["History", "ReducedTest", "TestDescription"]
@@ -92,7 +93,8 @@ class ReducedTest:
     what the test gave as a step of a rope laboratory's programme.  Every uncertainty here is
     random (type A); ``contributions`` holds what errors that samples share add to curves,
     segments and means of the test, by name of the archive, and
-    ``shared_uncertainty_of_cycles`` [unit of each] the same of each cycle, all sources together.
+    ``shared_uncertainty_of_cycles`` [unit of each] the same of each cycle, all sources together;
+    ``channel_lag`` is what the turns of the wave say of one of them, and corrects nothing.
     """
 
     description: TestDescription
@@ -138,6 +140,7 @@ class ReducedTest:
     rope_step: RopeStep | None = None
     contributions: Contributions | None = None
     shared_uncertainty_of_cycles: dict[str, Floats] = field(default_factory=dict)
+    channel_lag: LagEstimate | None = None
 
     def all_notes(self) -> tuple[tuple[str, str], ...]:
         """Every note as (stage, text), most serious first, none twice.

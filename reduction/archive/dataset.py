@@ -15,6 +15,7 @@ from reduction.archive.curves import (
     stress_at_strain_values,
 )
 from reduction.archive.holds import hold_values, standstill_values
+from reduction.archive.lag import lag_values
 from reduction.archive.line import (
     line_values,
     pull_values,
@@ -130,6 +131,8 @@ def _all_values(test: ReducedTest) -> Values:
         test.shared_uncertainty_of_cycles,
         {} if test.line_of_test is None else random_of_line(test.line_of_test),
     )
+    if test.channel_lag is not None:
+        values |= lag_values(test.channel_lag)
     if test.line_of_test is not None and test.line_spread is not None:
         values |= spread_of_line_values(test.line_spread, values)
     return values

@@ -59,6 +59,7 @@ from itertools import chain
 
 from reduction.archive.curves import CURVE_ROWS, ELASTOMER_ROWS
 from reduction.archive.holds import HOLD_ROWS
+from reduction.archive.lag import LAG_ROWS
 from reduction.archive.line import LINE_ROWS
 from reduction.archive.programme import ROPE_ROWS
 from reduction.archive.reasons import (
@@ -289,6 +290,7 @@ _ROWS = chain(
     ELASTOMER_ROWS,
     HOLD_ROWS,
     STEP_ROWS,
+    LAG_ROWS,
     SHARED_ROWS,
     # the record and what is known about it
     count("n_rows_read", ()),

@@ -23,6 +23,7 @@ from reduction.line.product import SlowPull
 from reduction.moduli.slack import slack_strain_at_unloading
 from reduction.moduli.stepwise import reduce_stepwise
 from reduction.phases.standstill import Standstills
+from reduction.pipeline.channellag import lag_of_test
 from reduction.pipeline.cyclic import parts_of_cycles
 from reduction.pipeline.linespread import with_line_spread
 from reduction.pipeline.loading import parts_of_first_loading
@@ -146,6 +147,11 @@ def reduce_test(
     notes += [
         f"{name}: {text}" for name, text in zip(record.specimens, remarks, strict=True) if text
     ]
+    if cycles is not None:
+        parts["channel_lag"], told = lag_of_test(
+            record, position, tension, cycles, stated=[one.lag for one in instruments]
+        )
+        notes += told
     test = ReducedTest(
         description=description,
         specimens=specimens,

@@ -195,6 +195,12 @@ TABLES = (
     *ROPE_TABLES,
     *SHARED_TABLES,
     Table(
+        "channel_lag",
+        ("specimen",),
+        ("channel_lag", "channel_lag_turns", "channel_lag_refusal"),
+        ("channel_lag_refusal",),
+    ),
+    Table(
         "slips",
         ("slip",),
         (

@@ -26,6 +26,14 @@ OF_REDUCED = (
     ),
     Quantity("measured_strain", "1", "nominal strain by an extensometer"),
     Quantity("machine_cycle_number", "1", "cycle number by the machine's own counter"),
+    # the clocks of the channels
+    Quantity(
+        "channel_lag",
+        "s",
+        "least time by which tension was logged later than position, by the turns",
+    ),
+    Quantity("channel_lag_turns", "1", "turns of the wave in the lag of the channels"),
+    Quantity("channel_lag_refusal", "1", "why the turns of the wave tell no lag of the channels"),
     # per cycle
     Quantity("cycle", "1", "cycle number"),
     Quantity("cycle_first_sample", "1", "index of the first sample of the cycle, from 0"),

@@ -38,6 +38,7 @@ from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
 from reduction.record import Quality, Record, Specimen
 from reduction.strain.model import StrainModel
+from reduction.uncertainty.lag import LagEstimate
 from reduction.uncertainty.product import Component, Contributions, LineSpread
 
 N_SAMPLES, N_CYCLES, N_BINS, N_SEGMENTS = 60, 4, 5, 3
@@ -360,6 +361,12 @@ def rich_test():
         line_of_test=make_line(np.random.default_rng(2), 2),
         quasi_static_standard_uncertainty=np.array([10.0, 20.0]),
         line_notes=("new: no slow pull",),
+        channel_lag=LagEstimate(
+            np.array([0.02, np.nan]),
+            np.array([0.003, np.nan]),
+            np.array([19, 2]),
+            np.array([0, 1]),
+        ),
         line_spread=LineSpread(
             np.array([1, 2]),
             np.array([0.0, 0.01]),
