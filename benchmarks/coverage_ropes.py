@@ -19,15 +19,21 @@ from typing import Any
 
 import numpy as np
 from coverage import Found, table
+from scipy import stats
 
 from reduction.archive.dataset import to_dataset
+from reduction.archive.linesource import line_of_experiment
+from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.batch.experiments import fit_rows
 from reduction.batch.runrows import row_of_archive
 from reduction.campaign.plan import ExperimentPlan
+from reduction.experiment import ExperimentResult
 from reduction.line.product import SlowPull
+from reduction.lookup.line import look_up
 from reduction.pipeline.locate import locate
 from reduction.pipeline.reduce import reduce_test
 from reduction.product import ReducedTest, TestDescription
+from reduction.provenance import Origin
 from reduction.record import Record, Specimen
 from reduction.settings import CycleSettings, ReductionSettings
 from reduction.strain.model import StrainModel
@@ -61,12 +67,12 @@ NOISE, PLACE_NOISE = 3.0, 2e-6
 N_CYCLES, SAMPLES = 8, 60
 
 
-def stiffness(pair: int, number: int, rng: np.random.Generator | None = None) -> complex:
-    """Complex modulus of a run, scattered about its surface where a generator is given."""
-    terms = model_matrix(PLAN[[number]], EXPONENTS)
+def stiffness(pair: int, coded: np.ndarray, rng: np.random.Generator | None = None) -> complex:
+    """Complex modulus at coded levels, scattered about it where a generator is given."""
+    terms = model_matrix(coded[None], EXPONENTS)
     draw = (0.0, 0.0) if rng is None else rng.normal(0, RUN_SCATTER, 2)
     first, second = 1 + draw[0], 1 + draw[1]
-    frequency = float((HIGH[0] + LOW[0]) / 2 + PLAN[number, 0] * (HIGH[0] - LOW[0]) / 2)
+    frequency = float((HIGH[0] + LOW[0]) / 2 + coded[0] * (HIGH[0] - LOW[0]) / 2)
     if pair == 0:
         turn = 2j * np.pi * frequency * float(terms[0] @ TIME) * second
         return complex(REST + float(terms[0] @ SPRING) * first * turn / (1 + turn))
@@ -118,6 +124,7 @@ def reduced(
     )  # fmt: skip
 
 
+ORIGIN = Origin("coverage", {"synthetic": "yes"}, (), (), "{}", "0", "coverage")
 SETTINGS = '{"reduction": {"cycles": {"break_in_cycles": 0}}}'
 
 
@@ -154,7 +161,7 @@ def campaign(seed: int) -> list[Found]:
     exact_of: list[dict[str, float]] = []
     found: list[Found] = []
     for number, (frequency, mean, amplitude) in enumerate(level):
-        modulus = stiffness(pair, number, rng)
+        modulus = stiffness(pair, PLAN[number], rng)
         turn = 2 * np.pi * frequency
         step = 1 / frequency / SAMPLES
         time = np.arange(0, (N_CYCLES + 0.6) / frequency, step)
@@ -171,7 +178,7 @@ def campaign(seed: int) -> list[Found]:
         row = row_of_archive(plan, dataset, 0, "line")
         rows.append(row | {"run": f"R{number}", "coded": tuple(PLAN[number]), "order": number})
         own = responses(modulus, frequency, amplitude)
-        exact_of.append(responses(stiffness(pair, number), frequency, amplitude))
+        exact_of.append(responses(stiffness(pair, PLAN[number]), frequency, amplitude))
         for name, value in own.items():
             shared = dataset[f"test_{name}_uncertainty_contribution"].values[:, 0]
             found.append(
@@ -204,6 +211,25 @@ def campaign(seed: int) -> list[Found]:
                     float(shared[term]),
                     float(result.surfaces.degrees_of_freedom[index]),
                 )
+            )
+    return found + looked_up(result, pair, rng)
+
+
+def looked_up(result: ExperimentResult, pair: int, rng: np.random.Generator) -> list[Found]:
+    """Design values of the surface at three points of the box, with the interval they are given."""
+    line = line_of_experiment(surfaces_to_dataset([result], origin=ORIGIN), "rope")
+    found: list[Found] = []
+    for coded in rng.uniform(-0.8, 0.8, (3, 3)):
+        level = (HIGH + LOW) / 2 + coded * (HIGH - LOW) / 2
+        truth = responses(stiffness(pair, coded), float(level[0]), float(level[2]))
+        at = dict(zip(line.factor_names, level, strict=True))
+        for name in OF_PAIR[pair]:
+            value = look_up(line, name, **at)
+            freedom = line.surfaces[name].degrees_of_freedom
+            half = float(value.surface_high - value.surface_low) / 2
+            spread = half / float(stats.t.ppf(0.975, freedom))
+            found.append(
+                (f"{name}, looked up", float(value.value), truth[name], spread, 0.0, freedom)
             )
     return found
 
