@@ -36,7 +36,12 @@ from reduction.archive.programme import rope_values
 from reduction.archive.samples import row_account, sample_values
 from reduction.archive.schema import schema_of
 from reduction.archive.shared import with_shared
-from reduction.archive.specimens import history_values, specimen_values, strain_model_values
+from reduction.archive.specimens import (
+    history_values,
+    random_of_section,
+    specimen_values,
+    strain_model_values,
+)
 from reduction.archive.stepwise import stepwise_values
 from reduction.archive.values import Values
 from reduction.product import ReducedTest
@@ -129,7 +134,12 @@ def _all_values(test: ReducedTest) -> Values:
         values,
         test.contributions,
         test.shared_uncertainty_of_cycles,
-        {} if test.line_of_test is None else random_of_line(test.line_of_test),
+        ({} if test.line_of_test is None else random_of_line(test.line_of_test))
+        | (
+            {}
+            if test.contributions is None
+            else random_of_section(test.specimens, test.contributions)
+        ),
     )
     if test.channel_lag is not None:
         values |= lag_values(test.channel_lag)

@@ -7,7 +7,7 @@ from itertools import chain
 
 import numpy as np
 
-from reduction.archive.reasons import CLOCK, MEAN_READING
+from reduction.archive.reasons import CLOCK
 from reduction.archive.values import Values, numbers, pad, texts
 from reduction.archive.variable import Variable, count, label, measured, stated
 from reduction.holds.product import HoldResult, hold_numbers
@@ -24,14 +24,14 @@ HOLD_ROWS: tuple[Variable, ...] = tuple(
         stated("hold_start_time", ("hold",), CLOCK),
         stated("hold_duration", ("hold",), CLOCK),
         stated("hold_ramp_centre_time", ("hold",), CLOCK),
-        stated("hold_strain", ("hold",), MEAN_READING),
-        stated("hold_initial_tension", ("hold",), MEAN_READING),
-        stated("hold_final_tension", ("hold",), MEAN_READING),
+        measured("hold_strain", ("hold",)),
+        measured("hold_initial_tension", ("hold",)),
+        measured("hold_final_tension", ("hold",)),
         measured("relaxation_drop", ("hold",)),
         measured("relaxation_rate_per_decade", ("hold",)),
         measured("creep_rate_per_decade", ("hold",)),
-        stated("tension_at_time", ("hold", "hold_time"), MEAN_READING),
-        stated("strain_at_time", ("hold", "hold_time"), MEAN_READING),
+        measured("tension_at_time", ("hold", "hold_time")),
+        measured("strain_at_time", ("hold", "hold_time")),
         measured("prony_tension", ("hold", "prony_term")),
         measured("prony_time", ("hold", "prony_term")),
         measured("long_time_tension", ("hold",)),
@@ -44,8 +44,11 @@ _PLAIN = (
     "hold_start_time",
     "hold_duration",
     "hold_strain",
+    "hold_strain_standard_uncertainty",
     "hold_initial_tension",
+    "hold_initial_tension_standard_uncertainty",
     "hold_final_tension",
+    "hold_final_tension_standard_uncertainty",
     "relaxation_drop",
     "relaxation_drop_standard_uncertainty",
     "long_time_tension",
@@ -97,7 +100,8 @@ def hold_values(holds: Sequence[HoldResult]) -> Values:
     times = np.unique(np.concatenate([np.empty(0), *(one.times for one in holds)]))
     values["hold_time"] = times
     for name in ("tension_at_time", "strain_at_time"):
-        values[name] = _on_common_times(holds, name, times)
+        for suffix in ("", "_standard_uncertainty"):
+            values[f"{name}{suffix}"] = _on_common_times(holds, f"{name}{suffix}", times)
     for name in _PRONY:
         values[name] = pad([getattr(one, name) for one in holds])
     values["prony_term"] = np.arange(1, values["prony_time"].shape[1] + 1)
@@ -107,5 +111,7 @@ def hold_values(holds: Sequence[HoldResult]) -> Values:
 def _on_common_times(holds: Sequence[HoldResult], name: str, times: Floats) -> Floats:
     table = np.full((len(holds), times.size), np.nan)
     for row, one in zip(table, holds, strict=True):
-        row[np.searchsorted(times, one.times)] = getattr(one, name)
+        given = getattr(one, name)
+        if given.size:
+            row[np.searchsorted(times, one.times)] = given
     return table

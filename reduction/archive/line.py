@@ -12,6 +12,7 @@ from reduction.archive.reasons import AXIS, BOUND, PART, SETTING, SPREAD, STATED
 from reduction.archive.values import Values, texts
 from reduction.archive.variable import Variable, count, flag, label, measured, stated
 from reduction.line.product import LineParameters, SlowPull
+from reduction.line.pullgrid import BREAK_SHARES, tension_grid
 from reduction.line.quasistatic import (
     quasi_static_spring_constant,
     strain_at_break_share,
@@ -40,8 +41,6 @@ LINE_REFUSALS = {
 }
 """Meanings of the codes of `reduction.line.product.REASONS`, as a flag has them."""
 
-BREAK_SHARES = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5)
-_GRID_STEPS = 40
 _LINE = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
 _S = ("specimen",)
 _C = ("specimen", "cycle")
@@ -129,8 +128,7 @@ def pull_values(pulls: tuple[SlowPull | None, ...], specimens: tuple[Specimen, .
     given = [one for one in pulls if one is not None]
     if not given:
         return {}
-    low, high = min(one.tension_low for one in given), max(one.tension_high for one in given)
-    grid = np.linspace(low, high, _GRID_STEPS + 1)
+    grid = tension_grid(pulls)
     values: Values = {"tension_grid": grid, "pull_term": np.arange(4)}
     values |= _on_axis("quasi_static_spring_constant", pulls, quasi_static_spring_constant, grid)
     values |= _on_axis("quasi_static_strain", pulls, strain_at_tension, grid)

@@ -8,7 +8,7 @@ from itertools import chain
 
 import numpy as np
 
-from reduction.archive.reasons import CLOCK, MEAN_READING, NO_YES, SETTING
+from reduction.archive.reasons import CLOCK, NO_YES, SETTING
 from reduction.archive.values import Values, numbers, pad, texts
 from reduction.archive.variable import Variable, count, flag, label, measured, stated
 from reduction.line.failure import CyclesToFailure
@@ -24,7 +24,6 @@ __all__ = ["ROPE_ROWS", "rope_values"]
 _S = ("specimen",)
 _P = ("held_pair",)
 _T = ("held_pair", "held_pair_point")
-_MEAN_OF_CYCLES = "mean over the cycles of dynamic_stiffness; each cycle has an uncertainty"
 _U = "_standard_uncertainty"
 _OVER = re.compile("_over_strength|^creep_compliance")
 
@@ -49,18 +48,18 @@ ROPE_ROWS: tuple[Variable, ...] = tuple(
         measured("dynamic_stiffness", _S),
         measured("dynamic_stiffness_over_strength", _S),
         measured("dynamic_stiffness_drift", _S),
-        stated("dynamic_frequency", _S, _MEAN_OF_CYCLES),
-        stated("dynamic_mean_tension", _S, _MEAN_OF_CYCLES),
-        stated("dynamic_tension_amplitude", _S, _MEAN_OF_CYCLES),
-        stated("dynamic_mean_tension_over_strength", _S, _MEAN_OF_CYCLES),
-        stated("dynamic_tension_amplitude_over_strength", _S, _MEAN_OF_CYCLES),
+        measured("dynamic_frequency", _S),
+        measured("dynamic_mean_tension", _S),
+        measured("dynamic_tension_amplitude", _S),
+        measured("dynamic_mean_tension_over_strength", _S),
+        measured("dynamic_tension_amplitude_over_strength", _S),
         # quasi-static stiffness
         count("held_pair", _P),
         label("held_pair_specimen", _P),
         count("held_pair_low_hold", _P),
         count("held_pair_high_hold", _P),
-        stated("held_pair_low_tension", _P, MEAN_READING),
-        stated("held_pair_high_tension", _P, MEAN_READING),
+        measured("held_pair_low_tension", _P),
+        measured("held_pair_high_tension", _P),
         stated("static_reference_time", _P, SETTING),
         measured("static_stiffness", _P),
         measured("static_stiffness_over_strength", _P),
@@ -73,7 +72,7 @@ ROPE_ROWS: tuple[Variable, ...] = tuple(
             "static_stiffness_at_time", _T, "mean of readings: static_stiffness has their scatter"
         ),
         # creep
-        stated("creep_tension_over_strength", ("hold",), MEAN_READING),
+        measured("creep_tension_over_strength", ("hold",)),
         measured("creep_compliance_per_decade", ("hold",)),
         # cycles to failure
         count("cycles_to_failure", _S),
@@ -145,7 +144,7 @@ def _bedding_values(bedding: BeddingIn, strength: Floats) -> Values:
 
 def _dynamic_values(dynamic: DynamicStiffness) -> Values:
     """The one level of a step."""
-    given = {
+    given: Values = {
         "dynamic_cycles": dynamic.n_cycles,
         "dynamic_stiffness": dynamic.dynamic_stiffness,
         f"dynamic_stiffness{_U}": dynamic.dynamic_stiffness_standard_uncertainty,
@@ -160,7 +159,13 @@ def _dynamic_values(dynamic: DynamicStiffness) -> Values:
         "dynamic_tension_amplitude": dynamic.tension_amplitude,
         "dynamic_mean_tension_over_strength": dynamic.mean_tension_over_strength,
         "dynamic_tension_amplitude_over_strength": dynamic.tension_amplitude_over_strength,
+        f"dynamic_frequency{_U}": dynamic.frequency_standard_uncertainty,
+        f"dynamic_mean_tension{_U}": dynamic.mean_tension_standard_uncertainty,
+        f"dynamic_tension_amplitude{_U}": dynamic.tension_amplitude_standard_uncertainty,
     }
+    for name in ("dynamic_mean_tension", "dynamic_tension_amplitude"):
+        share = given[f"{name}_over_strength"] / given[name]
+        given[f"{name}_over_strength{_U}"] = given[f"{name}{_U}"] * share
     return {name: array[:, 0] for name, array in given.items()}
 
 
@@ -186,6 +191,12 @@ def _held_values(pairs: Sequence[HeldPair], strength: dict[str, float]) -> Value
         "held_pair_high_hold": np.array([one.high_hold for one in pairs]),
         "held_pair_low_tension": numbers([one.low_tension for one in pairs]),
         "held_pair_high_tension": numbers([one.high_tension for one in pairs]),
+        f"held_pair_low_tension{_U}": numbers(
+            [one.low_tension_standard_uncertainty for one in pairs]
+        ),
+        f"held_pair_high_tension{_U}": numbers(
+            [one.high_tension_standard_uncertainty for one in pairs]
+        ),
         "static_reference_time": at,
         "static_stiffness": level,
         f"static_stiffness{_U}": u_level,
@@ -208,6 +219,8 @@ def _creep_values(creep: Sequence[CreepOfHold]) -> Values:
     spread = numbers([one.creep_per_decade_standard_uncertainty for one in creep])
     return {
         "creep_tension_over_strength": share,
+        f"creep_tension_over_strength{_U}": share
+        * numbers([one.tension_standard_uncertainty / one.tension for one in creep]),
         "creep_compliance_per_decade": numbers([one.creep_compliance_per_decade for one in creep]),
         f"creep_compliance_per_decade{_U}": spread / share,
     }

@@ -11,9 +11,9 @@ __all__ = [
     "CHECK",
     "CLOCK",
     "CRITERION",
-    "MEAN_READING",
     "MOVEMENT",
     "NO_YES",
+    "OF_MARKS",
     "PART",
     "READING",
     "SEE_PER_DECADE",
@@ -22,10 +22,10 @@ __all__ = [
     "STATED",
     "STATISTIC",
     "TWO_METHODS",
+    "WHERE_IT_STOOD",
 ]
 
 READING = "a reading: its uncertainty is that of the channel"
-MEAN_READING = "mean of readings: its uncertainty is that of the channel"
 CLOCK = "a reading of the clock"
 BOUND = "bound"
 SETTING = "setting"
@@ -37,6 +37,8 @@ STATISTIC = "a statistic of a test"
 SPREAD = "is itself a measure of spread"
 PART = "is part of an uncertainty"
 MOVEMENT = "what the machine did; no number is made from it"
+OF_MARKS = "a reading at the marks: what they are known to is in the coefficients fitted to them"
+WHERE_IT_STOOD = "tells standstills apart; what a hold gives has its uncertainty with the hold"
 TWO_METHODS = "two methods on the same marks: what they get wrong they share"
 SEE_PER_DECADE = "from a part of the cycles; peak_tension_per_decade has one, from all of them"
 

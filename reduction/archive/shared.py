@@ -30,6 +30,8 @@ __all__ = [
 
 COMPONENT = "uncertainty_component"
 _S = ("specimen",)
+_H = ("hold",)
+_G = ("specimen", "branch_name", "segment")
 _B = ("specimen", "branch_name", "strain_bin")
 _F = ("specimen", "branch_name", "first_loading_strain_bin")
 _OF_TEST = (
@@ -39,6 +41,27 @@ _OF_TEST = (
     "quasi_static_spring_constant", "dissipation_spring_constant", "relaxation_time",
     "dashpot_coefficient",
 )  # fmt: skip
+_OF_SPECIMEN = (
+    "diameter", "area", "slack_strain_at_unloading", "permanent_set",
+    "peak_tension_per_decade", "dynamic_modulus_per_decade",
+    "bedding_first_stiffness", "bedding_last_stiffness", "bedding_first_stiffness_over_strength",
+    "bedding_last_stiffness_over_strength", "bedding_stiffening", "bedding_permanent_strain",
+    "dynamic_stiffness", "dynamic_stiffness_over_strength", "dynamic_stiffness_drift",
+    "dynamic_mean_tension", "dynamic_mean_tension_over_strength",
+    "dynamic_tension_amplitude", "dynamic_tension_amplitude_over_strength",
+    "pull_peak_tension", "pull_peak_tension_over_strength", "pull_peak_strain",
+    "tensile_strength", "strain_at_failure",
+)  # fmt: skip
+_OF_HOLD = (
+    "hold_strain", "hold_initial_tension", "hold_final_tension", "relaxation_drop",
+    "relaxation_rate_per_decade", "creep_rate_per_decade", "long_time_tension",
+    "creep_tension_over_strength", "creep_compliance_per_decade",
+)  # fmt: skip
+_OF_PAIR = (
+    "held_pair_low_tension", "held_pair_high_tension", "static_stiffness",
+    "static_stiffness_over_strength", "static_stiffness_per_decade",
+    "static_stiffness_per_decade_over_strength",
+)  # fmt: skip
 SHARED: dict[str, tuple[str, ...]] = {
     **{f"test_{name}": _S for name in _OF_TEST},
     "tangent_modulus": _B,
@@ -46,7 +69,24 @@ SHARED: dict[str, tuple[str, ...]] = {
     "branch_tension": _B,
     "tangent_modulus_first_loading": _F,
     "branch_tension_first_loading": _F,
-    "segment_modulus": ("specimen", "branch_name", "segment"),
+    "segment_modulus": _G,
+    "segment_tension_low": _G,
+    "segment_tension_high": _G,
+    **dict.fromkeys(_OF_SPECIMEN, _S),
+    "quasi_static_spring_constant": ("specimen", "tension_grid"),
+    "quasi_static_strain": ("specimen", "tension_grid"),
+    "strain_at_break_share": ("specimen", "break_share"),
+    "stress_at_strain": ("specimen", "strain_level"),
+    **dict.fromkeys(_OF_HOLD, _H),
+    "tension_at_time": ("hold", "hold_time"),
+    "strain_at_time": ("hold", "hold_time"),
+    "prony_tension": ("hold", "prony_term"),
+    **dict.fromkeys(_OF_PAIR, ("held_pair",)),
+    "slip_tension_step": ("slip",),
+    "slip_length": ("slip",),
+    "elastomer_modulus": ("elastomer_parameter",),
+    "elastomer_exponent": ("elastomer_parameter",),
+    "modulus_ratio": ("comparison", "branch_name", "ratio_strain_bin"),
 }
 """Quantities whose contributions are kept, with their dimensions."""
 # the curve of one cycle has the shared error of the mean

@@ -12,13 +12,16 @@ from reduction.errors import ArchiveError
 from reduction.product import History
 from reduction.record import Floats, Specimen
 from reduction.strain.model import StrainModel
+from reduction.uncertainty.product import Contributions
 
-__all__ = ["history_values", "specimen_values", "strain_model_values"]
+__all__ = ["history_values", "random_of_section", "specimen_values", "strain_model_values"]
 
 
 def specimen_values(specimens: Sequence[Specimen]) -> Values:
     """Return what is known of each specimen before the test."""
     known = [one.mean_diameter if one.diameter else None for one in specimens]
+    area = numbers([one.area if one.diameter else None for one in specimens])
+    spread = numbers([_of_readings(one.diameter) for one in specimens])
     return {
         "specimen": texts([one.name for one in specimens]),
         "specimen_kind": texts([one.kind for one in specimens]),
@@ -26,6 +29,7 @@ def specimen_values(specimens: Sequence[Specimen]) -> Values:
         "specimen_construction": texts([one.construction for one in specimens]),
         "specimen_condition": texts([one.condition for one in specimens]),
         "diameter": numbers(known),
+        "diameter_standard_uncertainty": spread,
         "diameter_reading": pad([one.diameter for one in specimens]),
         "stretched_diameter_strain": pad(
             [[strain for strain, _ in one.stretched_diameters] for one in specimens]
@@ -33,7 +37,8 @@ def specimen_values(specimens: Sequence[Specimen]) -> Values:
         "stretched_diameter": pad(
             [[diameter for _, diameter in one.stretched_diameters] for one in specimens]
         ),
-        "area": numbers([one.area if one.diameter else None for one in specimens]),
+        "area": area,
+        "area_standard_uncertainty": 2 * area * spread / numbers(known),
         "rated_break_strength": numbers([one.rated_break_strength for one in specimens]),
         "rated_break_strength_source": texts(
             [one.rated_break_strength_source for one in specimens]
@@ -41,6 +46,27 @@ def specimen_values(specimens: Sequence[Specimen]) -> Values:
         "declared_gauge_length": numbers([one.gauge_length for one in specimens]),
         **_linear_densities(specimens),
     }
+
+
+def _of_readings(diameter: Sequence[float]) -> float:
+    """Standard error of the mean; one reading shows none."""
+    if len(diameter) < 2:
+        return float("nan")
+    return float(np.std(diameter, ddof=1) / np.sqrt(len(diameter)))
+
+
+def random_of_section(specimens: Sequence[Specimen], contributions: Contributions) -> Values:
+    """Random part of diameters and areas where an uncertainty of the mean diameter is stated.
+
+    What is stated is of the mean of the readings: their scatter is in it.
+    """
+    rows = contributions.values.get("diameter")
+    if rows is None:
+        return {}
+    stated = np.any(rows != 0, axis=0)
+    own = specimen_values(specimens)
+    names = ("diameter", "area")
+    return {name: np.where(stated, 0.0, own[f"{name}_standard_uncertainty"]) for name in names}
 
 
 def _linear_densities(specimens: Sequence[Specimen]) -> Values:

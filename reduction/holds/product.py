@@ -51,6 +51,12 @@ class HoldResult:
     ramp_centre_time : float
         When the ramp acts as a step: zero of the time of the rate per decade; NaN where the
         record does not show the ramp. [s]
+    hold_strain_standard_uncertainty : float
+        Of the mean (type A), as the next ones. [1]
+    hold_initial_tension_standard_uncertainty, hold_final_tension_standard_uncertainty : float
+        [N]
+    tension_at_time_standard_uncertainty, strain_at_time_standard_uncertainty : ndarray
+        Shape (n_times,), or empty. [N], [1]
     """
 
     specimen: str
@@ -77,6 +83,11 @@ class HoldResult:
     refusals: tuple[str, ...] = field(default=())
     notes: tuple[str, ...] = field(default=())
     ramp_centre_time: float = float("nan")
+    hold_strain_standard_uncertainty: float = float("nan")
+    hold_initial_tension_standard_uncertainty: float = float("nan")
+    hold_final_tension_standard_uncertainty: float = float("nan")
+    tension_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
+    strain_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

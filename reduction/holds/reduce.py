@@ -141,14 +141,13 @@ def _result(
     drop = Rate(np.nan, np.nan, np.nan, np.nan)
     rate: Rate | None = None
     prony: PronyFit | None = None
-    tension_at, strain_at = nothing, nothing
-    initial = final = np.nan
+    tension_at = strain_at = (nothing, nothing)
+    ends = Ends(*(np.nan,) * 6)
     known = np.isfinite(hold.strain)
     if hold.time.size < 3:
         hold.refusals.append(f"everything: {hold.time.size} samples in the hold")
     else:
         ends = hold_ends(hold)
-        initial, final = ends.initial, ends.final
         tension_at = value_at_times(hold.time - hold.start_time, hold.tension, times)
         if known.sum() > 1:
             strain_at = value_at_times(
@@ -170,15 +169,15 @@ def _result(
         hold_start_time=hold.start_time,
         hold_duration=hold.duration,
         hold_strain=float(np.mean(hold.strain[known])) if known.any() else np.nan,
-        hold_initial_tension=initial,
-        hold_final_tension=final,
+        hold_initial_tension=ends.initial,
+        hold_final_tension=ends.final,
         relaxation_drop=drop.value,
         relaxation_drop_standard_uncertainty=drop.standard_uncertainty,
         rate_per_decade=shown.value,
         rate_per_decade_standard_uncertainty=shown.standard_uncertainty,
         times=times,
-        tension_at_time=tension_at,
-        strain_at_time=strain_at,
+        tension_at_time=tension_at[0],
+        strain_at_time=strain_at[0],
         prony_tension=_EMPTY if prony is None else prony.tension,
         prony_tension_standard_uncertainty=(
             _EMPTY if prony is None else prony.tension_standard_uncertainty
@@ -195,6 +194,11 @@ def _result(
         refusals=tuple(hold.refusals),
         notes=tuple(hold.notes),
         ramp_centre_time=np.nan if hold.ramp is None else hold.ramp.centre_time,
+        hold_strain_standard_uncertainty=hold.strain_uncertainty,
+        hold_initial_tension_standard_uncertainty=ends.initial_uncertainty,
+        hold_final_tension_standard_uncertainty=ends.final_uncertainty,
+        tension_at_time_standard_uncertainty=tension_at[1],
+        strain_at_time_standard_uncertainty=strain_at[1],
     )
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite, as_increasing, as_same_shape
+from reduction.cycles.readings import reading_noise
 from reduction.errors import DataError
 from reduction.holds.blocks import Blocks
 from reduction.moduli.noise import sample_noise
@@ -186,7 +187,9 @@ def rate_per_decade(blocks: Blocks, *, ramp_duration: float) -> Rate:
     return Rate(slope, float(np.sqrt(variance)), float(elapsed[0]), float(elapsed[-1]))
 
 
-def value_at_times(elapsed: ArrayLike, values: ArrayLike, times: ArrayLike) -> Floats:
+def value_at_times(
+    elapsed: ArrayLike, values: ArrayLike, times: ArrayLike
+) -> tuple[Floats, Floats]:
     """Series at stated times, each from a line through the samples within a tenth of it.
 
     Parameters
@@ -200,8 +203,9 @@ def value_at_times(elapsed: ArrayLike, values: ArrayLike, times: ArrayLike) -> F
 
     Returns
     -------
-    at_times : ndarray, shape (n_times,)
-        NaN where the series does not reach from before to after the time, or has a gap of
+    at_times, standard_uncertainty : ndarray, shape (n_times,)
+        The value, and that of the line by the noise of the samples (type A); NaN where
+        the series does not reach from before to after the time, or has a gap of
         more than a fifth of the time there. [unit of the series]
 
     Raises
@@ -211,12 +215,14 @@ def value_at_times(elapsed: ArrayLike, values: ArrayLike, times: ArrayLike) -> F
 
     Examples
     --------
-    >>> print(value_at_times([0.0, 1.0, 2.0, 3.0], [8.0, 6.0, 4.0, 2.0], [1.5, 5.0]))
-    [ 5. nan]
+    >>> value, spread = value_at_times([0.0, 1.0, 2.0, 3.0], [8.0, 6.0, 4.0, 2.0], [1.5, 5.0])
+    >>> print(value, spread)
+    [ 5. nan] [ 0. nan]
     """
     time = as_increasing("elapsed", elapsed)
     time, series = as_same_shape(elapsed=time, values=as_finite("values", values))
-    found = np.full(np.shape(times), np.nan)
+    found, spread = np.full((2, *np.shape(times)), np.nan)
+    noise = reading_noise(series)
     for index, wanted in enumerate(np.asarray(times, dtype=np.float64)):
         after = int(np.searchsorted(time, wanted))
         if after == time.size or (after == 0 and time[0] != wanted):
@@ -225,13 +231,16 @@ def value_at_times(elapsed: ArrayLike, values: ArrayLike, times: ArrayLike) -> F
         if last - first < 4:
             # Too few samples for a line of their own: the two beside the time.
             close = after == 0 or time[after] - time[after - 1] <= max(0.2 * wanted, _step(time))
-            found[index] = np.interp(wanted, time, series) if close else np.nan
+            if close:
+                found[index], spread[index] = np.interp(wanted, time, series), noise
             continue
         x, y = time[first:last] - wanted, series[first:last]
         mean = x.mean()
-        slope = float((x - mean) @ y) / float((x - mean) @ (x - mean))
+        square = float((x - mean) @ (x - mean))
+        slope = float((x - mean) @ y) / square
         found[index] = y.mean() - slope * mean
-    return found
+        spread[index] = noise * np.sqrt(1 / x.size + mean**2 / square)
+    return found, spread
 
 
 def _step(time: Floats) -> float:

@@ -66,6 +66,14 @@ class Hold:
         return float(self.time[-1] - self.time[0]) if self.time.size else 0.0
 
     @property
+    def strain_uncertainty(self) -> float:
+        """Of its mean strain (type A); NaN with fewer than two readings. [1]."""
+        known = self.strain[np.isfinite(self.strain)]
+        if known.size < 2:
+            return float("nan")
+        return end_mean(known, n_samples=known.size, at_end=True)[1]
+
+    @property
     def since_centre(self) -> Floats:
         """Time from the centre of the ramp, or from the first sample where none is known. [s]."""
         return self.time - (self.time[0] if self.ramp is None else self.ramp.centre_time)
@@ -86,12 +94,16 @@ class Ends:
         Means of short stretches. [N]
     drop, drop_uncertainty : float
         Share lost and its standard uncertainty (type A). [1]
+    initial_uncertainty, final_uncertainty : float
+        Of the two means (type A). [N]
     """
 
     initial: float
     final: float
     drop: float
     drop_uncertainty: float
+    initial_uncertainty: float
+    final_uncertainty: float
 
 
 def hold_ends(hold: Hold) -> Ends:
@@ -139,7 +151,8 @@ def hold_ends(hold: Hold) -> Ends:
     )
     drop = float(relaxation_drop(initial, final))
     uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / initial)
-    return Ends(initial, final, drop, uncertainty if drop == drop else np.nan)
+    known = uncertainty if drop == drop else np.nan
+    return Ends(initial, final, drop, known, u_initial, u_final)
 
 
 def _step_reason(hold: Hold) -> str | None:

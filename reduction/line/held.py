@@ -48,6 +48,8 @@ class HeldPair:
         Secant between them against the time for which the higher one was held.
     reason : str
         Why there is no stiffness; empty where there is.
+    low_tension_standard_uncertainty, high_tension_standard_uncertainty : float
+        Of the means at the ends (type A). [N]
     """
 
     specimen: str
@@ -57,6 +59,8 @@ class HeldPair:
     high_tension: float
     stiffness: StaticStiffness | None
     reason: str = ""
+    low_tension_standard_uncertainty: float = float("nan")
+    high_tension_standard_uncertainty: float = float("nan")
 
 
 def _end_of(values: Floats) -> tuple[float, float]:
@@ -186,20 +190,23 @@ def held_pairs(
                 )
             except (DataError, FitError) as error:
                 reason = str(error)
+            ends = _level(low, low_mean), _level(high, high_mean)
             pairs.append(
                 HeldPair(
                     specimen=name,
                     low_hold=int(number[upper - 1]),
                     high_hold=int(number[upper]),
-                    low_tension=_level(low, low_mean),
-                    high_tension=_level(high, high_mean),
+                    low_tension=ends[0][0],
+                    high_tension=ends[1][0],
                     stiffness=stiffness,
                     reason=reason,
+                    low_tension_standard_uncertainty=ends[0][1],
+                    high_tension_standard_uncertainty=ends[1][1],
                 )
             )
     return tuple(pairs)
 
 
-def _level(hold: Hold, mean: float) -> float:
-    """Tension at the end of a hold; its mean where readings are too few."""
-    return _end_of(hold.tension)[0] if hold.tension.size > 2 else float(mean)
+def _level(hold: Hold, mean: float) -> tuple[float, float]:
+    """Tension at the end of a hold; its mean where readings are too few for a scatter."""
+    return _end_of(hold.tension) if hold.tension.size > 2 else (float(mean), float("nan"))

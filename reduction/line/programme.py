@@ -87,7 +87,8 @@ class DynamicStiffness:
     drift_per_cycle, drift_per_cycle_standard_uncertainty : ndarray
         Slope of the stiffness against the cycle over the same cycles. [N]
     frequency, mean_tension, tension_amplitude : ndarray
-        Means over the same cycles. [Hz], [N], [N]
+        Means over the same cycles, each with its standard error as that of the stiffness in
+        ``..._standard_uncertainty``. [Hz], [N], [N]
     dynamic_stiffness_over_strength, dynamic_stiffness_over_strength_standard_uncertainty : ndarray
         Over the rated break strength, which counts as exact. [1]
     mean_tension_over_strength, tension_amplitude_over_strength : ndarray
@@ -109,6 +110,9 @@ class DynamicStiffness:
     dynamic_stiffness_over_strength_standard_uncertainty: Floats
     mean_tension_over_strength: Floats
     tension_amplitude_over_strength: Floats
+    frequency_standard_uncertainty: Floats
+    mean_tension_standard_uncertainty: Floats
+    tension_amplitude_standard_uncertainty: Floats
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -259,7 +263,7 @@ def dynamic_stiffness(
     notes = []
     numbers = np.full((4, n_specimens, names.size), np.nan)
     used = np.zeros((n_specimens, names.size), dtype=np.int64)
-    means = np.full((3, n_specimens, names.size), np.nan)
+    means, errors = np.full((2, 3, n_specimens, names.size), np.nan)
     for column, name in enumerate(names):
         cycles = np.flatnonzero(labels == name)
         if cycles.size < last_cycles:
@@ -269,7 +273,9 @@ def dynamic_stiffness(
         used[:, column] = np.isfinite(series).sum(axis=1)
         numbers[:, :, column] = np.array([_mean_and_drift(row) for row in series]).T
         for row, quantity in enumerate(("frequency", "mean_tension", "tension_amplitude")):
-            means[row, :, column] = mean_of_rows(getattr(loops, quantity)[:, cycles])
+            values = getattr(loops, quantity)[:, cycles]
+            means[row, :, column] = mean_of_rows(values)
+            errors[row, :, column] = [_mean_and_drift(one)[1] for one in values]
     return DynamicStiffness(
         level=names,
         n_cycles=used,
@@ -284,5 +290,8 @@ def dynamic_stiffness(
         dynamic_stiffness_over_strength_standard_uncertainty=numbers[1] / strength,
         mean_tension_over_strength=means[1] / strength,
         tension_amplitude_over_strength=means[2] / strength,
+        frequency_standard_uncertainty=errors[0],
+        mean_tension_standard_uncertainty=errors[1],
+        tension_amplitude_standard_uncertainty=errors[2],
         notes=tuple(notes),
     )

@@ -99,6 +99,8 @@ class CreepOfHold:
         Of the hold. [s]
     reason : str
         Why there is no number; empty where there is.
+    tension_standard_uncertainty : float
+        Of the means at both ends of the hold (type A). [N]
     """
 
     specimen: str
@@ -109,6 +111,7 @@ class CreepOfHold:
     creep_compliance_per_decade: float
     duration: float
     reason: str = ""
+    tension_standard_uncertainty: float = float("nan")
 
 
 def static_stiffness(
@@ -280,6 +283,10 @@ def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan"
         as_positive("rated break strength", rated_break_strength)
     tension = (hold.hold_initial_tension + hold.hold_final_tension) / 2
     share = tension / rated_break_strength
+    of_ends = (
+        hold.hold_initial_tension_standard_uncertainty,
+        hold.hold_final_tension_standard_uncertainty,
+    )
     return CreepOfHold(
         specimen=hold.specimen,
         creep_per_decade=hold.rate_per_decade,
@@ -288,5 +295,6 @@ def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan"
         tension_over_strength=share,
         creep_compliance_per_decade=hold.rate_per_decade / share if share else float("nan"),
         duration=hold.hold_duration,
+        tension_standard_uncertainty=float(np.hypot(*of_ends)) / 2,
         reason="; ".join(hold.refusals) if np.isnan(hold.rate_per_decade) else "",
     )

@@ -83,7 +83,8 @@ class Segments:
     """Piecewise-linear moduli, the form of Tables 5 and 6 of WHOI-2005-10.
 
     Every array has shape (n_specimens, 2, n_segments), NaN where a branch has
-    fewer segments.  ``segment_misfit`` is the rms distance of the branch from the line [N],
+    fewer segments.  Tensions at the two ends have the scatter of the mean branch there.
+    ``segment_misfit`` is the rms distance of the branch from the line [N],
     ``criterion`` says how the number of segments was chosen.
     """
 
@@ -92,7 +93,9 @@ class Segments:
     segment_strain_low: Floats
     segment_strain_high: Floats
     segment_tension_low: Floats
+    segment_tension_low_standard_uncertainty: Floats
     segment_tension_high: Floats
+    segment_tension_high_standard_uncertainty: Floats
     segment_misfit: Floats
     criterion: str
 

@@ -107,7 +107,7 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
             found=f"shape {areas.shape}",
             needed=f"({n_specimens},)",
         )
-    table = np.full((7, n_specimens, 2, settings.maximum_segments), np.nan)
+    table = np.full((9, n_specimens, 2, settings.maximum_segments), np.nan)
     for at in np.ndindex(n_specimens, 2):
         if np.count_nonzero(_reached(curves, at)) < _FEWEST_BINS:
             continue
@@ -121,7 +121,9 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
         segment_strain_low=table[2],
         segment_strain_high=table[3],
         segment_tension_low=table[4],
+        segment_tension_low_standard_uncertainty=table[7],
         segment_tension_high=table[5],
+        segment_tension_high_standard_uncertainty=table[8],
         segment_misfit=table[6],
         criterion="fewest contiguous segments, best breakpoints, whose rms distance from the "
         f"mean branch is within {100 * settings.segment_tolerance:g} % of its range of tension and "
@@ -139,7 +141,7 @@ def _reached(curves: ModulusCurves, at: tuple[int, ...]) -> Bools:
 def _segment_columns(
     curves: ModulusCurves, at: tuple[int, ...], area: float, settings: ModulusSettings
 ) -> Floats:
-    """Modulus, uncertainty, strain and tension limits, misfit of a branch, (7, n_segments)."""
+    """Modulus, its uncertainty, strains, tensions, misfit, their uncertainty: (9, n_segments)."""
     used = _reached(curves, at)
     strain, tension = curves.strain_bin[used], curves.branch_tension[at][used]
     # roughness from bin to bin: a drift of the whole branch from cycle to cycle bends no line
@@ -163,6 +165,13 @@ def _segment_columns(
             _spread(curves, at, used, inside, windows=(stop - start) / curves.window)
         )
     rows = [modulus, uncertainty, low, high, line.ordinate[:-1], line.ordinate[1:], misfit]
+    # from cycle to cycle the branch moves as a whole: the line there is no surer than the branch
+    scatter = curves.branch_tension_standard_uncertainty[at][used]
+    known = np.isfinite(scatter)
+    at_knot = np.full(line.knot.size, np.nan)
+    if known.any():
+        at_knot = np.interp(line.knot, strain[known], scatter[known])
+    rows += [at_knot[:-1], at_knot[1:]]
     return np.array(rows, dtype=np.float64)
 
 

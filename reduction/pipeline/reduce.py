@@ -32,6 +32,7 @@ from reduction.pipeline.plausibility import plausibility_notes
 from reduction.pipeline.programme import rope_step
 from reduction.pipeline.rope import PullConditions, parts_of_line, pull_specimens
 from reduction.pipeline.shared import contributions_of_test, shared_uncertainty_of_cycles
+from reduction.pipeline.sharedratios import with_shared_ratios
 from reduction.pipeline.spread import strain_spread
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
@@ -193,7 +194,7 @@ def reduce_test(
                 test, instruments, cycles=settings.cycles
             ),
         )
-    return with_line_spread(test, settings.cycles)
+    return with_line_spread(with_shared_ratios(test), settings.cycles)
 
 
 def reduce_stepwise_test(

@@ -11,12 +11,19 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from reduction.line.product import SlowPull
+from reduction.line.pullgrid import BREAK_SHARES, tension_grid
 from reduction.pipeline.sharedcurves import of_curves, of_segments, strain_rates
+from reduction.pipeline.sharedcycles import of_cycles, of_ends, of_slips
+from reduction.pipeline.sharedholds import of_holds, of_pairs
 from reduction.pipeline.sharedloops import of_dynamic_modulus, of_line, of_loops
+from reduction.pipeline.sharedmaterial import of_elastomers, of_material
+from reduction.pipeline.sharedpulls import of_pull
+from reduction.pipeline.sharedratios import of_ratios
 from reduction.product import ReducedTest
 from reduction.record import Floats, areas_of
 from reduction.settings import CycleSettings
-from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
+from reduction.uncertainty.join import merged, renamed, stacked
+from reduction.uncertainty.product import Contributions, InstrumentErrors
 
 __all__ = ["contributions_of_test", "shared_uncertainty_of_cycles"]
 
@@ -47,15 +54,22 @@ def contributions_of_test(
         Shape (n_components, n_specimens, ...); None where no error is shared.
     """
     own = [
-        _merged(
+        merged(
             list(_of_specimen(test, index, one, cycles, None if pulls is None else pulls[index]))
         )
         for index, one in enumerate(errors)
     ]
-    component = tuple(sorted({one for part in own for one in part.component}))
-    if not component:
-        return None
-    return Contributions(component, _stacked(own, component))
+    found = stacked(own)
+    parts = [
+        found,
+        *of_holds(test, errors),
+        *of_pairs(test, errors),
+        *of_slips(test, errors),
+        *of_elastomers(test, errors, found),
+        *of_ratios(test, found),
+    ]
+    whole = merged(parts)
+    return whole if whole.component else None
 
 
 def shared_uncertainty_of_cycles(
@@ -85,37 +99,17 @@ def shared_uncertainty_of_cycles(
     ]
     if not any(part.component for part in found):
         return {}
+    ends = () if test.end_moduli is None else ("secant_modulus", "chord_modulus")
+    if ends:
+        areas = areas_of(test.specimens)
+        found = [
+            merged([part, *of_ends(test, index, one, float(areas[index]))])
+            for index, (part, one) in enumerate(zip(found, errors, strict=True))
+        ]
     names = found[0].values
     return {
         name: np.stack([part.shared_standard_uncertainty(name) for part in found]) for name in names
     }
-
-
-def _merged(parts: list[Contributions]) -> Contributions:
-    """Contributions to different quantities of one specimen, on the same components."""
-    component = tuple(sorted({one for part in parts for one in part.component}))
-    values = {}
-    for part in parts:
-        rows = [component.index(one) for one in part.component]
-        for name, array in part.values.items():
-            table = np.zeros((len(component), *array.shape[1:]))
-            table[rows] = array
-            values[name] = table
-    return Contributions(component, values)
-
-
-def _stacked(own: Sequence[Contributions], component: tuple[Component, ...]) -> dict[str, Floats]:
-    """One table a quantity, specimens behind components; NaN where a specimen has none."""
-    tables = {}
-    shapes = {name: array.shape[1:] for part in own for name, array in part.values.items()}
-    for name, shape in shapes.items():
-        table = np.zeros((len(component), len(own), *shape))
-        for index, part in enumerate(own):
-            if name in part.values:
-                rows = [component.index(one) for one in part.component]
-                table[rows, index] = part.values[name]
-        tables[name] = table
-    return tables
 
 
 def _of_specimen(
@@ -128,6 +122,15 @@ def _of_specimen(
     model = test.strain_models[index]
     area = float(areas_of(test.specimens)[index])
     summary = test.amplitude
+    yield from of_material(test, index, errors, model, area)
+    yield from of_cycles(test, index, errors, model, cycles, area)
+    own = test.pulls[index] if test.pulls else None
+    if own is not None:
+        strength = test.specimens[index].rated_break_strength
+        yield from of_pull(
+            own, errors, model, tension=tension_grid(test.pulls), share=np.array(BREAK_SHARES),
+            rated_break_strength=strength,
+        )  # fmt: skip
     if test.curves is not None:
         rate = strain_rates(test, index, model, cycles)
         yield of_curves(test.curves, "", index, errors, model, area, rate)
@@ -149,6 +152,4 @@ def _of_specimen(
 
 
 def _named(found: Contributions, prefix: str) -> Contributions:
-    return Contributions(
-        found.component, {f"{prefix}{name}": rows for name, rows in found.values.items()}
-    )
+    return renamed(found, {name: f"{prefix}{name}" for name in found.values})

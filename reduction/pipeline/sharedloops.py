@@ -12,6 +12,7 @@ from reduction.cycles.product import Cycles, Loops
 from reduction.line.product import LineParameters, SlowPull
 from reduction.line.quasistatic import quasi_static_spring_constant, strain_at_tension
 from reduction.moduli.product import AmplitudeSummary
+from reduction.pipeline.sharedpulls import compliance_slope
 from reduction.record import Floats
 from reduction.settings import CycleSettings
 from reduction.strain.inverse import position_by_model
@@ -31,7 +32,6 @@ _LOOP = (
     "loss_spring_constant",
 )  # fmt: skip
 _K_0 = "quasi_static_spring_constant"
-_STEP = 1e-3  # of the range of a pull, for the slope of its compliance
 
 
 def speed_ratio(
@@ -111,14 +111,11 @@ def of_line(
     """K_0 of the pull, whose fit all runs of one pull share, and what follows from it."""
     at = np.asarray(summary.mean_tension[index])
     constant, spread = quasi_static_spring_constant(pull, at)
-    step = _STEP * pull.tension_half_range
-    beside = [1 / quasi_static_spring_constant(pull, at + way * step)[0] for way in (1, -1)]
-    bend = (beside[0] - beside[1]) / (2 * step)
     field = error_field(errors, model, strain=strain_at_tension(pull, at)[0], tension=at)
     of_pull = pull_contributions(
         field,
         quasi_static_spring_constant=constant,
-        compliance_slope=np.where(np.isfinite(bend), bend, 0.0),
+        compliance_slope=compliance_slope(pull, at),
     )
     fit = Component("quasi_static_fit", errors.specimen)
     of_pull = Contributions(

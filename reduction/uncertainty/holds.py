@@ -74,8 +74,9 @@ def hold_contributions(
     >>> none = np.empty(0)
     >>> hold = HoldResult("rope", "relaxation", 0.0, 600.0, 1.0, 400.0, 320.0, 0.2, 0.0, 0.08, 0.0,
     ...     none, none, none, none, none, none, none, np.nan, np.nan)
-    >>> found = hold_contributions(
-    ...     lambda strain, tension: error_field(errors, model, strain=strain, tension=tension), hold)
+    >>> def field_at(strain, tension):
+    ...     return error_field(errors, model, strain=strain, tension=tension)
+    >>> found = hold_contributions(field_at, hold)
     >>> print(found.values["relaxation_drop"].round(6), found.values["hold_final_tension"])
     [ 0.    -0.002] [3.2 4. ]
     """

@@ -134,6 +134,4 @@ def renamed(found: Contributions, names: dict[str, str]) -> Contributions:
     >>> print(list(renamed(cell, {"tension": "peak_tension"}).values))
     ['peak_tension']
     """
-    return Contributions(
-        found.component, {new: found.values[name] for name, new in names.items()}
-    )
+    return Contributions(found.component, {new: found.values[name] for name, new in names.items()})

@@ -88,13 +88,13 @@ def test_values_at_times_are_free_of_noise_where_samples_are_many():
     rng = np.random.default_rng(2)
     time = np.arange(0, 700, 0.01)
     series = 400 - 10 * np.log1p(time) + rng.standard_normal(time.size)
-    found = value_at_times(time, series, [60.0, 600.0])
+    found, _ = value_at_times(time, series, [60.0, 600.0])
     np.testing.assert_allclose(found, 400 - 10 * np.log1p([60.0, 600.0]), atol=0.2)
 
 
 def test_values_beyond_the_series_and_in_gaps_are_nan():
     time = np.array([0.0, 1.0, 2.0, 3.0, 100.0, 101.0])
-    found = value_at_times(time, time, [0.0, 1.0, 50.0, 101.0, 102.0])
+    found, _ = value_at_times(time, time, [0.0, 1.0, 50.0, 101.0, 102.0])
     np.testing.assert_allclose(found, [0, 1, np.nan, 101, np.nan])
 
 
