@@ -1,0 +1,146 @@
+"""What shared errors add to a first loading's stresses and laws, to slack lengths, sections."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from reduction.moduli.hyperelastic import LAWS
+from reduction.product import ReducedTest
+from reduction.record import Floats, areas_of
+from reduction.strain.model import StrainModel
+from reduction.uncertainty.elastomer import elastomer_contributions
+from reduction.uncertainty.field import error_field
+from reduction.uncertainty.join import merged, stacked
+from reduction.uncertainty.points import stress_contributions, with_diameter
+from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
+
+__all__ = ["of_elastomers", "of_material"]
+
+_LENGTHS = ("relaxed_free_length", "gauge_length")
+
+
+def of_material(
+    test: ReducedTest, index: int, errors: InstrumentErrors, model: StrainModel, area: float
+) -> Iterator[Contributions]:
+    """Stress at stated elongations, strain at slack, section of one specimen."""
+    if test.stress_at_strain is not None and test.first_loading is not None:
+        yield _of_stress(test, index, errors, model, area)
+    yield from _of_slack(test, index, errors, model)
+    if errors.diameter and np.isfinite(area):
+        component = (Component("diameter", errors.specimen),)
+        size = np.sqrt(4 * area / np.pi)
+        yield Contributions(
+            component,
+            {
+                "diameter": np.array([errors.diameter]),
+                "area": np.array([2 * area * errors.diameter / size]),
+            },
+        )
+
+
+def _of_stress(
+    test: ReducedTest, index: int, errors: InstrumentErrors, model: StrainModel, area: float
+) -> Contributions:
+    """In the order of the archive: rising elongation."""
+    if test.first_loading is None or test.stress_at_strain is None:
+        return Contributions(())
+    level = np.asarray(test.stress_at_strain_levels, dtype=np.float64)
+    stress = test.stress_at_strain[index]
+    modulus = test.first_loading.tangent_modulus[index, 0]
+    known = np.isfinite(modulus)
+    slope = (
+        np.interp(level, test.first_loading.strain_bin[known], modulus[known])
+        if known.any()
+        else np.full(level.shape, np.nan)
+    )
+    field = error_field(errors, model, strain=level, tension=stress * area)
+    found = stress_contributions(
+        field, errors, stress=stress, tension_slope=slope * area, area=area
+    )
+    order = np.argsort(level, kind="stable")
+    return Contributions(found.component, {"stress_at_strain": found.values["stress"][:, order]})
+
+
+def _of_slack(
+    test: ReducedTest, index: int, errors: InstrumentErrors, model: StrainModel
+) -> Iterator[Contributions]:
+    """Differences of two positions at one small tension, over the relaxed length.
+
+    A zero of the crosshead is in both and cancels; one of the load cell moves both alike as far as
+    the specimen is as stiff there, and is left out.
+    """
+    component = [Component("position_gain", errors.position_instrument)]
+    relative = [errors.position_gain]
+    name = next((one for one in _LENGTHS if one in model.coefficients), None)
+    if name is not None and model.covariance.size:
+        place = list(model.coefficients).index(name)
+        spread = np.sqrt(model.covariance[place, place]) / model.coefficients[name]
+        component.append(Component("relaxed_length", errors.strain_model or errors.specimen))
+        relative.append(-float(spread))
+    left = {
+        "slack_strain_at_unloading": test.slack_strain_at_unloading,
+        "permanent_set": None if test.history is None else test.history.permanent_set,
+    }
+    values = {
+        quantity: np.array(relative) * value[index]
+        for quantity, value in left.items()
+        if value is not None
+    }
+    if any(relative):
+        yield Contributions(tuple(component), values)
+
+
+def of_elastomers(
+    test: ReducedTest, errors: Sequence[InstrumentErrors], found: Contributions
+) -> list[Contributions]:
+    """Every parameter of every law, along one axis; an empty list where there is none.
+
+    ``found`` holds the contributions to the tension of the first loading.
+    """
+    first = test.first_loading
+    rows = found.values.get("branch_tension_first_loading")
+    if not test.elastomers or first is None or rows is None:
+        return []
+    names = [one.name for one in test.specimens]
+    areas = areas_of(test.specimens)
+    own = []
+    for fit in test.elastomers:
+        place = names.index(fit.specimen)
+        area = float(areas[place])
+        stress = Contributions(found.component, {"stress": rows[:, place, 0] / area})
+        value = {"stress": first.branch_tension[place, 0] / area}
+        diameterless = [one.source != "diameter" for one in stress.component]
+        stress = Contributions(
+            tuple(one for one in stress.component if one.source != "diameter"),
+            {"stress": stress.values["stress"][diameterless]},
+        )
+        stress = with_diameter(stress, errors[place], value, area=area)
+        own += _of_fit(stress, first.strain_bin, fit.law, fit.parameters)
+    return [stacked(own)]
+
+
+def _of_fit(
+    stress: Contributions, strain: Floats, law: str, parameters: dict[str, float]
+) -> list[Contributions]:
+    """One entry a parameter: a modulus or an exponent, whichever it is."""
+    if np.isfinite(list(parameters.values())).all():
+        rows = elastomer_contributions(
+            stress.values["stress"],
+            strain=strain,
+            law=next(one for one in LAWS if one == law),
+            parameters=parameters,
+        )
+    else:
+        rows = np.full((len(stress.component), len(parameters)), np.nan)
+    return [
+        merged(
+            [
+                Contributions(
+                    stress.component, {"elastomer_modulus": column, "elastomer_exponent": column}
+                )
+            ]
+        )
+        for column in rows.T
+    ]

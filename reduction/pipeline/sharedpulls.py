@@ -1,0 +1,70 @@
+"""What shared errors add to a slow pull itself: its curve on the grid of tension."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from reduction.line.product import SlowPull
+from reduction.line.quasistatic import quasi_static_spring_constant, strain_at_tension
+from reduction.record import Floats
+from reduction.strain.model import StrainModel
+from reduction.uncertainty.field import ErrorField, error_field
+from reduction.uncertainty.line import pull_contributions
+from reduction.uncertainty.product import Contributions, InstrumentErrors
+from reduction.uncertainty.strength import over_strength
+
+__all__ = ["compliance_slope", "of_pull"]
+
+_STEP = 1e-3  # of the range of a pull, for the slope of its compliance
+
+
+def compliance_slope(pull: SlowPull, tension: Floats) -> Floats:
+    """Second derivative of strain over tension; zero at the very ends of the pull. [N-2]."""
+    step = _STEP * pull.tension_half_range
+    beside = [1 / quasi_static_spring_constant(pull, tension + way * step)[0] for way in (1, -1)]
+    bend = (beside[0] - beside[1]) / (2 * step)
+    return np.asarray(np.where(np.isfinite(bend), bend, 0.0))
+
+
+def of_pull(
+    pull: SlowPull,
+    errors: InstrumentErrors,
+    model: StrainModel,
+    *,
+    tension: Floats,
+    share: Floats,
+    rated_break_strength: float | None,
+) -> Iterator[Contributions]:
+    """K_0 and strain on a grid of tension, and strain at shares of the break strength."""
+    field, constant = _at(pull, errors, model, tension)
+    found = pull_contributions(
+        field,
+        quasi_static_spring_constant=constant,
+        compliance_slope=compliance_slope(pull, tension),
+    )
+    yield found
+    yield Contributions(field.component, {"quasi_static_strain": _at_tension(field, constant)})
+    if rated_break_strength is None:
+        return
+    load = share * rated_break_strength
+    field, constant = _at(pull, errors, model, load)
+    at_share = Contributions(
+        field.component, {"strain_at_break_share": _at_tension(field, constant)}
+    )
+    # more strength is more tension at the share, by the compliance there
+    yield over_strength(at_share, errors, {"strain_at_break_share": (load / constant, 1.0)})
+
+
+def _at(
+    pull: SlowPull, errors: InstrumentErrors, model: StrainModel, tension: Floats
+) -> tuple[ErrorField, Floats]:
+    strain = strain_at_tension(pull, tension)[0]
+    field = error_field(errors, model, strain=strain, tension=tension)
+    return field, quasi_static_spring_constant(pull, tension)[0]
+
+
+def _at_tension(field: ErrorField, constant: Floats) -> Floats:
+    """Error of strain at one tension of the cell."""
+    return np.asarray(field.strain - field.tension / constant)
