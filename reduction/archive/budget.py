@@ -27,6 +27,12 @@ _RANDOM = "_random_standard_uncertainty"
 # what a user calls a dimension
 _ALIAS = {"branch": "branch_name", "strain": "strain_bin", "first_loading_strain":
           "first_loading_strain_bin"}  # fmt: skip
+# one of them is a regression on samples, of which there are hundreds
+_OF_SAMPLES = frozenset({
+    "cycle", "selected_cycle", "hold", "held_pair", "slip", "step", "interval", "tension_grid",
+    "break_share", "pull_term", "strain_level", "elastomer_parameter",
+})  # fmt: skip
+_LINES = ("_per_decade", "_per_cycle", "_change", "_drift")
 _ON_AN_AXIS = ("strain_bin", "first_loading_strain_bin")
 
 
@@ -127,8 +133,9 @@ def degrees_of_freedom(archive: xr.Dataset, name: str) -> Floats:
     Returns
     -------
     freedom : ndarray, in the shape of the quantity or a single number
-        Of the regression where it is a coefficient; else cycles less one, of those that reach the
-        number or of all after the break-in; at least 1. [1]
+        Of the regression where it is a coefficient, infinite where it is one on samples; else
+        cycles less one, or two for a line over them, of those that reach the number or of all
+        after the break-in; at least 1. [1]
     """
     base = name.removesuffix("_engineering").removesuffix("_coefficient")
     terms = f"{base}_term_degrees_of_freedom"
@@ -136,9 +143,12 @@ def degrees_of_freedom(archive: xr.Dataset, name: str) -> Floats:
         return np.asarray(archive[terms].values, dtype=np.float64)
     if f"{name}_count" in archive:
         return np.maximum(np.asarray(archive[f"{name}_count"].values, dtype=np.float64) - 1, 1.0)
+    if name in archive and _OF_SAMPLES & set(map(str, archive[name].dims)):
+        return np.asarray(np.inf)
     settings = json.loads(str(archive.attrs.get("settings") or "{}"))
     break_in = settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0)
-    return np.asarray(max(archive.sizes.get("cycle", 0) - break_in - 1.0, 1.0))
+    fitted = 2.0 if name.endswith(_LINES) else 1.0
+    return np.asarray(max(archive.sizes.get("cycle", 0) - break_in - fitted, 1.0))
 
 
 def _budget_at(archive: xr.Dataset, name: str, place: Mapping[str, int]) -> Budget:

@@ -11,6 +11,7 @@ from reduction.report.htmltable import (
     NOT_GIVEN,
     Cell,
     Table,
+    factors_of,
     make_table,
     measured,
     number,
@@ -19,6 +20,7 @@ from reduction.report.htmltable import (
     words,
 )
 from reduction.report.style import Shown, shown
+from reduction.report.uncertainty import NORMAL, factor_words, plus_minus
 
 __all__ = [
     "calibration_table", "correlation_table", "curve_table", "energy_table", "event_table",
@@ -27,8 +29,8 @@ __all__ = [
 
 _SIGN = "Differences are predicted less measured: below zero the hose is stiffer than predicted."
 _PLUS_MINUS = (
-    "±: one standard uncertainty (k = 1) of the difference, of test and of prediction together, as"
-    " stated for both."
+    f"±: expanded uncertainty, 95 % ({factor_words([NORMAL])}) of the difference, of test and of"
+    " prediction together, as stated for both."
 )
 
 
@@ -123,10 +125,16 @@ def event_table(view: ComparisonView) -> Table:
             number(event.tension, force),
             number(event.measured_tension, force),
             measured(
-                event.tension_difference, event.tension_difference_standard_uncertainty, force
+                event.tension_difference,
+                NORMAL * event.tension_difference_standard_uncertainty,
+                force,
             ),
             number(event.measured_strain, strain),
-            measured(event.strain_difference, event.strain_difference_standard_uncertainty, strain),
+            measured(
+                event.strain_difference,
+                NORMAL * event.strain_difference_standard_uncertainty,
+                strain,
+            ),
         ]
         for event in view.events
     ]
@@ -191,7 +199,7 @@ def calibration_table(view: ComparisonView) -> Table | None:
             [
                 words(unit.label(one.words)),
                 number(one.start, unit),
-                measured(one.value, one.value_standard_uncertainty, unit),
+                measured(one.value, (one.high - one.low) / 2, unit, factor=_factor(one)),
                 _interval(one, unit),
                 _range(one.lower_bound, one.upper_bound, unit),
                 words("yes" if one.is_at_bound else "no"),
@@ -202,9 +210,12 @@ def calibration_table(view: ComparisonView) -> Table | None:
         ("number", "start", "fitted", "95 % interval", "kept between", "at a bound"),
         rows, synthetic=view.is_synthetic,
         remarks=[
-            "±: one standard uncertainty (k = 1): scatter of the test, what its stated errors may"
-            " imitate, and neighbouring strains that err alike. Not in it: an error of the model."
-            " An interval is not cut at the bounds.",
+            plus_minus(
+                factors_of(rows),
+                "scatter of the test, what its stated errors may imitate, and neighbouring strains"
+                " that err alike", left_out="an error of the model",
+            )
+            + " An interval is not cut at the bounds.",
             f"Residuals are worth {view.scalar('effective_points'):.0f} independent points; scatter"
             f" to be added for them to be explained: {_force_text(view, 'model_error')}.",
         ],
@@ -233,6 +244,12 @@ def _collinearity(index: float) -> str:
     if np.isinf(index):
         return "Collinearity index: none, since the curve does not answer to one of them at all."
     return f"Collinearity index: {number_text(index, 3)}; above 10 to 15 it is called poor."
+
+
+def _factor(one: FittedNumber) -> float:
+    """Coverage factor of the interval of a fitted number."""
+    spread = one.value_standard_uncertainty
+    return (one.high - one.low) / 2 / spread if spread > 0 else float("nan")
 
 
 def _interval(one: FittedNumber, unit: Shown) -> Cell:

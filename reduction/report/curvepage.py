@@ -15,6 +15,7 @@ from reduction.report.render import Page, about_page, render_page
 from reduction.report.section import Part, Section, make_part
 from reduction.report.style import Shown, shown
 from reduction.report.summary import Finding, Tile
+from reduction.report.uncertainty import NORMAL, factor_words
 from reduction.units import UnitSystem
 
 __all__ = ["write_assembly_page", "write_composite_page"]
@@ -141,7 +142,7 @@ def _working_table(found: DeployedLine, units: UnitSystem) -> Table | None:
         rows.append(
             [
                 words(f"{place}" if point.is_tested else f"{place}, not tested"),
-                measured(float(point.mean_tension), state.standard_uncertainty, force),
+                measured(float(point.mean_tension), NORMAL * state.standard_uncertainty, force),
                 number(state.level.tension_amplitude, force),
                 number(float(point.total_length), length),
                 number(float(state.strain.max()), percent),
@@ -164,9 +165,9 @@ def _working_table(found: DeployedLine, units: UnitSystem) -> Table | None:
         ),
         rows, synthetic=found.source.is_synthetic,
         remarks=[
-            "Tension with the standard uncertainty of the curve at that length. EA is that of the "
-            "cycle, peak to valley, and the tangent where there is none. Loads by the tolerance "
-            "of the lengths are at the mean tension."
+            f"±: expanded uncertainty, 95 % ({factor_words([NORMAL])}), of the curve at that"
+            " length. EA is that of the cycle, peak to valley, and the tangent where there is"
+            " none. Loads by the tolerance of the lengths are at the mean tension."
         ],
     )  # fmt: skip
 

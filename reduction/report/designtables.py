@@ -8,9 +8,9 @@ import numpy as np
 
 from reduction.moduli.interpolation import curve_at
 from reduction.record import Floats
-from reduction.report.htmltable import Cell, Table, make_table, measured, words
+from reduction.report.htmltable import Cell, Table, factors_of, make_table, measured, words
 from reduction.report.style import shown
-from reduction.report.uncertainty import plus_minus
+from reduction.report.uncertainty import expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView, all_specimens, any_synthetic
 from reduction.vocabulary import BRANCH_NAMES
 
@@ -56,7 +56,13 @@ def _table(tests: Sequence[TestView], specimen: str, step: float) -> Table | Non
         f"{specimen}: tangent modulus at stated strains, ascending / descending, mean over the"
         " cycles of each test; inside its tested range only.",
         ("strain [%]", *(unit.label(name) for name in columns)), rows,
-        synthetic=any_synthetic(tests), remarks=[plus_minus()], is_compact=True,
+        synthetic=any_synthetic(tests), is_compact=True,
+        remarks=[
+            plus_minus_of_tests(
+                factors_of(rows), [view for view in tests if view.id in columns],
+                ["tangent_modulus"],
+            )
+        ],
     )  # fmt: skip
 
 
@@ -66,7 +72,7 @@ def _cells(view: TestView, specimen: str, step: float) -> dict[int, Cell]:
     if bins is None or modulus is None or bins.size == 0 or specimen not in view.specimens:
         return {}
     row = view.specimens.index(specimen)
-    half = view.array_like("tangent_modulus_standard_uncertainty", modulus)
+    spread = expanded_of(view, "tangent_modulus", modulus)
     spacing = float(np.min(np.diff(bins))) if bins.size > 1 else 0.0
     levels = np.arange(np.floor(bins[0] / step), np.ceil(bins[-1] / step) + 1)
 
@@ -76,17 +82,22 @@ def _cells(view: TestView, specimen: str, step: float) -> dict[int, Cell]:
     unit = shown("stress", view.units)
     branches = view.texts("branch_name") or BRANCH_NAMES
     places = [branches.index(name) for name in BRANCH_NAMES]
-    moduli = np.stack([at_levels(modulus[row, place]) for place in places])
-    halves = np.stack([at_levels(half[row, place]) for place in places])
+    moduli, halves, factors = (
+        np.stack([at_levels(curve[row, place]) for place in places])
+        for curve in (modulus, spread.half, spread.factor)
+    )
     found: dict[int, Cell] = {}
     for column in np.flatnonzero(np.isfinite(moduli).any(axis=0)):
         both = [
-            measured(value, uncertainty, unit, is_short=True)
-            for value, uncertainty in zip(moduli[:, column], halves[:, column], strict=True)
+            measured(value, uncertainty, unit, factor=factor, is_short=True)
+            for value, uncertainty, factor in zip(
+                moduli[:, column], halves[:, column], factors[:, column], strict=True
+            )
         ]
         found[int(levels[column])] = Cell(
             " /\n".join(cell.text for cell in both),
             " ".join(cell.value or "nan" for cell in both),
             is_number=True,
+            factors=tuple(factor for cell in both for factor in cell.factors),
         )
     return found

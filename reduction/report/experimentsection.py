@@ -46,12 +46,13 @@ def make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView])
     """
     surfaces = view.surfaces
     parts = [
-        make_part("What was run", (), [run_table(view), caution_table(view)]),
+        make_part("What was run", (), [run_table(view, tests), caution_table(view)]),
         *(_surface_parts(view, surfaces, tests) if surfaces is not None else []),
         *_effect_parts(view),
         make_part(
             "The three-parameter line",
-            [*draw_single_time(view), *draw_derived(view)], [line_of_runs_table(view, tests)],
+            [*draw_single_time(view, tests), *draw_derived(view)],
+            [line_of_runs_table(view, tests)],
             single_time_words(view),
         ),
         make_part(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
 from reduction.record import Floats
@@ -10,6 +12,7 @@ from reduction.report.htmltable import (
     NOT_GIVEN,
     Cell,
     Table,
+    factors_of,
     make_table,
     measured,
     number,
@@ -18,15 +21,21 @@ from reduction.report.htmltable import (
 )
 from reduction.report.style import Shown, shown
 from reduction.report.surfacetables import NOT_OF_RUNS
-from reduction.report.uncertainty import plus_minus
+from reduction.report.surfaceuncertainty import expanded_of_runs
+from reduction.report.uncertainty import expand, plus_minus, plus_minus_of_tests
+from reduction.report.view import TestView
 
 __all__ = ["caution_table", "effect_table", "run_table"]
 
 _SHARE = Shown("%RBS", 100.0)
 
 
-def run_table(view: ExperimentView) -> Table:
-    """Return the runs as planned and as reached, with what each gave."""
+def run_table(view: ExperimentView, tests: Mapping[str, TestView] | None = None) -> Table:
+    """Return the runs as planned and as reached, with what each gave.
+
+    Runs that are ``tests`` have the uncertainty that their archives know.
+    """
+    own = {} if tests is None else tests
     strength = view.per_run("run_rated_break_strength")
     is_share = bool(np.isfinite(strength).any())
     load = _SHARE if is_share else shown("tension", view.units)
@@ -34,6 +43,7 @@ def run_table(view: ExperimentView) -> Table:
     level, plan = view.array("run_level"), view.array("run_plan")
     remarks = view.texts("run_remark")
     responses = [(name, response_unit(name, view.units)) for name in view.responses]
+    spreads = {name: expanded_of_runs(view, name, own) for name in view.responses}
     rows = []
     for k, run in enumerate(view.runs):
         rows.append(
@@ -48,8 +58,9 @@ def run_table(view: ExperimentView) -> Table:
                 *(
                     measured(
                         view.per_run(f"{name}_measured")[k],
-                        view.per_run(f"{name}_measured_standard_uncertainty")[k],
+                        spreads[name].half[k],
                         unit,
+                        factor=spreads[name].factor[k],
                         is_short=True,
                     )
                     for name, unit in responses
@@ -69,8 +80,7 @@ def run_table(view: ExperimentView) -> Table:
         f"Runs as planned (coded {factors}) and as reached: means over the cycles of each run; peak"
         " and minimum are the greatest and least of its cycles.",
         columns, rows, synthetic=view.is_synthetic,
-        remarks=[plus_minus("scatter between the cycles of the run"
-                            + (", and the K_0 of the slow pull" if _has_line(view) else ""))],
+        remarks=[_about_runs(view, rows, own)],
         is_compact=True,
     )  # fmt: skip
 
@@ -101,7 +111,9 @@ def effect_table(view: ExperimentView, name: str) -> Table | None:
     if effect.size == 0:
         return None
     unit = response_unit(name, view.units)
-    spread = view.scalar(f"{name}_effect_standard_uncertainty")
+    # without dummies the error is Lenth's, of a third as many degrees of freedom as effects
+    freedom = effect.size - len(view.factors) or effect.size / 3
+    spread = expand(view.scalar(f"{name}_effect_standard_uncertainty"), degrees_of_freedom=freedom)
     t, p = view.array(f"{name}_effect_t"), view.array(f"{name}_effect_p_value")
     counts = view.array(f"{name}_effect_is_significant")
     columns = view.texts("plan_column_name")
@@ -112,7 +124,7 @@ def effect_table(view: ExperimentView, name: str) -> Table | None:
         rows.append(
             [
                 words(in_words(columns[k])),
-                measured(float(effect[k]), spread, unit),
+                measured(float(effect[k]), float(spread.half), unit, factor=float(spread.factor)),
                 number(100 * float(effect[k] / mean), digits=3),
                 number(float(t[k])),
                 probability(float(p[k])),
@@ -124,8 +136,22 @@ def effect_table(view: ExperimentView, name: str) -> Table | None:
         ("factor", unit.label("effect"), "share of the mean [%]", "t [1]", "p [1]", "significant"),
         rows, synthetic=view.is_synthetic,
         remarks=["A dummy is a column that no factor uses: what it shows is scatter and"
-                 " interactions.", plus_minus("effects of the dummies", left_out=NOT_OF_RUNS)],
+                 " interactions.", plus_minus(factors_of(rows), "effects of the dummies",
+                                               left_out=NOT_OF_RUNS)],
     )  # fmt: skip
+
+
+def _about_runs(
+    view: ExperimentView, rows: Sequence[Sequence[Cell]], tests: Mapping[str, TestView]
+) -> str:
+    runs = [tests[name] for name in dict.fromkeys(view.texts("run_name")) if name in tests]
+    held = "scatter between the cycles of the run"
+    if runs:
+        names = [f"test_{name}" for name in view.responses]
+        return plus_minus_of_tests(factors_of(rows), runs, names, found_from=held)
+    return plus_minus(
+        factors_of(rows), held + (", and the K_0 of the slow pull" if _has_line(view) else "")
+    )
 
 
 def _fixed(value: float, factor: float, places: int) -> Cell:

@@ -33,7 +33,8 @@ _TITLE_LENGTH = 60
 class Figure:
     """One figure: what plotly draws, and the words around it.
 
-    ``key`` is the anchor on the page, ``title`` and ``caption`` are plain text.
+    ``key`` is the anchor on the page, ``title`` and ``caption`` are plain text; ``spoken`` is
+    what a screen reader says besides, in place of what only the eye reads off.
     """
 
     key: str
@@ -44,6 +45,7 @@ class Figure:
     height: int = 360
     is_wide: bool = False
     synthetic: bool = False
+    spoken: str = ""
 
     @property
     def has_data(self) -> bool:
@@ -62,7 +64,8 @@ class Figure:
         ]
         prefix = "Synthetic data. " if self.synthetic else ""
         lines = ", ".join(dict.fromkeys(names))
-        return shorten(f"{prefix}{self.title}. Axes: {'; '.join(axes)}. Lines: {lines}.", 600)
+        about = f"{prefix}{self.title}. Axes: {'; '.join(axes)}. Lines: {lines}."
+        return f"{shorten(about, 600)} {self.spoken}".rstrip()
 
     def json(self) -> str:
         """The figure for a script element: no markup can close it, no line end can break it."""
@@ -172,6 +175,7 @@ def make_figure(
     synthetic: bool,
     height: int = 360,
     is_wide: bool = False,
+    spoken: str = "",
     **layout: Any,
 ) -> Figure:
     """Return a figure; ``synthetic`` puts the words into the figure itself.
@@ -186,4 +190,5 @@ def make_figure(
         height=height,
         is_wide=is_wide,
         synthetic=synthetic,
+        spoken=spoken,
     )

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from reduction.report.htmltable import Table, count, make_table, measured, words
+from reduction.report.htmltable import Table, count, factors_of, make_table, measured, words
 from reduction.report.style import shown
-from reduction.report.uncertainty import plus_minus
+from reduction.report.uncertainty import MANY, expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView
 
 __all__ = ["hold_table", "prony_table", "refusals"]
@@ -40,14 +40,21 @@ def hold_table(view: TestView) -> Table | None:
     ]
     for name, unit, label in quantities:
         values = view.array_like(name, start)
-        half = view.array_like(f"{name}_standard_uncertainty", start)
+        spread = expanded_of(view, name, start, freedom=MANY)
         if np.isfinite(values).any():
             columns.append(unit.label(label))
-            for row, value, uncertainty in zip(rows, values, half, strict=True):
-                row.append(measured(value, uncertainty, unit))
+            for row, value, half, factor in zip(
+                rows, values, spread.half, spread.factor, strict=True
+            ):
+                row.append(measured(value, half, unit, factor=factor))
     return make_table(
         "Holds: relaxation at constant length, creep at constant tension.", columns, rows,
-        synthetic=view.is_synthetic, is_tall=len(rows) > 12, remarks=[plus_minus(_OF_HOLDS)],
+        synthetic=view.is_synthetic, is_tall=len(rows) > 12,
+        remarks=[
+            plus_minus_of_tests(
+                factors_of(rows), [view], [name for name, *_ in quantities], found_from=_OF_HOLDS
+            )
+        ],
     )  # fmt: skip
 
 
@@ -74,12 +81,13 @@ def prony_table(view: TestView) -> Table | None:
     if tension is None or times is None:
         return None
     force, seconds = shown("tension", view.units), shown("time", view.units)
-    halves = (
-        view.array_like("prony_tension_standard_uncertainty", tension),
-        view.array_like("prony_time_standard_uncertainty", times),
-    )
     end = view.array_like("long_time_tension", tension[:, 0])
-    end_half = view.array_like("long_time_tension_standard_uncertainty", end)
+    of_tension, of_time, of_end = (
+        expanded_of(view, name, values, freedom=MANY)
+        for name, values in (
+            ("prony_tension", tension), ("prony_time", times), ("long_time_tension", end),
+        )
+    )  # fmt: skip
     rows = []
     for hold, term in zip(*np.nonzero(np.isfinite(tension)), strict=True):
         own = (hold, term)
@@ -88,9 +96,9 @@ def prony_table(view: TestView) -> Table | None:
                 words(f"{view.hold_numbers[hold]}"),
                 words(view.texts("hold_specimen")[hold]),
                 count(float(term + 1)),
-                measured(tension[own], halves[0][own], force),
-                measured(times[own], halves[1][own], seconds),
-                measured(end[hold], end_half[hold], force),
+                measured(tension[own], of_tension.half[own], force, factor=of_tension.factor[own]),
+                measured(times[own], of_time.half[own], seconds, factor=of_time.factor[own]),
+                measured(end[hold], of_end.half[hold], force, factor=of_end.factor[hold]),
             ]
         )
     columns = (
@@ -102,6 +110,9 @@ def prony_table(view: TestView) -> Table | None:
         synthetic=view.is_synthetic,
         remarks=[
             *(f"Number of terms, {text}." for text in _of_holds(view, "hold_criterion")),
-            plus_minus(_OF_HOLDS),
+            plus_minus_of_tests(
+                factors_of(rows), [view], ["prony_tension", "prony_time", "long_time_tension"],
+                found_from=_OF_HOLDS,
+            ),
         ],
     ) if rows else None  # fmt: skip

@@ -17,6 +17,7 @@ from reduction.report.htmltable import (
     words,
 )
 from reduction.report.style import Shown, shown
+from reduction.report.uncertainty import NORMAL, factor_words
 
 __all__ = [
     "answer_of_hoses", "cord_table", "curve_table", "design_table", "event_table", "layer_table",
@@ -39,9 +40,9 @@ def plus_minus_of_hoses(views: Sequence[HoseView]) -> list[str]:
         return ["No number of the construction has a stated uncertainty, so none is given."]
     without = [view.name for view in views if not view.sources]
     said = (
-        "±: one standard uncertainty (k = 1), carried through from what is stated of the"
-        f" construction: {', '.join(sources)}. Not in it: the model itself (straight hose, constant"
-        " volume, static cord, law of the rubber)."
+        f"±: expanded uncertainty, 95 % ({factor_words([NORMAL])}), carried through from what is"
+        f" stated of the construction: {', '.join(sources)}. Not in it: the model itself (straight"
+        " hose, constant volume, static cord, law of the rubber)."
     )
     return [said, *([f"Nothing is stated of {', '.join(without)}."] if without else [])]
 
@@ -126,7 +127,7 @@ def design_table(view: HoseView) -> Table:
         ("wrap angle from the axis", DEGREES, _own(view, "wrap_angle", DEGREES)),
         ("bore at rest", small, _own(view, "inner_diameter", small)),
         *(
-            (f"diameter {name}", small, measured(diameters[k], of_layers[k], small))
+            (f"diameter {name}", small, measured(diameters[k], NORMAL * of_layers[k], small))
             for k, name in enumerate(names)
         ),
         ("outer diameter", small, _own(view, "outer_diameter", small)),
@@ -162,7 +163,8 @@ def design_table(view: HoseView) -> Table:
         ],
         synthetic=view.is_synthetic,
         remarks=[
-            f"Law of the rubber: {law}. A number without ± counts as known.",
+            f"Law of the rubber: {law}. ±: expanded uncertainty, 95 % ({factor_words([NORMAL])}),"
+            " of what is stated; a number without ± counts as known.",
             *([] if view.scalar("dead_length_share") else [
                 "No dead length is stated: stretch-limited ends count as hose that stretches."
             ]),
@@ -282,8 +284,8 @@ def curve_table(view: HoseView) -> Table:
         [
             [
                 number(strain[k], percent),
-                measured(tension[k], u_tension[k], force),
-                measured(along["fill_pressure"][k], u_pressure[k], pressure),
+                measured(tension[k], NORMAL * u_tension[k], force),
+                measured(along["fill_pressure"][k], NORMAL * u_pressure[k], pressure),
                 number(along["cord_tension"][k], force),
                 number(along["cord_strain"][k], percent),
                 number(along["cord_share"][k], percent),
@@ -305,8 +307,10 @@ def _named(source: str) -> str:
 
 def _own(view: HoseView, name: str, unit: Shown) -> Cell:
     """A number of the design with its uncertainty, where one is stated."""
-    return measured(view.scalar(name), view.scalar(f"{name}_standard_uncertainty"), unit)
+    return measured(view.scalar(name), NORMAL * view.scalar(f"{name}_standard_uncertainty"), unit)
 
 
 def _at(event: OneEvent, name: str, unit: Shown) -> Cell:
-    return measured(getattr(event, name), getattr(event, f"{name}_standard_uncertainty"), unit)
+    return measured(
+        getattr(event, name), NORMAL * getattr(event, f"{name}_standard_uncertainty"), unit
+    )

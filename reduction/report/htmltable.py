@@ -6,7 +6,7 @@ is beside it in ``data-value`` for a program that reads the page.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, floor, isfinite, log10
 
@@ -17,6 +17,7 @@ __all__ = [
     "Cell",
     "Table",
     "count",
+    "factors_of",
     "make_table",
     "measured",
     "number",
@@ -38,11 +39,15 @@ _NOISE = 1e-12
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell: text as shown, the archive's own value, and whether it is a number."""
+    """One cell: text as shown, the archive's own value, and whether it is a number.
+
+    ``factors`` are the coverage factors of the uncertainties that the text shows.
+    """
 
     text: str
     value: str = ""
     is_number: bool = False
+    factors: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -130,11 +135,17 @@ def number_text(value: float, digits: int = 4) -> str:
 
 
 def measured(
-    value: float, uncertainty: float, unit: Shown | None = None, *, is_short: bool = False
+    value: float,
+    uncertainty: float,
+    unit: Shown | None = None,
+    *,
+    factor: float = float("nan"),
+    is_short: bool = False,
 ) -> Cell:
-    """Return a cell of a value and its standard uncertainty, to two digits of the latter.
+    """Return a cell of a value and its expanded uncertainty, to two digits of the latter.
 
-    The short form has one digit where that is 2 or more, and is off by a fifth at most.
+    ``factor`` is its coverage factor, for the words that explain the table.  The short form has
+    one digit where that is 2 or more, and is off by a fifth at most.
 
     Examples
     --------
@@ -149,14 +160,27 @@ def measured(
     if not isfinite(uncertainty) or uncertainty <= 0:
         return number(value, unit)
     half = uncertainty * scale
+    factors = (factor,) if isfinite(factor) else ()
     if max(abs(value * scale), half) < _NOISE:
         return number(value, unit)
     if not 1e-10 <= half < 1e9:
-        return Cell(f"{value * scale:.4g} ± {half:.2g}", _exact(value), is_number=True)
+        text = f"{value * scale:.4g} ± {half:.2g}"
+        return Cell(text, _exact(value), is_number=True, factors=factors)
     leading = half / 10.0 ** floor(log10(half))
     places = _decimals(half, 1 if is_short and leading >= _LEAST_LEADING else 2)
     shown = f"{_fixed(value * scale, places)} ± {_fixed(half, places)}"
-    return Cell(shown, _exact(value), is_number=True)
+    return Cell(shown, _exact(value), is_number=True, factors=factors)
+
+
+def factors_of(rows: Iterable[Iterable[Cell]]) -> list[float]:
+    """Return the coverage factors of all uncertainties of a table.
+
+    Examples
+    --------
+    >>> factors_of([[words("new"), measured(2.0, 0.4, factor=1.96)]])
+    [1.96]
+    """
+    return [factor for row in rows for cell in row for factor in cell.factors]
 
 
 def probability(value: float) -> Cell:

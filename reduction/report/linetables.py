@@ -13,6 +13,7 @@ from reduction.report.htmltable import (
     Cell,
     Table,
     count,
+    factors_of,
     make_table,
     measured,
     number,
@@ -21,7 +22,14 @@ from reduction.report.htmltable import (
     words,
 )
 from reduction.report.style import Shown, shown, superscript
-from reduction.report.uncertainty import plus_minus
+from reduction.report.uncertainty import (
+    MANY,
+    NORMAL,
+    expanded_of,
+    plus_minus,
+    plus_minus_of_tests,
+    shared_sources,
+)
 from reduction.report.view import TestView
 
 __all__ = [
@@ -36,7 +44,6 @@ _PARAMETERS = (
     ("test_dashpot_coefficient", "dashpot", "C = K_1 tau, dashpot coefficient"),
 )
 _FROM = "scatter between cycles, and K_0 with the fit of its slow pull"
-_LEFT = "load-cell calibration, gauge length, lag between the channels"
 _CONDITIONING = (
     "Conditioning, K_0 / (E' - K_0): how many times a relative error of K_0 enters E' - K_0, on"
     " which K_1 and tau stand."
@@ -60,7 +67,7 @@ def line_table(view: TestView) -> Table | None:
     return make_table(
         "The three-parameter line: a spring K_0 beside a spring K_1 in series with a dashpot.",
         columns, rows, synthetic=view.is_synthetic,
-        remarks=[_CONDITIONING, plus_minus(_FROM, left_out=_LEFT)],
+        remarks=[_CONDITIONING, _about_line(rows, [view])],
     )  # fmt: skip
 
 
@@ -72,12 +79,12 @@ def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> T
         (view.per_run("derived_dissipation_spring_constant"), force),
         (view.per_run("derived_relaxation_time"), time),
     )
-    rows, first = [], None
+    rows, used = [], []
     for k, (run, specimen) in enumerate(zip(names, specimens, strict=True)):
         test = tests.get(run)
         if test is None or "test_relaxation_time" not in test.data:
             continue
-        first = first or test
+        used.append(test)
         rows.append(
             [
                 words(view.runs[k]),
@@ -85,15 +92,15 @@ def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> T
                 *(number(float(values[k]), unit) for values, unit in derived),
             ]
         )
-    if first is None:
+    if not used:
         return None
     tail = [force.label("K_1 from surfaces"), time.label("tau from surfaces")]
-    columns, rows = _without_refusals(["run", *_line_columns(first), *tail], rows)
+    columns, rows = _without_refusals(["run", *_line_columns(used[0]), *tail], rows)
     return make_table(
         "The three-parameter line of each run; at the right K_1 and tau from surfaces of E' and E''"
         " at the same levels, which smooth over the runs.",
         columns, rows, synthetic=view.is_synthetic, is_compact=True,
-        remarks=[_CONDITIONING, plus_minus(_FROM, left_out=_LEFT)],
+        remarks=[_CONDITIONING, _about_line(rows, used)],
     )  # fmt: skip
 
 
@@ -101,6 +108,7 @@ def form_table(view: ExperimentView) -> Table | None:
     """Return the coefficients of the stiffness forms with their intervals."""
     forms = _forms(view)
     names, units = (view.array_of_texts(f"stiffness_coefficient_{w}") for w in ("name", "unit"))
+    spread = view.array("stiffness_coefficient_standard_uncertainty")
     rows = []
     for k, form in forms:
         for j in range(names.shape[1]):
@@ -115,7 +123,8 @@ def form_table(view: ExperimentView) -> Table | None:
                     words(str(names[k, j])),
                     measured(
                         float(view.array("stiffness_coefficient")[k, j]),
-                        float(view.array("stiffness_coefficient_standard_uncertainty")[k, j]),
+                        (high - low) / 2,
+                        factor=(high - low) / 2 / spread[k, j],
                     ),
                     words(str(units[k, j])),
                     Cell(f"{low:.4g} to {high:.4g}", f"{low!r} {high!r}", is_number=True),
@@ -129,7 +138,7 @@ def form_table(view: ExperimentView) -> Table | None:
         "Coefficients of the stiffness forms of mooring codes.",
         ("form", "coefficient", "value", "unit", f"{confidence:g} % interval", "p if nil [1]"),
         rows, synthetic=view.is_synthetic,
-        remarks=[plus_minus("scatter of the runs about the form",
+        remarks=[plus_minus(factors_of(rows), "scatter of the runs about the form",
                             left_out="that the form itself may be wrong: see its quality")],
     )  # fmt: skip
 
@@ -173,7 +182,7 @@ def pull_table(view: TestView) -> Table | None:
     if coefficient is None:
         return None
     force, percent = shown("tension", view.units), shown("strain", view.units)
-    half = view.array_like("pull_strain_coefficient_standard_uncertainty", coefficient)
+    half = expanded_of(view, "pull_strain_coefficient", coefficient, freedom=MANY).half
     given = [k for k in range(len(view.specimens)) if np.isfinite(coefficient[k]).any()]
     rows = []
     for power, term in enumerate(_TERMS):
@@ -203,7 +212,7 @@ def pull_table(view: TestView) -> Table | None:
         synthetic=view.is_synthetic,
         remarks=["K_0 is the inverse slope of the cubic at the mean tension of interest; it grows"
                  " with the rate of strain and with the waiting time.",
-                 plus_minus("scatter about the cubic", left_out=_LEFT)],
+                 _about_pull(view, "pull_strain_coefficient")],
     )  # fmt: skip
 
 
@@ -212,7 +221,7 @@ def pull_share_table(view: TestView) -> Table | None:
     share, strain = view.array("break_share"), view.array("strain_at_break_share")
     if share is None or strain is None:
         return None
-    half = view.array_like("strain_at_break_share_standard_uncertainty", strain)
+    half = expanded_of(view, "strain_at_break_share", strain, freedom=MANY).half
     percent = shown("strain", view.units)
     kept = np.flatnonzero(np.isfinite(strain).any(axis=0))
     if kept.size == 0:
@@ -226,7 +235,7 @@ def pull_share_table(view: TestView) -> Table | None:
         "Strain of the slow pull at round shares of the rated break strength, within its range.",
         ("tension [%RBS]", *(percent.label(name) for name in view.specimens)), rows,
         synthetic=view.is_synthetic,
-        remarks=[plus_minus("scatter about the cubic", left_out=_LEFT)],
+        remarks=[_about_pull(view, "strain_at_break_share")],
     )  # fmt: skip
 
 
@@ -252,12 +261,31 @@ def _line_cells(view: TestView, place: int) -> list[Cell]:
     cells = []
     for name, kind, _ in _PARAMETERS:
         values = view.array_like(name, np.empty(len(view.specimens)))
-        half = view.array_like(f"{name}_standard_uncertainty", values)
-        cells.append(measured(float(values[place]), float(half[place]), _unit(view, kind)))
+        spread = expanded_of(view, name, values)
+        cells.append(
+            measured(
+                float(values[place]),
+                float(spread.half[place]),
+                _unit(view, kind),
+                factor=float(spread.factor[place]),
+            )
+        )
     conditioning = view.array_like("test_line_conditioning", np.empty(len(view.specimens)))
     codes = view.array("test_line_refusal")
     reason = "" if codes is None else REASONS.get(int(codes[place]), "")
     return [*cells, number(float(conditioning[place]), digits=3), words(reason)]
+
+
+def _about_line(rows: Sequence[Sequence[Cell]], tests: Sequence[TestView]) -> str:
+    names = [name for name, *_ in _PARAMETERS]
+    has_fit = "quasi_static_fit" in shared_sources(tests, names)
+    return plus_minus_of_tests(
+        factors_of(rows), tests, names, found_from="scatter between cycles" if has_fit else _FROM
+    )
+
+
+def _about_pull(view: TestView, name: str) -> str:
+    return plus_minus_of_tests([NORMAL], [view], [name], found_from="scatter about the cubic")
 
 
 def _unit(view: TestView, kind: str) -> Shown:

@@ -17,6 +17,7 @@ from reduction.report.htmltable import (
     Cell,
     Table,
     count,
+    factors_of,
     make_table,
     measured,
     number,
@@ -25,7 +26,7 @@ from reduction.report.htmltable import (
 )
 from reduction.report.outcomeview import OutcomeView, group_names
 from reduction.report.style import Shown, shown
-from reduction.report.uncertainty import plus_minus
+from reduction.report.uncertainty import expand, plus_minus
 
 __all__ = [
     "exposure_table",
@@ -38,8 +39,9 @@ __all__ = [
 
 _PERCENT = Shown("%", 100.0)
 _NUMBER = Shown("1", 1.0)
-_SCATTER = plus_minus("scatter between the tests of a group", left_out="calibration of the machine")
-_FIT = plus_minus("scatter of the tests about the fit", left_out="calibration of the machine")
+_SCATTER = "scatter between the tests of a group"
+_FIT = "scatter of the tests about the fit"
+_NOT_IN_IT = "calibration of the machine"
 _BOUNDS = "Intervals hold 95 %, two-sided."
 _SNAP = "Upper bound of the share that fails by then, where all survived; one-sided, 95 %."
 
@@ -52,11 +54,12 @@ def _table(
     columns: Sequence[_Column],
     view: OutcomeView,
     *notes: str,
+    held: str,
     reason: str,
 ) -> Table | None:
     """Lay out rows by group; a column in which nothing stands is left out.
 
-    What is missing, and why, stands below: the words of column ``reason``.
+    What ± holds, what is missing, and why, stands below: ``held``, the words of column ``reason``.
     """
     if not rows:
         return None
@@ -73,7 +76,10 @@ def _table(
     return make_table(
         caption, [headings[place] for place in filled],
         [[row[place] for place in filled] for row in cells], synthetic=view.is_synthetic,
-        remarks=[*notes, *_missing(names, rows, reason)], is_tall=len(rows) > 12,
+        remarks=[
+            plus_minus(factors_of(cells), held, left_out=_NOT_IN_IT),
+            *notes, *_missing(names, rows, reason),
+        ], is_tall=len(rows) > 12,
     )  # fmt: skip
 
 
@@ -100,8 +106,23 @@ def _real(row: Row, name: str) -> float:
     return float(row.get(name, "nan"))
 
 
-def _known(name: str, unit: Shown) -> Callable[[Row], Cell]:
-    return lambda row: measured(_real(row, name), _real(row, f"{name}_standard_uncertainty"), unit)
+def _known(
+    name: str, unit: Shown, counted: str = "", fitted: int = 1, *, confidence: bool = False
+) -> Callable[[Row], Cell]:
+    """A number known from so many tests less so many fitted; or as its interval has it."""
+
+    def cell(row: Row) -> Cell:
+        spread = _real(row, f"{name}_standard_uncertainty")
+        if confidence:
+            half = (_real(row, f"{name}_high") - _real(row, f"{name}_low")) / 2
+            factor = half / spread if spread > 0 else float("nan")
+        else:
+            freedom = max(_real(row, counted) - fitted, 1.0)
+            found = expand(spread, degrees_of_freedom=freedom)
+            half, factor = float(found.half), float(found.factor)
+        return measured(_real(row, name), half, unit, factor=factor)
+
+    return cell
 
 
 def _plain(name: str, unit: Shown, digits: int = 3) -> Callable[[Row], Cell]:
@@ -140,14 +161,14 @@ def strength_table(view: OutcomeView, name: str) -> Table | None:
     ]
     columns: list[_Column] = [
         ("tests", _count(f"{name}_count")),
-        (unit.label(f"mean {what}"), _known(name, unit)),
+        (unit.label(f"mean {what}"), _known(name, unit, f"{name}_count")),
         (unit.label("deviation"), _plain(f"{name}_standard_deviation", unit)),
         ("deviation over mean [%]", _plain(f"{name}_relative_variability", _PERCENT)),
         (
             unit.label("least to greatest"),
             _interval(f"{name}_minimum", f"{name}_maximum", unit, 4),
         ),
-        ("change against new [%]", _known(f"{name}_change", _PERCENT)),
+        ("change against new [%]", _known(f"{name}_change", _PERCENT, confidence=True)),
         (
             "interval of the change [%]",
             _interval(f"{name}_change_low", f"{name}_change_high", _PERCENT),
@@ -165,7 +186,7 @@ def strength_table(view: OutcomeView, name: str) -> Table | None:
         f"{what.capitalize()} by group: mean of the valid tests; a break in the termination is a"
         " lower bound and stands apart. Change: against the group of the same line whose"
         " condition is new.",
-        rows, columns, view, _SCATTER, _BOUNDS, reason=f"{name}_reason",
+        rows, columns, view, _BOUNDS, held=_SCATTER, reason=f"{name}_reason",
     )  # fmt: skip
 
 
@@ -175,8 +196,14 @@ def exposure_table(view: OutcomeView) -> Table | None:
     columns: list[_Column] = [
         ("breaks", _count("break_count")),
         ("years", _interval("exposure_low", "exposure_high", _NUMBER)),
-        (unit.label("strength when new"), _known("strength_when_new", unit)),
-        (f"change a year [{unit.unit}/year]", _known("strength_slope", unit)),
+        (
+            unit.label("strength when new"),
+            _known("strength_when_new", unit, "degrees_of_freedom", 0),
+        ),
+        (
+            f"change a year [{unit.unit}/year]",
+            _known("strength_slope", unit, "degrees_of_freedom", 0),
+        ),
         ("lost a year [% of new]", _plain("share_lost_per_year", _PERCENT)),
         (
             "its interval [% of new]",
@@ -189,7 +216,7 @@ def exposure_table(view: OutcomeView) -> Table | None:
     ]
     return _table(
         "Strength against time in the field: a straight line through the breaks of each line.",
-        exposure_rows(view.outcomes), columns, view, _FIT, _BOUNDS, reason="exposure_reason",
+        exposure_rows(view.outcomes), columns, view, _BOUNDS, held=_FIT, reason="exposure_reason",
     )  # fmt: skip
 
 
@@ -203,7 +230,7 @@ def fatigue_table(view: OutcomeView, quantity: str) -> Table | None:
         ("least load [% of rated break strength]", _plain("minimum_load_ratio", _PERCENT)),
         ("failed", _count("failed_count")),
         ("stopped", _some("suspended_count")),
-        ("mean of the failed [1]", _known("mean_cycles", _NUMBER)),
+        ("mean of the failed [1]", _known("mean_cycles", _NUMBER, "failed_count")),
         ("shortest to longest [1]", _interval("least_cycles", "most_cycles", _NUMBER, 4)),
         ("median life [1]", _plain("median_life", _NUMBER)),
         ("its interval [1]", _interval("median_life_low", "median_life_high", _NUMBER)),
@@ -213,7 +240,7 @@ def fatigue_table(view: OutcomeView, quantity: str) -> Table | None:
     return _table(
         f"{what} by group and peak load. The mean is of the failed alone; the median life (Weibull)"
         " takes tests that were stopped as lower bounds.",
-        rows, columns, view, _SCATTER, _BOUNDS, reason="life_reason",
+        rows, columns, view, _BOUNDS, held=_SCATTER, reason="life_reason",
     )  # fmt: skip
 
 
@@ -223,17 +250,17 @@ def load_life_table(view: OutcomeView) -> Table | None:
         ("peak loads [%]", _interval("peak_load_ratio_low", "peak_load_ratio_high", _PERCENT)),
         ("failed", _count("failed_count")),
         ("stopped", _some("suspended_count")),
-        ("exponent m [1]", _known("life_exponent", _NUMBER)),
+        ("exponent m [1]", _known("life_exponent", _NUMBER, "failed_count", 2)),
         ("at a peak load of [%]", _plain("reference_load_ratio", _PERCENT)),
-        ("median life there [1]", _known("life_at_reference", _NUMBER)),
-        ("scatter of ln cycles [1]", _known("log_life_scale", _NUMBER)),
+        ("median life there [1]", _known("life_at_reference", _NUMBER, "failed_count", 2)),
+        ("scatter of ln cycles [1]", _known("log_life_scale", _NUMBER, "failed_count", 2)),
         ("p of a straight line [1]", _plain("lack_of_fit_p_value", _NUMBER, 2)),
         ("not used", _some("unused_count")),
     ]
     return _table(
         "Life against peak load: ln N = a - m ln S, lives lognormal with one scatter, tests that"
         " were stopped as lower bounds. Loads over the rated break strength.",
-        load_life_rows(view.outcomes), columns, view, _FIT, reason="life_reason",
+        load_life_rows(view.outcomes), columns, view, held=_FIT, reason="life_reason",
     )  # fmt: skip
 
 

@@ -18,6 +18,7 @@ from reduction.report.figures.campaign import (
     draw_ratios,
     draw_static_dynamic,
 )
+from reduction.report.instruments import instrument_sentences, instrument_table
 from reduction.report.render import Page, about_page, render_page
 from reduction.report.section import Section, make_part, make_section
 from reduction.report.specimentables import specimen_notes, specimen_table
@@ -143,6 +144,8 @@ def _page_of(
         has_tests=bool(tests or statuses),
         specimens=specimen_table(tests, units),
         specimen_notes=specimen_notes(tests),
+        instruments=instrument_table(tests, units),
+        instrument_notes=instrument_sentences(tests),
         tests=test_table(tests, statuses),
         answers=whole.answers,
         designs=design_tables(tests),

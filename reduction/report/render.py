@@ -47,6 +47,8 @@ class Page:
         What was tested, and straight-line segments.
     specimen_notes : sequence of str
         Under the specimens.
+    instruments : Table or None
+        What is stated of the instruments; ``instrument_notes`` where nothing is.
     answers, designs, intervals : sequence of Table
         The first screen.
     comparisons : sequence of Part
@@ -67,6 +69,8 @@ class Page:
     specimens: Table | None = None
     specimen_notes: Sequence[str] = ()
     tests: Table | None = None
+    instruments: Table | None = None
+    instrument_notes: Sequence[str] = ()
     answers: Sequence[Table] = ()
     designs: Sequence[Table] = ()
     segments: Table | None = None

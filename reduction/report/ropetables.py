@@ -11,6 +11,7 @@ from reduction.report.htmltable import (
     Cell,
     Table,
     count,
+    factors_of,
     make_table,
     measured,
     number,
@@ -18,9 +19,9 @@ from reduction.report.htmltable import (
     span,
     words,
 )
-from reduction.report.ropeview import RopeView
+from reduction.report.ropeview import RopeView, expanded_property
 from reduction.report.style import Shown, shown
-from reduction.report.uncertainty import plus_minus
+from reduction.report.uncertainty import MANY, expanded_of, plus_minus, plus_minus_of_tests
 from reduction.report.view import TestView
 
 __all__ = [
@@ -33,10 +34,7 @@ __all__ = [
     "told_of",
 ]
 
-_U = "_standard_uncertainty"
-_PLUS_MINUS = plus_minus(
-    left_out="load-cell calibration, scale of position or strain, lag between the channels"
-)
+_NOT_IN_IT = "load-cell calibration, scale of position or strain, lag between the channels"
 # what is shown of a step: variable, unit of the page or None for a share, words
 _Column = tuple[str, Shown | None, str]
 
@@ -59,8 +57,12 @@ def answer_of_ropes(views: Sequence[RopeView]) -> Table | None:
         " several; between which tensions, and why one is missing, is in the section of the rope.",
         ("rope", *(unit.label(name) for name, unit in zip(PROPERTY_NAMES, units, strict=True))),
         rows, synthetic=any(view.is_synthetic for view in views), is_tall=len(rows) > 16,
-        remarks=[_PLUS_MINUS],
+        remarks=[_about(rows)],
     )  # fmt: skip
+
+
+def _about(rows: Sequence[Sequence[Cell]]) -> str:
+    return plus_minus(factors_of(rows), left_out=_NOT_IN_IT)
 
 
 def _least_to_greatest(view: RopeView, name: str, unit: Shown) -> Cell:
@@ -70,8 +72,10 @@ def _least_to_greatest(view: RopeView, name: str, unit: Shown) -> Cell:
     if len(rows) > 1:
         ends = [number_text(unit.factor * end) for end in (values.min(), values.max())]
         return Cell(" to ".join(ends), is_number=True)
-    half = view.array(f"{kind}{_U}")[rows]
-    return measured(values[0], half[0], unit) if rows else number(float("nan"))
+    if not rows:
+        return number(float("nan"))
+    spread = expanded_property(view, kind)
+    return measured(values[0], spread.half[rows[0]], unit, factor=spread.factor[rows[0]])
 
 
 def told_of(view: RopeView, *, known: bool) -> list[str]:
@@ -94,7 +98,8 @@ def property_table(view: RopeView) -> Table | None:
     tests = view.texts("property_test")
 
     def cell(name: str, row: int, unit: Shown | None) -> Cell:
-        return measured(view.array(name)[row], view.array(f"{name}{_U}")[row], unit)
+        spread = expanded_property(view, name)
+        return measured(view.array(name)[row], spread.half[row], unit, factor=spread.factor[row])
 
     rows = [
         [
@@ -123,7 +128,7 @@ def property_table(view: RopeView) -> Table | None:
             " held tensions. Dynamic: last cycles of a level. Construction strain: what bedding-in"
             " left at equal tension. Polymer strain: creep from the reference time to the end of"
             " the hold. Working strain: rise of tension over static stiffness, after bedding-in.",
-            _PLUS_MINUS,
+            _about(rows),
         ],
     )  # fmt: skip
 
@@ -222,7 +227,11 @@ def _table(
         rows = [[*row, words(one)] for row, one in zip(rows, why, strict=True)]
     return make_table(
         caption, labels, rows, synthetic=view.is_synthetic, is_tall=len(rows) > 16,
-        remarks=[_PLUS_MINUS],
+        remarks=[
+            plus_minus_of_tests(
+                factors_of(rows), [test for test, _ in entries], [name for name, *_ in filled]
+            )
+        ],
     )  # fmt: skip
 
 
@@ -235,5 +244,13 @@ def _cell(test: TestView, place: int, name: str, unit: Shown | None) -> Cell:
         return number(float("nan"))
     if test.data[name].dtype.kind == "i":
         return count(float(test.data[name].values[place]))
-    half = test.data[f"{name}{_U}"].values[place] if f"{name}{_U}" in test.data else np.nan
-    return measured(float(test.data[name].values[place]), float(half), unit)
+    values = np.asarray(test.data[name].values, dtype=np.float64)
+    freedom: float = MANY
+    if name.startswith("dynamic_stiffness"):
+        # a drift is a line over the cycles, the rest their mean
+        lost = 2 if name.endswith("_drift") else 1
+        freedom = max(float(test.data["dynamic_cycles"].values[place]) - lost, 1.0)
+    spread = expanded_of(test, name, values, freedom=freedom)
+    return measured(
+        float(values[place]), float(spread.half[place]), unit, factor=float(spread.factor[place])
+    )

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.record import Floats
+from reduction.report.uncertainty import MANY, Expanded, expand
 from reduction.report.view import TestView
 from reduction.units import UnitSystem
 
@@ -79,6 +80,22 @@ class RopeView:
                 yield from (
                     (view, place) for place, own in enumerate(owners) if own == self.specimen
                 )
+
+
+def expanded_property(view: RopeView, name: str) -> Expanded:
+    """Return the expanded uncertainty of a property in each row.
+
+    A dynamic stiffness is the mean of the last cycles of its step; the others are of many samples.
+    """
+    freedom = np.full(len(view.names), MANY)
+    cycles = {
+        test.id: float(test.data["dynamic_cycles"].values[place])
+        for test, place in view.entries("specimen", "dynamic_cycles")
+    }
+    for row, (kind, test) in enumerate(zip(view.names, view.texts("property_test"), strict=True)):
+        if kind == "dynamic stiffness" and test in cycles:
+            freedom[row] = max(cycles[test] - 1, 1.0)
+    return expand(view.array(f"{name}_standard_uncertainty"), degrees_of_freedom=freedom)
 
 
 def view_ropes(

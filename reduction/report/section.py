@@ -7,7 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from reduction.report.answers import (
+    answer_budgets,
+    budget_sentences,
+    budget_table,
+)
 from reduction.report.figure import Figure
+from reduction.report.figures.budgets import draw_budgets
 from reduction.report.figures.elastomers import draw_mooney
 from reduction.report.figures.holds import draw_holds
 from reduction.report.figures.loops import draw_loops
@@ -40,6 +46,7 @@ from reduction.report.view import TestView
 
 __all__ = ["Part", "Section", "make_part", "make_section", "provenance_of"]
 
+_BUDGETS = "Where the uncertainty comes from"
 _LINES = ("raw_file", "raw_file_sha256", "raw_file_bytes")
 _LONG = ("settings", "raw_metadata", "history")
 
@@ -104,6 +111,7 @@ def make_section(view: TestView) -> Section:
             [summary_table(view), slip_table(view), identity_table(view)],
         ),
         make_part("Three-parameter line", (), [line_table(view)]),
+        _budget_part(view),
         make_part(
             "Holds", draw_holds(view), [hold_table(view), prony_table(view)],
             refusals=refusals(view),
@@ -125,6 +133,17 @@ def make_section(view: TestView) -> Section:
         provenance=provenance,
         documents=documents,
     )
+
+
+def _budget_part(view: TestView) -> Part:
+    """Where the uncertainty of the answers comes from; the numbers of the bars are folded."""
+    answers = answer_budgets(view)
+    if not answers:
+        return make_part(_BUDGETS)
+    return make_part(
+        _BUDGETS, draw_budgets(view, answers), (), budget_sentences(view, answers),
+        folded=make_part("The same in numbers", (), [budget_table(view, answers)]),
+    )  # fmt: skip
 
 
 def provenance_of(

@@ -19,7 +19,7 @@ from reduction.report.htmltable import (
     words,
 )
 from reduction.report.style import Shown, shown
-from reduction.report.uncertainty import plus_minus
+from reduction.report.uncertainty import NORMAL, plus_minus
 from reduction.report.view import TestView, any_synthetic
 from reduction.units import UnitSystem
 from reduction.vocabulary import QUANTITIES
@@ -120,6 +120,7 @@ def coefficient_table(view: TestView) -> Table | None:
         ("what, with its unit", *view.specimens), rows, synthetic=view.is_synthetic,
         remarks=[
             plus_minus(
+                [NORMAL],
                 "tape readings, regression on the splice marks",
                 left_out="load-cell calibration, position scale, the choice of strain method",
             )
@@ -194,7 +195,7 @@ def _coefficients(view: TestView, place: int) -> Iterator[tuple[str, Cell]]:
             si_unit = QUANTITIES[name].unit
             # c of c F**n goes with a force in newton; no other unit would keep its meaning
             unit = length if si_unit == "m" else Shown(si_unit, 1.0)
-            half = _value(view, f"{name}_standard_uncertainty", place)
+            half = NORMAL * _value(view, f"{name}_standard_uncertainty", place)
             yield unit.label(QUANTITIES[name].long_name), measured(value, half, unit)
     for name, unit, places in (("position", length, 2), ("tension", force, 0)):
         low, high = (_value(view, f"strain_{name}_{end}", place) for end in ("low", "high"))

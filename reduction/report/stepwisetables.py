@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from reduction.report.figures.stepwise import flagged_steps
-from reduction.report.htmltable import Table, make_table, measured, number, words
+from reduction.report.htmltable import Table, factors_of, make_table, measured, number, words
 from reduction.report.style import shown
-from reduction.report.uncertainty import plus_minus_of_steps
+from reduction.report.uncertainty import MANY, expanded_of, plus_minus_of_steps
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_VALUES
 
@@ -56,7 +56,7 @@ def interval_table(view: TestView) -> Table | None:
     if strain is None or modulus is None:
         return None
     percent, stress = shown("strain", view.units), shown("stress", view.units)
-    half = view.array_like("interval_modulus_standard_uncertainty", modulus)
+    spread = expanded_of(view, "interval_modulus", modulus, freedom=MANY)
     branch = view.array_like("interval_branch", modulus)
     branches = {value: name for name, value in BRANCH_VALUES.items()}
     clock = view.texts("clock") or tuple(str(place + 1) for place in range(strain.size + 1))
@@ -65,7 +65,7 @@ def interval_table(view: TestView) -> Table | None:
             words(f"{clock[place]} to {clock[place + 1]}"),
             words(branches.get(int(branch[place]), "")),
             number(strain[place], percent),
-            measured(modulus[place], half[place], stress),
+            measured(modulus[place], spread.half[place], stress, factor=spread.factor[place]),
         ]
         for place in range(strain.size)
     ]
@@ -76,5 +76,6 @@ def interval_table(view: TestView) -> Table | None:
     return make_table(
         "Slope of stress on strain between two readings; none where a reading is flagged or the"
         " weights turn.",
-        columns, rows, synthetic=view.is_synthetic, remarks=[plus_minus_of_steps()],
+        columns, rows, synthetic=view.is_synthetic,
+        remarks=[plus_minus_of_steps(factors_of(rows))],
     )  # fmt: skip

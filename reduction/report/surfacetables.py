@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from reduction.report.experimentview import ExperimentView, in_words, response_unit
@@ -12,6 +14,7 @@ from reduction.report.htmltable import (
     Cell,
     Table,
     count,
+    factors_of,
     make_table,
     measured,
     number,
@@ -20,8 +23,14 @@ from reduction.report.htmltable import (
     share_text,
     words,
 )
+from reduction.report.sources import source_words
 from reduction.report.style import Shown, superscript
 from reduction.report.surfacegrid import extremes_in_box
+from reduction.report.surfaceuncertainty import (
+    expanded_of_coefficients,
+    interval_of_surfaces,
+    shared_by_runs,
+)
 from reduction.report.uncertainty import plus_minus
 from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
@@ -34,6 +43,7 @@ _PRINTED = (
     " of freedom for fifteen runs); it stands here to be compared with the report, no more."
 )
 _OF_RUNS = "scatter of the runs about the surface"
+_ONE_LINE = "that one line was tested"
 NOT_OF_RUNS = "what all runs share: calibration, gauge length, the one line that was tested"
 """What no scatter of runs has in it."""
 _LARGE = 1e9
@@ -47,6 +57,8 @@ def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | No
     """
     least, greatest, _ = extremes_in_box(surfaces)
     middle = evaluate_surfaces(surfaces, np.zeros((1, len(view.factors))), units="coded")
+    lows, highs = interval_of_surfaces(view, surfaces, np.zeros((1, len(view.factors))))
+    sources = shared_by_runs(view, surfaces)
     bent = {base_response(one) for one in surfaces.response_names if one != base_response(one)}
     rows = []
     for k, name in enumerate(surfaces.response_names):
@@ -54,7 +66,7 @@ def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | No
         if not np.isfinite(middle.value[k, 0]) or (name in bent and least[k] < 0):
             continue
         unit = response_unit(base, view.units)
-        low, high = (float(end) for end in middle.confidence_interval[k, 0])
+        low, high = float(lows[k, 0]), float(highs[k, 0])
         ends = " to ".join(number_text(end * unit.factor, 5) for end in (low, high))
         rows.append(
             [
@@ -77,8 +89,8 @@ def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | No
         ("response", "in the middle", f"{100 * middle.confidence:g} % interval",
          "least in the range", "greatest in the range"),
         rows, synthetic=view.is_synthetic,
-        remarks=["The interval is of the surface, by the scatter of the runs about it. Not in it:"
-                 f" {NOT_OF_RUNS}."],
+        remarks=[f"The interval is of the surface and holds {_held(sources)}. Not in it:"
+                 f" {_left_out(sources)}."],
     )  # fmt: skip
 
 
@@ -128,6 +140,10 @@ def coefficient_table(view: ExperimentView, surfaces: ResponseSurfaces, index: i
     """Return the coefficients of a surface, coded and in the units of the factors."""
     name = surfaces.response_names[index]
     unit = response_unit(name, view.units)
+    coded, in_units = (
+        expanded_of_coefficients(view, surfaces, index, in_units=is_it) for is_it in (False, True)
+    )
+    sources = shared_by_runs(view, surfaces)
     rows = []
     for k, label in enumerate(surfaces.labels):
         powers = surfaces.exponents[k]
@@ -137,14 +153,15 @@ def coefficient_table(view: ExperimentView, surfaces: ResponseSurfaces, index: i
                 words(label),
                 words(term_words(powers, view.factors)),
                 measured(
-                    float(surfaces.coefficient[index, k]),
-                    float(surfaces.coefficient_standard_uncertainty[index, k]), unit,
+                    float(surfaces.coefficient[index, k]), float(coded.all.half[k]), unit,
+                    factor=float(coded.all.factor[k]),
                 ),
+                *([number(float(coded.shared[k]), unit, digits=2)] if sources else []),
                 number(float(surfaces.t[index, k])),
                 probability(float(surfaces.p_value[index, k])),
                 _to_compute_with(
                     float(surfaces.coefficient_engineering[index, k]),
-                    float(surfaces.coefficient_engineering_standard_uncertainty[index, k]),
+                    float(in_units.all.half[k]),
                     engineering,
                 ),
                 words(superscript(engineering.unit)),
@@ -160,21 +177,30 @@ def coefficient_table(view: ExperimentView, surfaces: ResponseSurfaces, index: i
         if name != base_response(name)
         else []
     )
-    in_units = ", ".join(
+    units = ", ".join(
         f"{in_words(factor)} in {one.unit}"
         for factor, one in zip(view.factors, view.factor_units, strict=True)
     )
     return make_table(
         f"{base[0].upper()}{base[1:]}, for coded levels and for levels in units.",
-        ("", "term", unit.label("coefficient, coded"), "t [1]", "p [1]",
+        ("", "term", unit.label("coefficient, coded"),
+         *([unit.label("shared part of ±, coded")] if sources else []), "t [1]", "p [1]",
          "coefficient, in units", "its unit"),
         rows, synthetic=view.is_synthetic,
         remarks=[
             *of_numbers,
-            f"In units: {in_units}. Digits enough to compute with; the errors of coefficients in"
+            f"In units: {units}. Digits enough to compute with; the errors of coefficients in"
             " units go together, so that a value of the surface is far better known than the sum of"
             " theirs.",
-            plus_minus(_OF_RUNS, left_out=NOT_OF_RUNS),
+            plus_minus(
+                factors_of(rows), _held(sources), left_out=_left_out(sources)
+            ),
+            *(
+                ["Shared part: what of ± all runs share, with the same k; the parts add by their"
+                 " squares. t and p are of the scatter alone."]
+                if sources
+                else []
+            ),
         ],
     )  # fmt: skip
 
@@ -207,6 +233,16 @@ def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
          square.label("mean square"), "F [1]", "p [1]", "tested against"),
         rows, synthetic=view.is_synthetic,
     )  # fmt: skip
+
+
+def _held(sources: Sequence[str]) -> str:
+    """Say what the uncertainty of a surface holds."""
+    told = ", ".join(source_words(one) for one in sources)
+    return f"{_OF_RUNS}; and what all runs share: {told}" if told else _OF_RUNS
+
+
+def _left_out(sources: Sequence[str]) -> str:
+    return _ONE_LINE if sources else NOT_OF_RUNS
 
 
 def _to_compute_with(value: float, spread: float, unit: Shown) -> Cell:

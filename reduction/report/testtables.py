@@ -7,9 +7,25 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from reduction.record import Floats
-from reduction.report.htmltable import Cell, Table, count, make_table, measured, number, span, words
+from reduction.report.htmltable import (
+    Cell,
+    Table,
+    count,
+    factors_of,
+    make_table,
+    measured,
+    number,
+    span,
+    words,
+)
 from reduction.report.style import shown
-from reduction.report.uncertainty import plus_minus
+from reduction.report.uncertainty import (
+    MANY,
+    NORMAL,
+    expanded_of,
+    plus_minus_of_tests,
+    shared_sources,
+)
 from reduction.report.view import TestView, any_synthetic
 from reduction.vocabulary import BRANCH_NAMES
 
@@ -34,7 +50,8 @@ def segment_table(tests: Sequence[TestView]) -> Table | None:
     )  # fmt: skip
     return make_table(
         f"Elastic modulus{of}, piecewise linear, from trimmed branches.", columns, rows,
-        synthetic=any_synthetic(tests), is_tall=len(rows) > 16, remarks=[plus_minus()],
+        synthetic=any_synthetic(tests), is_tall=len(rows) > 16,
+        remarks=[plus_minus_of_tests(factors_of(rows), tests, ["segment_modulus"])],
     )  # fmt: skip
 
 
@@ -42,7 +59,7 @@ def _segments(view: TestView) -> Iterator[list[Cell]]:
     modulus = view.array("segment_modulus")
     if modulus is None:
         return
-    half = view.array_like("segment_modulus_standard_uncertainty", modulus)
+    spread = expanded_of(view, "segment_modulus", modulus)
     ends = {
         name: view.array_like(f"segment_{name}", modulus)
         for name in ("strain_low", "strain_high", "tension_low", "tension_high")
@@ -56,7 +73,12 @@ def _segments(view: TestView) -> Iterator[list[Cell]]:
             words(view.specimens[specimen]),
             words(branches[branch]),
             count(float(segment + 1)),
-            measured(modulus[own], half[own], shown("stress", view.units)),
+            measured(
+                modulus[own],
+                spread.half[own],
+                shown("stress", view.units),
+                factor=spread.factor[own],
+            ),
             span(
                 ends["strain_low"][own],
                 ends["strain_high"][own],
@@ -112,8 +134,13 @@ def summary_table(view: TestView) -> Table | None:
     is_known = False
     for name, unit, label in given:
         values = view.array_like(name, np.empty(len(view.specimens)))
-        half = view.array_like(f"{name}_standard_uncertainty", values)
-        cells = (measured(value, u, unit) for value, u in zip(values, half, strict=True))
+        # where a line goes slack is read off samples
+        freedom = MANY if name.startswith("slack_") else None
+        spread = expanded_of(view, name, values, freedom=freedom)
+        cells = (
+            measured(value, half, unit, factor=factor)
+            for value, half, factor in zip(values, spread.half, spread.factor, strict=True)
+        )
         rows.append([words(label), *cells])
         is_known |= bool(np.isfinite(values).any())
     if not is_known:
@@ -121,8 +148,21 @@ def summary_table(view: TestView) -> Table | None:
     return make_table(
         "Means over the cycles of the test, and what changed over them.",
         ("what, with its unit", *view.specimens), rows, synthetic=view.is_synthetic,
-        remarks=[plus_minus()],
+        remarks=_about_means(view, rows, [name for name, *_ in given]),
     )  # fmt: skip
+
+
+def _about_means(view: TestView, rows: Sequence[Sequence[Cell]], names: Sequence[str]) -> list[str]:
+    """Say what ± holds, and of which rows it is scatter alone."""
+    said = plus_minus_of_tests(factors_of(rows), [view], names)
+    if not shared_sources([view], names):
+        return [said]
+    own = [
+        row[0].text.partition(" [")[0]
+        for row, name in zip(rows, names, strict=True)
+        if factors_of([row]) and not shared_sources([view], [name])
+    ]
+    return [said, *([f"Scatter alone: {'; '.join(own)}."] if own else [])]
 
 
 def stress_table(view: TestView) -> Table | None:
@@ -154,17 +194,17 @@ def slip_table(view: TestView) -> Table | None:
         view.array_like("slip_cycle_high", cycles),
     )
     step, length = (view.array_like(f"slip_{name}", cycles) for name in ("tension_step", "length"))
-    halves = [
-        view.array_like(f"slip_{name}_standard_uncertainty", cycles)
+    of_step, of_length = (
+        expanded_of(view, f"slip_{name}", cycles, freedom=MANY)
         for name in ("tension_step", "length")
-    ]
+    )
     rows = [
         [
             words(specimen),
             count(cycles[place]),
             Cell(f"{low[place]:.0f} to {high[place]:.0f}", is_number=True),
-            measured(step[place], halves[0][place], force),
-            measured(length[place], halves[1][place], small),
+            measured(step[place], of_step.half[place], force, factor=of_step.factor[place]),
+            measured(length[place], of_length.half[place], small, factor=of_length.factor[place]),
         ]
         for place, specimen in enumerate(view.texts("slip_specimen"))
     ]
@@ -174,7 +214,9 @@ def slip_table(view: TestView) -> Table | None:
     )  # fmt: skip
     return make_table(
         "Steps of a splice, told apart from steady creep.", columns, rows,
-        synthetic=view.is_synthetic, remarks=[plus_minus()],
+        synthetic=view.is_synthetic, remarks=[
+            plus_minus_of_tests(factors_of(rows), [view], ["slip_tension_step", "slip_length"])
+        ],
     )  # fmt: skip
 
 
@@ -233,7 +275,13 @@ def elastomer_table(view: TestView) -> Table | None:
     )  # fmt: skip
     return make_table(
         "Hyperelastic laws of the first loading; a law says nothing outside its fitted range.",
-        columns, rows, synthetic=view.is_synthetic, remarks=[plus_minus("regression")],
+        columns, rows, synthetic=view.is_synthetic,
+        remarks=[
+            plus_minus_of_tests(
+                [NORMAL], [view], ["elastomer_modulus", "elastomer_exponent"],
+                found_from="regression",
+            )
+        ],
     )  # fmt: skip
 
 
@@ -245,7 +293,7 @@ def _parameters(view: TestView, fit: int) -> Iterator[str]:
     for place in np.flatnonzero(belongs == fit):
         for name, unit in (("modulus", stress), ("exponent", None)):
             values = view.array_like(f"elastomer_{name}", belongs)
-            half = view.array_like(f"elastomer_{name}_standard_uncertainty", belongs)
+            half = expanded_of(view, f"elastomer_{name}", belongs, freedom=MANY).half
             if np.isfinite(values[place]):
                 words_ = view.texts("elastomer_parameter_name")[place].replace("_", " ")
                 text = measured(values[place], half[place], unit).text

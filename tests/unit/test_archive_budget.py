@@ -126,3 +126,11 @@ def test_cycles_of_the_break_in_are_not_in_a_mean_and_give_no_degree_of_freedom(
     assert degrees_of_freedom(archive.assign_attrs(settings=settings), "segment_modulus") == 1
     assert degrees_of_freedom(archive.drop_dims("cycle"), "segment_modulus") == 1
     assert degrees_of_freedom(archive, "tangent_modulus").tolist() == [[9, 3]]
+
+
+def test_a_line_over_the_cycles_has_lost_two_and_a_regression_on_samples_counts_as_known(archive):
+    with_line = archive.assign(dynamic_modulus_per_decade=("specimen", [1.0]))
+    assert degrees_of_freedom(with_line, "dynamic_modulus_per_decade") == 1
+    with_holds = archive.assign(relaxation_drop=("hold", [1.0]))
+    assert np.isinf(degrees_of_freedom(with_holds, "relaxation_drop"))
+    assert np.isinf(degrees_of_freedom(archive, "peak_tension"))

@@ -304,9 +304,9 @@ def test_the_answer_has_the_numbers_of_the_archive_and_their_uncertainty():
     assert " ± " in load.text and "±" not in other.text
     pick_up = cells(table, "pick-up strain [%]")[0]
     assert float(pick_up.value) == pytest.approx(pick_up_strain(68))
-    # half a degree at 12.19 points a degree (WHOI-2004-06: the angle is all)
-    assert pick_up.text == "102.5 ± 6.1"
-    assert table.remarks[0].startswith("±: one standard uncertainty (k = 1)")
+    # half a degree at 12.19 points a degree (WHOI-2004-06: the angle is all), times 1.96
+    assert pick_up.text == f"{100 * pick_up_strain(68):.0f} ± 12"
+    assert table.remarks[0].startswith("±: expanded uncertainty, 95 % (k = 1.96)")
     assert "wrap angle, rubber modulus, load of the cord curve" in table.remarks[0]
     assert table.remarks[1] == "Nothing is stated of stiff."
     assert answer_of_hoses([]) is None
@@ -325,10 +325,10 @@ def test_events_are_shown_in_the_units_asked_for_and_kept_in_si_beside():
 def test_construction_is_complete_with_ribbons_and_cords():
     table = design_table(view(units="us", minimum_inner_diameter=0.0254))
     found = {row[0].text: row[1].text for row in table.rows}
-    assert found["wrap angle from the axis [deg]"] == "68.00 ± 0.50"
+    assert found["wrap angle from the axis [deg]"] == "68.00 ± 0.98"
     assert found["diameter of the inner layer [in]"] == "3.400"
     assert found["cords a length of fabric [1/in]"] == "34.00"
-    assert found["Young's modulus of the rubber [psi]"] == "200.0 ± 10.0"
+    assert found["Young's modulus of the rubber [psi]"] == "200 ± 20"
     assert found["least bore that is allowed [in]"] == "1.000"
     ribbon = np.pi * 3.4 * np.cos(np.radians(68))
     assert found["width of the ribbon of the inner layer [in]"] == f"{ribbon:.3f}"

@@ -121,7 +121,9 @@ def test_every_property_is_a_row_and_a_missing_one_has_its_reason(ropes):
     assert [row[0] for row in texts(table)] == [one.name for one in FOUND["R-1"]]
     assert "SYNTHETIC" in table.caption
     by_name = {row[0]: row for row in texts(table)}
-    assert by_name["static stiffness"][1:4] == ["10,000 to 30,000", "600.0", "500,000 ± 60"]
+    assert by_name["static stiffness"][1:4] == ["10,000 to 30,000", "600.0", "500,000 ± 118"]
+    # ten cycles: t of nine degrees of freedom is 2.262, where many samples have 1.960
+    assert by_name["dynamic stiffness"][3] in ("1,000,000 ± 2,036", "1,300,000 ± 1,764")
     assert by_name["polymer strain"][1] == "30,000"
     assert by_name["construction strain"][5] == NOT_GIVEN
     assert table.remarks[0] == "original stiffness, B: of the first cycle"
@@ -131,7 +133,7 @@ def test_every_property_is_a_row_and_a_missing_one_has_its_reason(ropes):
 
 def test_the_answer_has_a_row_a_rope(ropes):
     rows = texts(answer_of_ropes(ropes))
-    assert rows[0][:4] == ["R-1", "300,000 ± 300", "500,000 ± 60", "1,000,000 to 1,300,000"]
+    assert rows[0][:4] == ["R-1", "300,000 ± 588", "500,000 ± 118", "1,000,000 to 1,300,000"]
     assert set(rows[1][1:]) == {NOT_GIVEN}
     assert answer_of_ropes([]) is None
     assert rope_tiles([]) == []
@@ -140,7 +142,7 @@ def test_the_answer_has_a_row_a_rope(ropes):
 
 def test_tables_of_steps_are_of_this_rope_alone(ropes):
     table = level_table(ropes[0])
-    assert texts(table) == [["D", "10,000", "5,000", "10", "1,000,000 ± 900"]]
+    assert texts(table) == [["D", "10,000", "5,000", "10", "1,000,000 ± 2,036"]]
     assert level_table(ropes[1]) is None
     assert texts(creep_table(ropes[0]))[1][-1] == "too short"
 

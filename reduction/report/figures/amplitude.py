@@ -9,7 +9,7 @@ import numpy as np
 from reduction.record import Floats
 from reduction.report.figure import Figure, Trace, axis, make_figure, plain_numbers
 from reduction.report.style import Kind, marker, plot_text, shown
-from reduction.report.uncertainty import plus_minus
+from reduction.report.uncertainty import expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView, all_specimens, any_synthetic
 
 __all__ = ["draw_amplitude_pairs"]
@@ -30,6 +30,8 @@ def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
         unit = shown(kind, units)
         in_legend: set[str] = set()
         drawn: dict[str, int] = {}
+        factors: list[float] = []
+        seen: dict[str, TestView] = {}
         for index, view in enumerate(tests):
             for order, specimen in enumerate(names):
                 row = _summary(view, specimen, name)
@@ -37,6 +39,8 @@ def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
                     data.append(_point(view.id, specimen, (index, order), row, unit.factor))
                     data[-1]["showlegend"] = view.id not in in_legend
                     in_legend.add(view.id)
+                    factors.append(float(row[4]))
+                    seen[view.id] = view
                     drawn[specimen] = order
         if len(drawn) > 1:
             data += [_entry(specimen, order) for specimen, order in drawn.items()]
@@ -46,7 +50,7 @@ def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
             " level bar is the strain range of the cycles: tests at one mean strain and two"
             " amplitudes stand above each other. Colour and shape of a marker are"
             " the test's, its filling the specimen's (grey in the legend)."
-            f" {plus_minus(mark='Upright bar, ±')}",
+            " " + plus_minus_of_tests(factors, [*seen.values()], [name], mark="Upright bar, ±"),
             data, synthetic=any_synthetic(tests), height=400,
             xaxis=axis("mean strain [%]"), yaxis=axis(unit.label(words)),
         )  # fmt: skip
@@ -56,14 +60,14 @@ def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
 
 
 def _summary(view: TestView, specimen: str, name: str) -> Floats | None:
-    """Return mean strain, strain amplitude, value and its uncertainty."""
+    """Return mean strain, strain amplitude, value, its expanded uncertainty and the factor."""
     mean, amplitude = view.array("test_mean_strain"), view.array("test_strain_amplitude")
     values = view.array(name)
     if mean is None or amplitude is None or values is None or specimen not in view.specimens:
         return None
     row = view.specimens.index(specimen)
-    half = view.array_like(f"{name}_standard_uncertainty", values)
-    return np.array([mean[row], amplitude[row], values[row], half[row]])
+    spread = expanded_of(view, name, values)
+    return np.array([mean[row], amplitude[row], values[row], spread.half[row], spread.factor[row]])
 
 
 def _point(test: str, specimen: str, places: tuple[int, int], row: Floats, factor: float) -> Trace:

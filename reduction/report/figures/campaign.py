@@ -99,8 +99,8 @@ def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
                 f"campaign-ratio-{len(found)}",
                 f"{_only(tests, pair)}{branch}, {pair[0]} over {pair[1]}",
                 f"Tangent modulus of {pair[0]} over that of {pair[1]} at the same strain,"
-                f" {branch} branch, each test; band: 95 % interval, of type A. Where it leaves out"
-                " 1 the two differ.",
+                f" {branch} branch, each test; band: 95 % interval, of scatter alone. Where it"
+                " leaves out 1 the two differ.",
                 [trace for trace in data if trace["y"]], synthetic=any_synthetic(tests),
                 xaxis=axis("strain [%]"), yaxis=_ratio_axis(data),
                 shapes=[_level(1.0)],

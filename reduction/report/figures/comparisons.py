@@ -11,6 +11,7 @@ from reduction.record import Bools, Floats
 from reduction.report.comparisonview import ComparisonView
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure, plain_numbers
 from reduction.report.style import COLOURS, DASHES, SYMBOLS, Shown, colour, shown
+from reduction.report.uncertainty import expand, factor_words
 
 __all__ = ["draw_all_comparisons", "draw_comparison", "draw_cycle_bias", "draw_error"]
 
@@ -132,10 +133,13 @@ def draw_cycle_bias(view: ComparisonView) -> list[Figure]:
         data.append(
             line(number, fitted, name="straight over decades", colour=_GREY, dash="dash", width=1.6)
         )
-        spread = force.factor * view.scalar("bias_per_decade_standard_uncertainty")
+        spread = expand(
+            force.factor * view.scalar("bias_per_decade_standard_uncertainty"),
+            degrees_of_freedom=max(number.size - 2, 1),
+        )
         about = (
-            f" Dashed: {slope:+.3g} {force.unit} a decade, ± {spread:.2g} {force.unit} (k = 1,"
-            " scatter about the line)."
+            f" Dashed: {slope:+.3g} {force.unit} a decade, ± {float(spread.half):.2g} {force.unit}"
+            f" (95 %, {factor_words(spread.factors)}, scatter about the line)."
         )
     # a bias that hardly moves would fill the height, and noise would look like a trend
     middle, reach = bias.mean(), max(np.ptp(bias), 0.02 * _greatest(view) * force.factor)

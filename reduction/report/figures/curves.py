@@ -10,6 +10,7 @@ from reduction.pipeline.deployed import DeployedLine
 from reduction.record import Bools, Floats
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure, plain_numbers
 from reduction.report.style import COLOURS, SYMBOLS, colour, shown
+from reduction.report.uncertainty import NORMAL, factor_words
 from reduction.units import UnitSystem
 
 __all__ = ["draw_assembly", "draw_composite", "draw_stiffness"]
@@ -22,12 +23,12 @@ def draw_composite(source: PieceSource, curve: CompositeCurve, units: UnitSystem
     """Draw the curve with its uncertainty over its pieces; gaps are dotted."""
     percent, force = shown("strain", units), shown("tension", units)
     strain, load = percent.factor * curve.strain, force.factor * curve.tension
-    spread = force.factor * curve.standard_uncertainty
+    spread = NORMAL * force.factor * curve.standard_uncertainty
     used = set(curve.piece_names)
     names = list(dict.fromkeys(one.name for one in source.pieces))
     data: list[Trace] = [
         band(
-            strain, load - spread, load + spread, name="one standard uncertainty", colour=_CURVE,
+            strain, load - spread, load + spread, name="expanded uncertainty, 95 %", colour=_CURVE,
             alpha=0.13,
         )
     ]  # fmt: skip
@@ -52,8 +53,9 @@ def draw_composite(source: PieceSource, curve: CompositeCurve, units: UnitSystem
     ]  # fmt: skip
     return make_figure(
         "composite", f"Composite curve of {source.name}",
-        "Thick: the curve, dotted where no piece reaches, with one standard uncertainty. Thin: its"
-        " pieces, solid of cycles, dashed of static tests, dotted of first rises.",
+        "Thick: the curve, dotted where no piece reaches, with its expanded uncertainty (95 %,"
+        f" {factor_words([NORMAL])}). Thin: its pieces, solid of cycles, dashed of static tests,"
+        " dotted of first rises.",
         data, synthetic=source.is_synthetic, height=520, is_wide=True,
         xaxis=axis(percent.label("strain")), yaxis=axis(force.label("tension")),
     )  # fmt: skip
@@ -70,10 +72,10 @@ def draw_assembly(found: DeployedLine, units: UnitSystem) -> Figure:
     assembly = found.deployed.assembly
     length, force = shown("length", units), shown("tension", units)
     at, load = length.factor * assembly.total_length, force.factor * assembly.tension
-    spread = force.factor * assembly.standard_uncertainty
+    spread = NORMAL * force.factor * assembly.standard_uncertainty
     data: list[Trace] = [
         band(
-            at, load - spread, load + spread, name="one standard uncertainty", colour=COLOURS[0],
+            at, load - spread, load + spread, name="expanded uncertainty, 95 %", colour=COLOURS[0],
             alpha=0.15,
         ),
         line(
@@ -100,7 +102,8 @@ def draw_assembly(found: DeployedLine, units: UnitSystem) -> Figure:
         )  # fmt: skip
     return make_figure(
         "assembly", f"Tension of {found.name}",
-        "Dotted where a tether is at a strain that no test reaches. Marked: working points, with"
+        f"Band: expanded uncertainty (95 %, {factor_words([NORMAL])}). Dotted where a tether is at"
+        " a strain that no test reaches. Marked: working points, with"
         " their cycles from valley to peak.",
         data, synthetic=found.source.is_synthetic, height=460, is_wide=True,
         xaxis=axis(length.label("length")), yaxis=axis(force.label("tension")),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,19 +13,25 @@ from reduction.report.figure import Figure, Trace, axis, line, make_figure, plai
 from reduction.report.htmltable import number_text
 from reduction.report.linetables import FORM_WORDS
 from reduction.report.style import COLOURS, SYMBOLS, colour, plot_text, shown
+from reduction.report.surfaceuncertainty import expanded_of_runs
+from reduction.report.uncertainty import factor_words
+from reduction.report.view import TestView
 
 __all__ = ["draw_derived", "draw_forms", "draw_single_time"]
 
 _GREY = "#8C8C8C"
 
 
-def draw_single_time(view: ExperimentView) -> list[Figure]:
+def draw_single_time(
+    view: ExperimentView, tests: Mapping[str, TestView] | None = None
+) -> list[Figure]:
     """Draw the relaxation time against frequency, with the lines of one time and of 1/f."""
     exponent = view.scalar("single_time_exponent")
     unit = shown("time", view.units)
     frequency = view.per_run("run_frequency")
     time = view.per_run("relaxation_time_measured") * unit.factor
-    half = view.per_run("relaxation_time_measured_standard_uncertainty") * unit.factor
+    spread = expanded_of_runs(view, "relaxation_time", {} if tests is None else tests)
+    half = spread.half * unit.factor
     known = np.isfinite(frequency) & (time > 0)
     if not np.isfinite(exponent) or "frequency" not in view.factors or not known.any():
         return []
@@ -69,7 +76,8 @@ def draw_single_time(view: ExperimentView) -> list[Figure]:
             "Relaxation time of each run, on logarithmic axes. One relaxation time would lie on the"
             " dotted level; dashed: as 1/f, which is a loss angle that does not change with"
             f" frequency. Thin: the fit, tau ~ f⁻ⁿ with n = {exponent:.4f} ({low:.4f} to"
-            f" {high:.4f}), one factor for each pair of loads. Bars: one standard uncertainty.",
+            f" {high:.4f}), one factor for each pair of loads. Bars: expanded"
+            f" uncertainty (95 %, {factor_words(spread.factors)}).",
             data, synthetic=view.is_synthetic, height=420, is_wide=True,
             xaxis=axis("frequency [Hz]", type="log", **_decade_ticks(reach)),
             yaxis=axis(unit.label("relaxation time"), type="log", **span),

@@ -7,6 +7,7 @@ import numpy as np
 from reduction.report.decimate import keep_extremes
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure
 from reduction.report.style import colour, shown
+from reduction.report.uncertainty import MANY, NORMAL, expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView
 
 __all__ = ["draw_pull"]
@@ -20,7 +21,7 @@ def draw_pull(view: TestView) -> list[Figure]:
     constant = view.array("quasi_static_spring_constant")
     if grid is None or strain is None or constant is None:
         return []
-    half = view.array_like("quasi_static_spring_constant_standard_uncertainty", constant)
+    half = expanded_of(view, "quasi_static_spring_constant", constant, freedom=MANY).half
     force, percent = shown("tension", view.units), shown("strain", view.units)
     curves: list[Trace] = []
     slopes: list[Trace] = []
@@ -54,14 +55,21 @@ def draw_pull(view: TestView) -> list[Figure]:
         make_figure(
             f"{view.key}-pull-constant", f"{view.id}: quasi-static spring constant",
             "K_0, the slope of tension on strain, against tension: to be taken at the mean tension"
-            " of interest. Band: one standard uncertainty of the fit, where it is wider than the"
-            " line.",
+            " of interest."
+            f" {_about_band(view)}",
             slopes, synthetic=view.is_synthetic, height=400,
             xaxis=axis(force.label("tension")),
             yaxis=axis(force.label("K_0"), rangemode="tozero"),
         ),
     )  # fmt: skip
     return [figure for figure in figures if figure.has_data]
+
+
+def _about_band(view: TestView) -> str:
+    return plus_minus_of_tests(
+        [NORMAL], [view], ["quasi_static_spring_constant"], mark="Band",
+        found_from="scatter about the cubic",
+    )  # fmt: skip
 
 
 def _logged(view: TestView, place: int, to_x: float, to_y: float) -> list[Trace]:

@@ -6,8 +6,9 @@ import numpy as np
 
 from reduction.record import Floats
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
-from reduction.report.ropeview import RopeView
+from reduction.report.ropeview import RopeView, expanded_property
 from reduction.report.style import colour, marker, plot_text, shown
+from reduction.report.uncertainty import factor_words
 
 __all__ = ["draw_creep", "draw_held_pairs", "draw_stiffness"]
 
@@ -20,7 +21,7 @@ def draw_stiffness(view: RopeView) -> list[Figure]:
     force = shown("tension", view.units)
     low, high = view.array("property_low_tension"), view.array("property_high_tension")
     values = view.array("property_stiffness")
-    half = view.array("property_stiffness_standard_uncertainty")
+    spread = expanded_property(view, "property_stiffness")
     data: list[Trace] = []
     for index, name in enumerate(_STIFFNESS):
         rows = view.rows_of(name)
@@ -33,7 +34,7 @@ def draw_stiffness(view: RopeView) -> list[Figure]:
                     "x": plain_numbers(force.factor * (low[rows] + high[rows]) / 2),
                     "y": plain_numbers(force.factor * values[rows]),
                     "error_x": _bars(force.factor * (high[rows] - low[rows]) / 2, index, 1),
-                    "error_y": _bars(force.factor * half[rows], index, 2),
+                    "error_y": _bars(force.factor * spread.half[rows], index, 2),
                     "marker": marker(index, size=9),
                     "text": [plot_text(view.texts("property_test")[row]) for row in rows],
                 }
@@ -44,7 +45,7 @@ def draw_stiffness(view: RopeView) -> list[Figure]:
         make_figure(
             f"{view.key}-stiffness", f"Stiffness against tension, {view.specimen}",
             "Force per unit strain. Bars across: the tensions it is between, cycle or holds; bars"
-            " up: one standard uncertainty.",
+            f" up: expanded uncertainty (95 %, {factor_words(spread.factors)}), scatter alone.",
             data, synthetic=view.is_synthetic, height=400,
             xaxis=axis(force.label("tension"), rangemode="tozero"),
             yaxis=axis(force.label("stiffness"), rangemode="tozero"),

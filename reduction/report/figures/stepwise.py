@@ -6,7 +6,7 @@ import numpy as np
 
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
 from reduction.report.style import COLOURS, DASHES, plot_text, shown
-from reduction.report.uncertainty import plus_minus_of_steps
+from reduction.report.uncertainty import MANY, NORMAL, expanded_of, plus_minus_of_steps
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_VALUES
 
@@ -82,7 +82,7 @@ def _moduli(view: TestView) -> Figure:
     data: list[Trace] = []
     middle, modulus = view.array("interval_strain"), view.array("interval_modulus")
     if middle is not None and modulus is not None:
-        half = view.array_like("interval_modulus_standard_uncertainty", modulus)
+        half = expanded_of(view, "interval_modulus", modulus, freedom=MANY).half
         branch = view.array_like("interval_branch", modulus)
         for name, tint in _TINTS.items():
             own = (branch == BRANCH_VALUES[name]) & np.isfinite(modulus)
@@ -109,7 +109,8 @@ def _moduli(view: TestView) -> Figure:
     return make_figure(
         f"{view.key}-step-moduli", f"{view.id}: interval and secant modulus",
         "Interval modulus: slope of stress on strain between two readings, at their middle."
-        f" Secant modulus: stress over strain of one reading. {plus_minus_of_steps('Bars, ±')}",
+        " Secant modulus: stress over strain of one reading."
+        f" {plus_minus_of_steps([NORMAL], 'Bars, ±')}",
         [trace for trace in data if trace["y"]], synthetic=view.is_synthetic, height=400,
         xaxis=axis(in_strain.label("strain")), yaxis=axis(in_stress.label("modulus")),
     )  # fmt: skip

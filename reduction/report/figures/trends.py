@@ -10,7 +10,7 @@ from reduction.record import Floats
 from reduction.report.decimate import POINTS, keep_extremes
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure
 from reduction.report.style import Kind, colour, faded, plot_text, shown
-from reduction.report.uncertainty import plus_minus
+from reduction.report.uncertainty import MANY, NORMAL, expanded_of, plus_minus
 from reduction.report.view import TestView
 
 __all__ = ["LONG", "draw_trends"]
@@ -49,11 +49,11 @@ def draw_trends(view: TestView) -> list[Figure]:
             values = view.array(name)
             if values is None:
                 continue
-            uncertainty = view.array_like(f"{name}_standard_uncertainty", values)
+            spread = expanded_of(view, name, values, freedom=MANY).half
             for index, specimen in enumerate(view.specimens):
                 kept = keep_extremes(place, values[index], limit=POINTS)
                 x, y = cycle[kept], values[index, kept] * unit.factor
-                half = uncertainty[index, kept] * unit.factor
+                half = spread[index, kept] * unit.factor
                 label = specimen if dash == "solid" else f"{specimen}, {name.split('_')[0]}"
                 data.append(
                     band(x, y - half, y + half, name=label, colour=colour(index), alpha=0.2)
@@ -63,8 +63,7 @@ def draw_trends(view: TestView) -> list[Figure]:
         figure = make_figure(
             f"{view.key}-{key}",
             f"{view.id}: {words}",
-            f"{_CAPTIONS[key]}{_slip_words(view)}"
-            f" {plus_minus('noise, regression', mark='Band, ±')}",
+            f"{_CAPTIONS[key]}{_slip_words(view)} {_about_band(view)}",
             [trace for trace in data if trace["y"]],
             synthetic=view.is_synthetic,
             height=340,
@@ -122,6 +121,13 @@ def _slips(view: TestView, *, is_long: bool) -> tuple[list[Trace], list[Trace]]:
             }
         )  # fmt: skip
     return shapes, labels
+
+
+def _about_band(view: TestView) -> str:
+    if not view.texts("uncertainty_source"):
+        return plus_minus([NORMAL], "noise, regression", mark="Band, ±")
+    held = "noise, regression; and what all samples share, which moves all cycles alike"
+    return plus_minus([NORMAL], held, left_out="", mark="Band, ±")
 
 
 def _slip_words(view: TestView) -> str:

@@ -23,7 +23,7 @@
       plot_bgcolor: colours.paper,
       font: { family: getComputedStyle(document.body).fontFamily, size: 12, color: colours.font },
       margin: { l: 64, r: 16, t: layout.title.subtitle ? 62 : 44, b: AXIS + legend },
-      legend: { orientation: "h", x: 0, y: 0, yref: "container", yanchor: "bottom", tracegroupgap: 0, font: { size: 11 } },
+      legend: { orientation: "h", x: 0, y: 0, yref: "container", yanchor: "bottom", tracegroupgap: 0, font: { size: 11 }, ...layout.legend },
       hoverlabel: { namelength: 40 },
       hovermode: "closest",
       title: { ...layout.title, x: 0.01, xanchor: "left", y: 0.98, yanchor: "top", yref: "container", font: { size: 14 } },

@@ -1,0 +1,92 @@
+"""What is stated of the instruments, as the archives of the tests keep it in their settings."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+
+from reduction.report.htmltable import Table, make_table, number, words
+from reduction.report.style import Shown, shown
+from reduction.report.view import TestView, any_synthetic
+from reduction.units import UnitSystem
+
+__all__ = ["NOTHING_STATED", "instrument_sentences", "instrument_table", "is_stated"]
+
+NOTHING_STATED = (
+    "No error of the instruments is stated: the uncertainty holds scatter and tape readings alone."
+)
+_PERCENT = Shown("%", 100.0)
+
+
+def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | None:
+    """Return what is stated, a column for each statement; None where nothing is.
+
+    Tests of one campaign are usually reduced with one statement.
+    """
+    statements: dict[str, list[TestView]] = {}
+    for view in tests:
+        if is_stated(view):
+            statements.setdefault(json.dumps(_stated(view), sort_keys=True), []).append(view)
+    if not statements:
+        return None
+    stated = [_stated(views[0]) for views in statements.values()]
+    rows = [
+        [words(unit.label(text)), *(number(one.get(key, 0.0), unit, digits=3) for one in stated)]
+        for key, text, unit in _rows(units)
+        if any(one.get(key, 0.0) for one in stated)
+    ]
+    is_one = len(statements) == 1 and len(next(iter(statements.values()))) == len(tests)
+    columns = (
+        ["standard uncertainty"]
+        if is_one
+        else [", ".join(view.id for view in views) for views in statements.values()]
+    )
+    has_one_cell = any(one.get("has_one_load_cell") for one in stated)
+    remarks = [
+        "Standard uncertainties (k = 1), as computed from what campaign.toml states; what has no"
+        " row counts as known.",
+        *(["All tension channels share the errors of one load cell."] if has_one_cell else []),
+        *([] if is_one else [NOTHING_STATED] if _some_without(tests) else []),
+    ]
+    return make_table(
+        "What is stated of the instruments.", ("error, with its unit", *columns), rows,
+        synthetic=any_synthetic(tests), remarks=remarks,
+    )  # fmt: skip
+
+
+def instrument_sentences(tests: Sequence[TestView]) -> list[str]:
+    """Return the sentence that nothing is stated, where that is so of all tests."""
+    return [NOTHING_STATED] if tests and not any(is_stated(view) for view in tests) else []
+
+
+def is_stated(view: TestView) -> bool:
+    """Return whether the archive states any error of the instruments."""
+    return any(value for key, value in _stated(view).items() if key != "has_one_load_cell")
+
+
+def _some_without(tests: Sequence[TestView]) -> bool:
+    return any(not is_stated(view) for view in tests)
+
+
+def _stated(view: TestView) -> dict[str, float]:
+    settings = json.loads(view.attribute("settings") or "{}")
+    found: dict[str, float] = settings.get("uncertainty", {})
+    return found
+
+
+def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:
+    force, length = shown("tension", units), shown("length", units)
+    small, time = shown("small length", units), Shown("ms", 1e3)
+    return (
+        ("tension_gain", "gain of tension", _PERCENT),
+        ("tension_offset", "zero of tension", force),
+        ("tension_reading", "one reading of tension", force),
+        ("position_gain", "gain of position", _PERCENT),
+        ("position_offset", "zero of position", length),
+        ("position_reading", "one reading of position", length),
+        ("lag", "lag between the channels", time),
+        ("diameter", "mean diameter", small),
+        ("strain_gain", "strain, by its method", _PERCENT),
+        ("rated_break_strength", "rated break strength", _PERCENT),
+        ("stiffness", "stiffness, for the temperature of the test", _PERCENT),
+    )

@@ -1,0 +1,137 @@
+"""Uncertainty of surfaces and of runs: scatter of the runs, and what the runs share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.record import Floats
+from reduction.report.experimentview import ExperimentView
+from reduction.report.sources import in_order
+from reduction.report.uncertainty import Expanded, expand, expanded_of
+from reduction.report.view import TestView
+from reduction.surface.bands import evaluate_surfaces
+from reduction.surface.product import ResponseSurfaces
+from reduction.surface.terms import model_matrix
+from reduction.surface.transform import back_transform
+
+__all__ = [
+    "CoefficientSpread", "expanded_of_coefficients", "expanded_of_runs", "interval_of_surfaces",
+    "shared_by_runs",
+]  # fmt: skip
+
+_CONTRIBUTION = "_uncertainty_contribution"
+
+
+@dataclass(frozen=True)
+class CoefficientSpread:
+    """Expanded uncertainty of the coefficients of a surface, and its shared part alone.
+
+    The parts of scatter and of what is shared add up by their squares; both have the factor of all.
+    """
+
+    all: Expanded
+    shared: Floats
+
+
+def expanded_of_coefficients(
+    view: ExperimentView, surfaces: ResponseSurfaces, index: int, *, in_units: bool = False
+) -> CoefficientSpread:
+    """Return the uncertainty of the coefficients of a surface, coded or in units.
+
+    An archive that keeps no shared errors has those of scatter alone.
+    """
+    name = f"{surfaces.response_names[index]}_coefficient"
+    random = surfaces.coefficient_standard_uncertainty[index]
+    if in_units:
+        name += "_engineering"
+        random = surfaces.coefficient_engineering_standard_uncertainty[index]
+    contribution = _rows(view, name, random.size)
+    shared = np.sqrt(np.sum(contribution**2, axis=0))
+    found = expand(
+        np.hypot(random, shared),
+        random=random,
+        degrees_of_freedom=surfaces.term_degrees_of_freedom[index],
+    )
+    return CoefficientSpread(found, found.factor * shared)
+
+
+def shared_by_runs(view: ExperimentView, surfaces: ResponseSurfaces) -> list[str]:
+    """Return the sources that the runs share and that reach a surface, in fixed order."""
+    sources = view.texts("uncertainty_source")
+    found: set[str] = set()
+    for name in surfaces.response_names:
+        rows = _rows(view, f"{name}_coefficient", len(surfaces.term_names))
+        found |= {sources[place] for place in np.flatnonzero(rows.any(axis=1))}
+    return in_order(found)
+
+
+def interval_of_surfaces(
+    view: ExperimentView, surfaces: ResponseSurfaces, coded: ArrayLike
+) -> tuple[Floats, Floats]:
+    """Return the ends of the 95 % interval of every surface at points in coded levels.
+
+    Parameters
+    ----------
+    view : ExperimentView
+        Whose archive keeps what the runs share.
+    surfaces : ResponseSurfaces
+        Of it.
+    coded : array_like, shape (n_points, n_factors)
+        [1]
+
+    Returns
+    -------
+    low, high : ndarray, shape (n_responses, n_points)
+        NaN where there is no surface or no scatter. [unit of the response]
+    """
+    points = np.asarray(coded, dtype=np.float64)
+    scatter = evaluate_surfaces(surfaces, points, units="coded", outside="flag")
+    terms = model_matrix(points, surfaces.exponents)
+    low, high = np.empty_like(scatter.value), np.empty_like(scatter.value)
+    for k, name in enumerate(surfaces.response_names):
+        shared = _rows(view, f"{name}_coefficient", terms.shape[1]) @ terms.T
+        random = scatter.fitted_standard_uncertainty[k]
+        half = expand(
+            np.sqrt(random**2 + np.sum(shared**2, axis=0)),
+            random=random,
+            degrees_of_freedom=scatter.degrees_of_freedom[k],
+        ).half
+        fitted = terms @ surfaces.coefficient[k]
+        low[k], high[k] = fitted - half, fitted + half
+        if surfaces.transform[k] != "none":
+            power = surfaces.transform_exponent[k]
+            low[k], high[k] = back_transform(low[k], power), back_transform(high[k], power)
+    return low, high
+
+
+def expanded_of_runs(view: ExperimentView, name: str, tests: Mapping[str, TestView]) -> Expanded:
+    """Return the expanded uncertainty of a response in each run.
+
+    Where the run is a test of the campaign its archive knows all of it; a run from elsewhere has
+    the uncertainty that was given with it.
+    """
+    spread = view.per_run(f"{name}_measured_standard_uncertainty")
+    given = expand(spread)
+    half, factor = given.half.copy(), given.factor.copy()
+    pairs = zip(view.texts("run_name"), view.texts("run_specimen"), strict=True)
+    for place, (run, specimen) in enumerate(pairs):
+        test = tests.get(run)
+        own = None if test is None else test.array(f"test_{name}")
+        if test is None or own is None or specimen not in test.specimens:
+            continue
+        found = expanded_of(test, f"test_{name}", own)
+        row = test.specimens.index(specimen)
+        half[place], factor[place] = found.half[row], found.factor[row]
+    return Expanded(half, factor)
+
+
+def _rows(view: ExperimentView, name: str, n_terms: int) -> Floats:
+    """Contributions to the coefficients, shape (n_components, n_terms); of no length where none."""
+    found = view.array(f"{name}{_CONTRIBUTION}")
+    if found.ndim != 2:
+        return np.zeros((0, n_terms))
+    return np.nan_to_num(found[:, :n_terms])
