@@ -82,6 +82,7 @@ SHARED: dict[str, tuple[str, ...]] = {
     "strain_at_time": ("hold", "hold_time"),
     "prony_tension": ("hold", "prony_term"),
     **dict.fromkeys(_OF_PAIR, ("held_pair",)),
+    "interval_modulus": ("interval",),
     "slip_tension_step": ("slip",),
     "slip_length": ("slip",),
     "elastomer_modulus": ("elastomer_parameter",),

@@ -19,7 +19,7 @@ STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
 STEP_ROWS: tuple[Variable, ...] = tuple(
     chain(
         label("clock", ("step",)),
-        stated("gauge_length", ("step",), "a tape reading"),
+        measured("gauge_length", ("step",)),
         stated("eye_to_eye_length", ("step",), "a tape reading"),
         stated("printed_strain", ("step",), STATED),
         mask("step_flag", ("step",), STEP_MASKS),
@@ -33,8 +33,8 @@ STEPWISE: dict[str, Variable] = {
     row.name: row
     for row in chain(
         stated("time", ("step",), CLOCK),
-        stated("tension", ("step",), "weights as stated"),
-        stated("strain", ("step",), "from tape readings", ancillary=("step_flag",)),
+        measured("tension", ("step",)),
+        measured("strain", ("step",), ancillary=("step_flag",)),
         flag("branch", ("step",), BRANCH_VALUES),
         measured("secant_modulus", ("step",)),
     )
@@ -48,6 +48,7 @@ def stepwise_values(result: StepwiseResult) -> Values:
         "length_and_elongation_disagree": result.is_inconsistent,
         "creep": result.is_creep,
     }
+    shape, reading = result.strain.shape, result.length_standard_uncertainty
     return {
         "channel": texts(["readings"]),
         "quality_mask": texts(list(flags)),
@@ -57,10 +58,13 @@ def stepwise_values(result: StepwiseResult) -> Values:
         "clock": texts(result.clock),
         "time": result.time,
         "tension": result.tension,
+        "tension_standard_uncertainty": np.full(shape, result.tension_standard_uncertainty),
         "gauge_length": result.length,
+        "gauge_length_standard_uncertainty": np.full(shape, reading),
         "eye_to_eye_length": result.eye_to_eye_length,
         "printed_strain": result.printed_strain,
         "strain": result.strain,
+        "strain_standard_uncertainty": np.full(shape, reading / result.gauge_length),
         "branch": result.branch,
         "step_flag": np.sum([STEP_MASKS[name] * rows for name, rows in flags.items()], axis=0),
         "secant_modulus": result.secant_modulus,

@@ -9,7 +9,7 @@ from reduction.campaign.plan import Campaign
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.product import InstrumentErrors
 
-__all__ = ["instruments_of"]
+__all__ = ["instruments_of", "stepwise_instruments"]
 
 
 def instruments_of(
@@ -33,4 +33,17 @@ def instruments_of(
             else model.specimen,
         )
         for number, model in enumerate(models, start=1)
+    )
+
+
+def stepwise_instruments(campaign: Campaign, survey: Survey) -> tuple[InstrumentErrors, ...]:
+    """Stated errors of a test with weights, which has no channels and no strain model."""
+    return tuple(
+        campaign.uncertainty.of_channel(
+            name,
+            channel=number,
+            test=survey.plan.log,
+            load_cell=survey.plan.attributes.get("load_cell", "weights"),
+        )
+        for number, name in enumerate(survey.plan.specimens, start=1)
     )

@@ -11,7 +11,7 @@ from reduction.archive.dataset import to_dataset
 from reduction.archive.write import write_archive
 from reduction.batch.basis import Basis
 from reduction.batch.describe import describe
-from reduction.batch.instruments import instruments_of
+from reduction.batch.instruments import instruments_of, stepwise_instruments
 from reduction.batch.outcome import note_message
 from reduction.batch.pulls import pull_conditions
 from reduction.batch.standing import standing_product
@@ -71,6 +71,7 @@ def reduce_survey(
             history=history,
             sources=survey.sources,
             settings_json=settings,
+            instruments=stepwise_instruments(campaign, survey),
         )
     located = located_again(campaign, survey)
     return reduce_test(

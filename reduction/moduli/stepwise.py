@@ -65,6 +65,9 @@ class StepwiseResult:
         Stress over strain; NaN where the reading is inconsistent. Uncertainty of the
         reading and of the weight alone, as that of the intervals. [Pa]
     notes : tuple of str
+    length_standard_uncertainty, tension_standard_uncertainty : float
+        Of one reading of length, stated or from its scatter, and of one weight as stated; NaN
+        where neither is known. [m], [N]
     """
 
     clock: tuple[str, ...]
@@ -86,6 +89,8 @@ class StepwiseResult:
     secant_modulus: Floats
     secant_modulus_standard_uncertainty: Floats
     notes: tuple[str, ...] = ()
+    length_standard_uncertainty: float = float("nan")
+    tension_standard_uncertainty: float = float("nan")
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -307,4 +312,6 @@ def reduce_stepwise(
         secant_modulus=secant,
         secant_modulus_standard_uncertainty=secant_uncertainty,
         notes=(*readings.notes, *notes),
+        length_standard_uncertainty=reading,
+        tension_standard_uncertainty=weight,
     )

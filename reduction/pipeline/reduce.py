@@ -33,10 +33,11 @@ from reduction.pipeline.programme import rope_step
 from reduction.pipeline.rope import PullConditions, parts_of_line, pull_specimens
 from reduction.pipeline.shared import contributions_of_test, shared_uncertainty_of_cycles
 from reduction.pipeline.sharedratios import with_shared_ratios
-from reduction.pipeline.spread import strain_spread
+from reduction.pipeline.sharedsteps import with_shared_steps
+from reduction.pipeline.spread import strain_spread, with_stated_channels
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
-from reduction.record import Floats, Quality, Record, Specimen, StepReadings
+from reduction.record import Floats, Quality, Record, Specimen, StepReadings, areas_of
 from reduction.settings import ReductionSettings
 from reduction.strain.evaluate import extrapolated, strain_by_model
 from reduction.strain.model import StrainModel
@@ -110,7 +111,9 @@ def reduce_test(
     parts |= parts_of_first_loading(
         located, strain, tension, specimens, settings, history, kind=description.kind
     )
-    parts |= _stress(record, tension, specimens)
+    spread = strain_spread(located, models, phase=phase, instruments=instruments)
+    located = with_stated_channels(located, instruments, phase=phase)
+    parts |= _stress(located.record, tension, specimens, instruments)
     if pulls is not None and "loops" in parts:
         parts |= parts_of_line(parts["loops"], pulls, settings.cycles)
     if description.kind in PULLED:
@@ -165,7 +168,7 @@ def reduce_test(
         standstills=standstills,
         phase=phase,
         strain=strain,
-        strain_standard_uncertainty=strain_spread(located, models, phase=phase),
+        strain_standard_uncertainty=spread,
         strain_models=tuple(models),
         cycles=cycles,
         holds=holds,
@@ -205,6 +208,7 @@ def reduce_stepwise_test(
     history: History | None,
     sources: tuple[Source, ...],
     settings_json: str,
+    instruments: Sequence[InstrumentErrors] = (),
 ) -> ReducedTest:
     """Reduce a stepwise test of one specimen; parameters as in `reduce_test`."""
     if len(specimens) != 1:
@@ -217,7 +221,7 @@ def reduce_stepwise_test(
     stepwise = reduce_stepwise(
         readings, area=specimen.area, stated_gauge_length=specimen.gauge_length
     )
-    return ReducedTest(
+    test = ReducedTest(
         description=description,
         specimens=specimens,
         record=None,
@@ -231,6 +235,7 @@ def reduce_stepwise_test(
         history=history,
         stepwise=stepwise,
     )
+    return with_shared_steps(test, instruments)
 
 
 def _flag(located: Located, models: Sequence[StrainModel]) -> Record:
@@ -272,7 +277,12 @@ def strain_of_record(
     return strain
 
 
-def _stress(record: Record, tension: Floats, specimens: tuple[Specimen, ...]) -> dict[str, Any]:
+def _stress(
+    record: Record,
+    tension: Floats,
+    specimens: tuple[Specimen, ...],
+    instruments: Sequence[InstrumentErrors],
+) -> dict[str, Any]:
     """Nominal stress, where a diameter is known; NaN where tension is not usable."""
     if not any(specimen.diameter for specimen in specimens):
         return {}
@@ -283,8 +293,13 @@ def _stress(record: Record, tension: Floats, specimens: tuple[Specimen, ...]) ->
     spread = record.tension_standard_uncertainty
     if not spread:
         return {"nominal_stress": stress}
-    area = np.array([one.area if one.diameter else np.nan for one in specimens])
-    return {"nominal_stress": stress, "nominal_stress_standard_uncertainty": spread / area}
+    of_stress = np.array(spread) / areas_of(specimens)
+    for row, errors in enumerate(instruments):
+        if errors.diameter and specimens[row].diameter:
+            level = np.sqrt(np.nanmean(stress[row] ** 2))
+            share = 2 * errors.diameter / specimens[row].mean_diameter
+            of_stress[row] = np.hypot(of_stress[row], level * share)
+    return {"nominal_stress": stress, "nominal_stress_standard_uncertainty": of_stress}
 
 
 def _no_hold(standstills: Standstills, settings: ReductionSettings) -> str:

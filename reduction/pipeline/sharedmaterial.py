@@ -13,7 +13,7 @@ from reduction.strain.model import StrainModel
 from reduction.uncertainty.elastomer import elastomer_contributions
 from reduction.uncertainty.field import error_field
 from reduction.uncertainty.join import merged, stacked
-from reduction.uncertainty.points import stress_contributions, with_diameter
+from reduction.uncertainty.points import section_contributions, stress_contributions, with_diameter
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
 __all__ = ["of_elastomers", "of_material"]
@@ -28,16 +28,8 @@ def of_material(
     if test.stress_at_strain is not None and test.first_loading is not None:
         yield _of_stress(test, index, errors, model, area)
     yield from _of_slack(test, index, errors, model)
-    if errors.diameter and np.isfinite(area):
-        component = (Component("diameter", errors.specimen),)
-        size = np.sqrt(4 * area / np.pi)
-        yield Contributions(
-            component,
-            {
-                "diameter": np.array([errors.diameter]),
-                "area": np.array([2 * area * errors.diameter / size]),
-            },
-        )
+    if np.isfinite(area):
+        yield section_contributions(errors, area=area)
 
 
 def _of_stress(

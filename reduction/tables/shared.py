@@ -20,6 +20,7 @@ _FILES = {
     ("hold", "hold_time"): "shared_errors_hold_times",
     ("hold", "prony_term"): "shared_errors_prony",
     ("held_pair",): "shared_errors_static_stiffness",
+    ("interval",): "shared_errors_stepwise",
     ("slip",): "shared_errors_slips",
     ("elastomer_parameter",): "shared_errors_elastomer",
     ("comparison", "branch_name", "ratio_strain_bin"): "shared_errors_ratios",

@@ -28,7 +28,13 @@ from reduction.uncertainty.curves import by_diameter
 from reduction.uncertainty.field import ErrorField
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
-__all__ = ["chord_contributions", "secant_contributions", "stress_contributions", "with_diameter"]
+__all__ = [
+    "chord_contributions",
+    "secant_contributions",
+    "section_contributions",
+    "stress_contributions",
+    "with_diameter",
+]
 
 
 def with_diameter(
@@ -82,6 +88,48 @@ def with_diameter(
         )
         rows[name] = np.concatenate([array, own[None]])
     return Contributions((*found.component, Component("diameter", errors.specimen)), rows)
+
+
+def section_contributions(errors: InstrumentErrors, *, area: float) -> Contributions:
+    r"""Contributions to the diameter and the area of a specimen.
+
+    .. math:: \delta A = 2 A \, \delta d / d
+
+    Parameters
+    ----------
+    errors : InstrumentErrors
+        For the diameter.
+    area : float
+        Nominal. [m2]
+
+    Returns
+    -------
+    contributions : Contributions
+        ``diameter`` [m] and ``area`` [m2]; no component where no error is stated.
+
+    Raises
+    ------
+    DataError
+        If the area is not positive.
+
+    Notes
+    -----
+    Eq. 2 of [2]_.
+
+    Examples
+    --------
+    >>> found = section_contributions(InstrumentErrors("new", diameter=1e-4), area=5e-4)
+    >>> print(found.values["area"].round(9))
+    [3.963e-06]
+    """
+    if not errors.diameter:
+        return Contributions((), {"diameter": np.empty(0), "area": np.empty(0)})
+    component = (Component("diameter", errors.specimen),)
+    rows = {
+        "diameter": np.array([errors.diameter]),
+        "area": -by_diameter(area, errors, area=area).reshape(1),
+    }
+    return Contributions(component, rows)
 
 
 def stress_contributions(

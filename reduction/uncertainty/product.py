@@ -30,7 +30,9 @@ LINE_METHODS = {"not_given": 0, "linear": 1, "monte_carlo": 2}
 
 @dataclass(frozen=True)
 class InstrumentErrors:
-    """Standard uncertainties of what all samples of one specimen share; zero where not stated.
+    """Standard uncertainties of the instruments of one specimen; zero where not stated.
+
+    All but those of a reading are of what all samples share.
 
     Parameters
     ----------
@@ -56,6 +58,8 @@ class InstrumentErrors:
         Relative, of the material for the temperature of the test, which is its own. [1]
     test : str
         Which test.
+    tension_reading, position_reading : float
+        Of a single reading, which no other sample shares. [N], [m]
     tension_instrument, position_instrument : str
         Channels with one name share their gain and offset.
     strain_model : str
@@ -72,6 +76,8 @@ class InstrumentErrors:
     strain_gain: float = 0.0
     rated_break_strength: float = 0.0
     stiffness: float = 0.0
+    tension_reading: float = 0.0
+    position_reading: float = 0.0
     test: str = ""
     tension_instrument: str = "tension"
     position_instrument: str = "crosshead_position"

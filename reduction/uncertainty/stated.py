@@ -186,6 +186,8 @@ class StatedErrors:
             strain_gain=self.strain_gain,
             rated_break_strength=self.rated_break_strength,
             stiffness=self.stiffness,
+            tension_reading=self.tension_reading,
+            position_reading=self.position_reading,
             tension_instrument=cell if self.has_one_load_cell else f"{cell}, channel {channel}",
             position_instrument=machine or "crosshead",
             strain_model=strain_model or specimen,

@@ -409,7 +409,7 @@ def make_contributions(rng):
         "specimen": 2, "branch_name": 2, "segment": N_SEGMENTS, "strain_bin": N_BINS,
         "first_loading_strain_bin": N_BINS, "tension_grid": 41, "break_share": 8, "held_pair": 2,
         "hold": 3, "hold_time": 4, "prony_term": 2, "strain_level": 2, "comparison": 2,
-        "ratio_strain_bin": 3, "slip": 2, "elastomer_parameter": 3,
+        "ratio_strain_bin": 3, "slip": 2, "elastomer_parameter": 3, "interval": 2,
     }  # fmt: skip
     values = {name: array(rng, 2, *(size[dim] for dim in dims)) for name, dims in SHARED.items()}
     for name, dims in SHARED.items():
@@ -529,6 +529,9 @@ def stepwise_test():
             secant_modulus=array(rng, 3),
             secant_modulus_standard_uncertainty=array(rng, 3),
             notes=("row 1140 disagrees with itself",),
+        ),
+        contributions=Contributions(
+            (Component("diameter", "old"),), {"interval_modulus": array(rng, 1, 2)}
         ),
     )
 

@@ -1,0 +1,37 @@
+"""What shared errors add to a stepwise test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from reduction.product import ReducedTest
+from reduction.uncertainty.join import merged, stacked
+from reduction.uncertainty.points import section_contributions
+from reduction.uncertainty.product import Contributions, InstrumentErrors
+from reduction.uncertainty.weights import stepwise_contributions
+
+__all__ = ["with_shared_steps"]
+
+_OF_READINGS = ("tension", "strain", "secant_modulus")
+
+
+def with_shared_steps(test: ReducedTest, instruments: Sequence[InstrumentErrors]) -> ReducedTest:
+    """Readings with what they share, and the moduli between them with each contribution."""
+    result, (specimen,) = test.stepwise, test.specimens
+    if result is None or not instruments:
+        return test
+    errors = instruments[0]
+    found = stepwise_contributions(result, errors, area=specimen.area)
+    if not found.component:
+        return test
+    between = Contributions(found.component, {"interval_modulus": found.values["interval_modulus"]})
+    section = section_contributions(errors, area=specimen.area)
+    whole = merged([between, stacked([section])] if section.component else [between])
+    return replace(
+        test,
+        contributions=whole,
+        shared_uncertainty_of_cycles={
+            name: found.shared_standard_uncertainty(name) for name in _OF_READINGS
+        },
+    )
