@@ -41,12 +41,13 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | No
         if is_one
         else [", ".join(view.id for view in views) for views in statements.values()]
     )
+    without = [view.id for view in tests if not is_stated(view)]
     has_one_cell = any(one.get("has_one_load_cell") for one in stated)
     remarks = [
         "Standard uncertainties (k = 1), as computed from what campaign.toml states; what has no"
         " row counts as known.",
         *(["All tension channels share the errors of one load cell."] if has_one_cell else []),
-        *([] if is_one else [NOTHING_STATED] if _some_without(tests) else []),
+        *([f"Nothing is stated of {', '.join(without)}."] if without else []),
     ]
     return make_table(
         "What is stated of the instruments.", ("error, with its unit", *columns), rows,
@@ -62,10 +63,6 @@ def instrument_sentences(tests: Sequence[TestView]) -> list[str]:
 def is_stated(view: TestView) -> bool:
     """Return whether the archive states any error of the instruments."""
     return any(value for key, value in _stated(view).items() if key != "has_one_load_cell")
-
-
-def _some_without(tests: Sequence[TestView]) -> bool:
-    return any(not is_stated(view) for view in tests)
 
 
 def _stated(view: TestView) -> dict[str, float]:
