@@ -6,12 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import cast
 
+import xarray as xr
+
 from reduction.archive.budget import budget_from_archive, quantities_with_budget
 from reduction.archive.open import open_archive
 from reduction.cli.numbers import plain, short, table_of
 from reduction.cli.outcome import Outcome
 from reduction.errors import SettingsError
 from reduction.uncertainty.budget import Budget
+from reduction.uncertainty.montecarlo import PARAMETERS
+from reduction.uncertainty.product import LINE_METHODS
 from reduction.units import UnitSystem, display_unit, parse_quantity
 
 __all__ = ["list_budgets", "show_budget"]
@@ -35,6 +39,7 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, outcome: Ou
     with open_archive(path) as archive:
         budget = budget_from_archive(archive, quantity, _places(places))
         synthetic = archive.attrs.get("synthetic", "no") == "yes"
+        drawn = _drawn_uncertainty(archive, budget)
     unit, scale = display_unit(budget.unit, cast("UnitSystem", outcome.units))
     where = ", ".join(f"{dim} {label}" for dim, label in budget.place.items())
     table = table_of(
@@ -52,7 +57,23 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, outcome: Ou
         f"expanded uncertainty {short(budget.expanded_uncertainty * scale, 3)} {unit} "
         f"(95 %, k = {budget.coverage_factor:.2f})"
     )
+    if drawn is not None:
+        outcome.say(
+            f"the product states {short(drawn * scale, 3)} {unit}, by Monte Carlo: this budget is "
+            "of first order, which does not hold here"
+        )
     outcome.answer(_document(budget, synthetic))
+
+
+def _drawn_uncertainty(archive: xr.Dataset, budget: Budget) -> float | None:
+    """Standard uncertainty that stands in an archive where linear propagation bends."""
+    method = archive.get("test_line_uncertainty_method")
+    if method is None or budget.quantity.removeprefix("test_") not in PARAMETERS:
+        return None
+    place = archive["specimen"].values.tolist().index(budget.place["specimen"])
+    if int(method.values[place]) != LINE_METHODS["monte_carlo"]:
+        return None
+    return float(archive[f"{budget.quantity}_standard_uncertainty"].values[place])
 
 
 def _places(texts: Sequence[str]) -> dict[str, str]:

@@ -6,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from typer.testing import CliRunner
 
 from reduction.archive.open import open_archive
+from reduction.archive.schema import SCHEMA_VERSION
 from reduction.cli.main import app
 
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
@@ -115,3 +117,27 @@ def test_what_is_no_number_is_refused(product, arguments, status, words):
 def test_a_file_that_is_no_archive_is_refused(tmp_path):
     (tmp_path / "a.nc").write_text("no", encoding="utf-8")
     assert run("budget", tmp_path / "a.nc", "--quantity", "loss_factor").exit_code == 6
+
+
+@pytest.mark.parametrize(("method", "is_said"), [(1, False), (2, True)])
+def test_a_budget_of_what_was_drawn_says_that_the_product_states_another(tmp_path, method, is_said):
+    name, component = "test_relaxation_time", "uncertainty_component"
+    made = xr.Dataset(
+        {
+            name: ("specimen", [4.0], {"units": "s"}),
+            f"{name}_standard_uncertainty": ("specimen", [0.75]),
+            f"{name}_random_standard_uncertainty": ("specimen", [0.3]),
+            f"{name}_uncertainty_contribution": ((component, "specimen"), [[0.4]]),
+            "test_line_uncertainty_method": ("specimen", [method]),
+            "uncertainty_source": (component, ["quasi_static_fit"]),
+            "uncertainty_source_of": (component, ["line"]),
+            "uncertainty_source_number": (component, [0]),
+        },
+        coords={"specimen": ["line"]},
+        attrs={"schema_version": SCHEMA_VERSION},
+    )
+    made.to_netcdf(tmp_path / "made.nc")
+    found = run("budget", tmp_path / "made.nc", "--quantity", "relaxation_time")
+    assert found.exit_code == 0, found.output
+    said = "the product states 0.75 s, by Monte Carlo" in " ".join(found.output.split())
+    assert said == is_said
