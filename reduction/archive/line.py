@@ -46,7 +46,6 @@ _S = ("specimen",)
 _C = ("specimen", "cycle")
 _T = ("specimen", "tension_grid")
 _P = ("specimen", "pull_term")
-_CALIBRATION = "a rate of readings: its uncertainty is that of the channels"
 
 LINE_ROWS: tuple[Variable, ...] = tuple(
     chain(
@@ -69,7 +68,7 @@ LINE_ROWS: tuple[Variable, ...] = tuple(
         stated("pull_spring_constant_coefficient", _P, "a re-expression of the load-strain cubic"),
         stated("pull_tension_low", _S, BOUND),
         stated("pull_tension_high", _S, BOUND),
-        stated("pull_strain_rate", _S, _CALIBRATION),
+        stated("pull_strain_rate", _S, MOVEMENT),
         stated("pull_waiting_time", _S, STATED),
         label("pull_waiting", _S),
         stated("pull_residual", _S, SPREAD),

@@ -75,6 +75,7 @@ SHARED: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(_OF_SPECIMEN, _S),
     "quasi_static_spring_constant": ("specimen", "tension_grid"),
     "quasi_static_strain": ("specimen", "tension_grid"),
+    "pull_strain_coefficient": ("specimen", "pull_term"),
     "strain_at_break_share": ("specimen", "break_share"),
     "stress_at_strain": ("specimen", "strain_level"),
     **dict.fromkeys(_OF_HOLD, _H),

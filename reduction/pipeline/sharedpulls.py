@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -45,7 +46,14 @@ def of_pull(
         compliance_slope=compliance_slope(pull, tension),
     )
     yield found
-    yield Contributions(field.component, {"quasi_static_strain": _at_tension(field, constant)})
+    of_strain = _at_tension(field, constant)
+    yield Contributions(
+        field.component,
+        {
+            "quasi_static_strain": of_strain,
+            "pull_strain_coefficient": _of_cubic(pull, tension, of_strain),
+        },
+    )
     if rated_break_strength is None:
         return
     load = share * rated_break_strength
@@ -63,6 +71,16 @@ def _at(
     strain = strain_at_tension(pull, tension)[0]
     field = error_field(errors, model, strain=strain, tension=tension)
     return field, quasi_static_spring_constant(pull, tension)[0]
+
+
+def _of_cubic(pull: SlowPull, tension: Floats, of_strain: Floats) -> Floats:
+    """Contributions to A, B, C and D: a cubic through those to the strain, where there is one."""
+    known = np.isfinite(of_strain).all(axis=0)
+    scaled = (tension[known] - pull.tension_centre) / pull.tension_half_range
+    basis = np.stack([scaled**power for power in range(4)], axis=1)
+    solved = of_strain[:, known] @ np.linalg.pinv(basis).T
+    rows = [replace(pull, coefficient=row).strain_coefficient for row in solved]
+    return np.reshape(rows, (len(rows), 4))
 
 
 def _at_tension(field: ErrorField, constant: Floats) -> Floats:

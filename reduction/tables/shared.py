@@ -16,6 +16,7 @@ _FILES = {
     ("specimen", "strain_level"): "shared_errors_stress",
     ("specimen", "tension_grid"): "shared_errors_slow_pull",
     ("specimen", "break_share"): "shared_errors_break_share",
+    ("specimen", "pull_term"): "shared_errors_cubic",
     ("hold",): "shared_errors_holds",
     ("hold", "hold_time"): "shared_errors_hold_times",
     ("hold", "prony_term"): "shared_errors_prony",

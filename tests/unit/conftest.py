@@ -408,13 +408,14 @@ def make_contributions(rng):
     size = {
         "specimen": 2, "branch_name": 2, "segment": N_SEGMENTS, "strain_bin": N_BINS,
         "first_loading_strain_bin": N_BINS, "tension_grid": 41, "break_share": 8, "held_pair": 2,
+        "pull_term": 4,
         "hold": 3, "hold_time": 4, "prony_term": 2, "strain_level": 2, "comparison": 2,
         "ratio_strain_bin": 3, "slip": 2, "elastomer_parameter": 3, "interval": 2,
     }  # fmt: skip
     values = {name: array(rng, 2, *(size[dim] for dim in dims)) for name, dims in SHARED.items()}
     for name, dims in SHARED.items():
         # the slow pull is one that was fitted: its numbers are read to their uncertainty
-        if {"tension_grid", "break_share"} & set(dims):
+        if {"tension_grid", "break_share", "pull_term"} & set(dims):
             values[name] *= 1e-9
     return Contributions(
         (Component("tension_gain", "load cell"), Component("strain_calibration", "new", 1)), values
