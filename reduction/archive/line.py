@@ -8,7 +8,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.archive.reasons import AXIS, BOUND, PART, SETTING, SPREAD, STATED
+from reduction.archive.reasons import AXIS, BOUND, MOVEMENT, PART, SETTING, SPREAD, STATED
 from reduction.archive.values import Values, texts
 from reduction.archive.variable import Variable, count, flag, label, measured, stated
 from reduction.line.product import LineParameters, SlowPull
