@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from reduction.archive.budget import all_budgets
-from reduction.report.htmltable import Cell, Table, make_table, measured, number, words
+from reduction.report.htmltable import Cell, Table, make_table, measured, number, within, words
 from reduction.report.instruments import instrument_sentences
 from reduction.report.sources import in_order, source_meanings, source_words
 from reduction.report.style import Kind, Shown, shown
-from reduction.report.uncertainty import factor_words
+from reduction.report.uncertainty import DRAWN, drawn_interval, factor_words
 from reduction.report.view import TestView
 from reduction.uncertainty.budget import Budget
 
@@ -32,12 +32,16 @@ _SMALL = 0.005
 
 @dataclass(frozen=True)
 class AnswerBudget:
-    """One answer of a test: what it is, of which specimen, in which unit, and its budget."""
+    """One answer of a test: what it is, of which specimen, in which unit, and its budget.
+
+    ``drawn`` is its interval where that was found by Monte Carlo; the shares are of first order.
+    """
 
     words: str
     specimen: str
     unit: Shown
     budget: Budget
+    drawn: tuple[float, float] | None = None
 
     @staticmethod
     def sources_of(answers: Sequence[AnswerBudget]) -> list[str]:
@@ -48,6 +52,8 @@ class AnswerBudget:
     def cell(self) -> Cell:
         """Value and expanded uncertainty, without the unit."""
         one = self.budget
+        if self.drawn is not None:
+            return within(one.value, *self.drawn, self.unit)
         return measured(one.value, one.expanded_uncertainty, self.unit, factor=one.coverage_factor)
 
     @property
@@ -89,6 +95,7 @@ def answer_budgets(view: TestView) -> list[AnswerBudget]:
             one.place["specimen"],
             shown(kind, view.units),
             one,
+            drawn_interval(view, name, view.specimens.index(one.place["specimen"])),
         )
         for name, text, kind in _ANSWERS
         for one in all_budgets(view.data, name)
@@ -106,7 +113,7 @@ def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> Table | Non
             words(f"{one.words}, {one.specimen}"),
             one.cell,
             words(one.unit.unit),
-            number(one.budget.coverage_factor, digits=3),
+            number(float("nan") if one.drawn else one.budget.coverage_factor, digits=3),
             *(_share(one.share(source)) for source in sources),
         ]
         for one in answers
@@ -119,6 +126,7 @@ def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> Table | Non
         rows, synthetic=view.is_synthetic, is_compact=True,
         remarks=[
             f"±: expanded uncertainty, 95 % ({factors}). {_NAMES}{_LINE_NAMES if has_line else ''}",
+            *([f"{DRAWN} Shares are of first order."] if any(one.drawn for one in answers) else []),
             source_meanings(sources),
         ],
     )  # fmt: skip

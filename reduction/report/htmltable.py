@@ -25,6 +25,7 @@ __all__ = [
     "probability",
     "share_text",
     "span",
+    "within",
     "words",
 ]
 
@@ -170,6 +171,19 @@ def measured(
     places = _decimals(half, 1 if is_short and leading >= _LEAST_LEADING else 2)
     shown = f"{_fixed(value * scale, places)} ± {_fixed(half, places)}"
     return Cell(shown, _exact(value), is_number=True, factors=factors)
+
+
+def within(value: float, low: float, high: float, unit: Shown) -> Cell:
+    """Return a cell of a value and the ends of its interval, which need not lie evenly about it.
+
+    Examples
+    --------
+    >>> within(4.8101, 3.8163, 6.4818, Shown("s", 1.0)).text
+    '4.8 (3.8 to 6.5)'
+    """
+    places = _decimals((high - low) / 2 * unit.factor, 2)
+    shown, *ends = (_fixed(one * unit.factor, places) for one in (value, low, high))
+    return Cell(f"{shown} ({' to '.join(ends)})", _exact(value), is_number=True)
 
 
 def factors_of(rows: Iterable[Iterable[Cell]]) -> list[float]:

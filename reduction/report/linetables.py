@@ -19,12 +19,15 @@ from reduction.report.htmltable import (
     number,
     probability,
     span,
+    within,
     words,
 )
 from reduction.report.style import Shown, shown, superscript
 from reduction.report.uncertainty import (
+    DRAWN,
     MANY,
     NORMAL,
+    drawn_interval,
     expanded_of,
     plus_minus,
     plus_minus_of_tests,
@@ -67,7 +70,7 @@ def line_table(view: TestView) -> Table | None:
     return make_table(
         "The three-parameter line: a spring K_0 beside a spring K_1 in series with a dashpot.",
         columns, rows, synthetic=view.is_synthetic,
-        remarks=[_CONDITIONING, _about_line(rows, [view])],
+        remarks=[_CONDITIONING, *_about_line(rows, [view])],
     )  # fmt: skip
 
 
@@ -100,7 +103,7 @@ def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> T
         "The three-parameter line of each run; at the right K_1 and tau from surfaces of E' and E''"
         " at the same levels, which smooth over the runs.",
         columns, rows, synthetic=view.is_synthetic, is_compact=True,
-        remarks=[_CONDITIONING, _about_line(rows, used)],
+        remarks=[_CONDITIONING, *_about_line(rows, used)],
     )  # fmt: skip
 
 
@@ -261,6 +264,10 @@ def _line_cells(view: TestView, place: int) -> list[Cell]:
     cells = []
     for name, kind, _ in _PARAMETERS:
         values = view.array_like(name, np.empty(len(view.specimens)))
+        drawn = drawn_interval(view, name, place)
+        if drawn is not None:
+            cells.append(within(float(values[place]), *drawn, _unit(view, kind)))
+            continue
         spread = expanded_of(view, name, values)
         cells.append(
             measured(
@@ -276,12 +283,19 @@ def _line_cells(view: TestView, place: int) -> list[Cell]:
     return [*cells, number(float(conditioning[place]), digits=3), words(reason)]
 
 
-def _about_line(rows: Sequence[Sequence[Cell]], tests: Sequence[TestView]) -> str:
+def _about_line(rows: Sequence[Sequence[Cell]], tests: Sequence[TestView]) -> list[str]:
     names = [name for name, *_ in _PARAMETERS]
     has_fit = "quasi_static_fit" in shared_sources(tests, names)
-    return plus_minus_of_tests(
+    said = plus_minus_of_tests(
         factors_of(rows), tests, names, found_from="scatter between cycles" if has_fit else _FROM
     )
+    is_drawn = any(
+        drawn_interval(test, name, place) is not None
+        for test in tests
+        for name in names
+        for place in range(len(test.specimens))
+    )
+    return [said, *([DRAWN] if is_drawn else [])]
 
 
 def _about_pull(view: TestView, name: str) -> str:

@@ -20,12 +20,17 @@ from reduction.report.instruments import NOTHING_STATED, is_stated
 from reduction.report.sources import FROM_READINGS, in_order, source_words
 from reduction.report.view import TestView
 from reduction.uncertainty.combine import coverage_factor
+from reduction.uncertainty.product import LINE_METHODS
 
 __all__ = [
-    "MANY", "NORMAL", "Expanded", "expand", "expanded_of", "factor_words", "plus_minus",
-    "plus_minus_of_steps", "plus_minus_of_tests", "shared_sources",
+    "DRAWN", "MANY", "NORMAL", "Expanded", "drawn_interval", "expand", "expanded_of",
+    "factor_words", "plus_minus", "plus_minus_of_steps", "plus_minus_of_tests", "shared_sources",
 ]  # fmt: skip
 
+DRAWN = (
+    "In brackets: the 95 % interval by Monte Carlo, of the same errors, where they are so large"
+    " that they do not propagate linearly."
+)
 MANY = np.inf
 """Degrees of freedom of a regression on hundreds of samples, and of what is taken as known."""
 _CYCLES = "scatter between cycles, noise, regression"
@@ -103,6 +108,20 @@ def expanded_of(
         random=random,
         degrees_of_freedom=degrees_of_freedom(view.data, name) if freedom is None else freedom,
     )
+
+
+def drawn_interval(view: TestView, name: str, place: int) -> tuple[float, float] | None:
+    """Return the 95 % interval of a parameter of the line where it was found by Monte Carlo.
+
+    None where linear propagation holds, and of other quantities.
+    """
+    method = view.array("test_line_uncertainty_method")
+    low, high = view.array(f"{name}_low"), view.array(f"{name}_high")
+    if method is None or low is None or high is None:
+        return None
+    if method[place] != LINE_METHODS["monte_carlo"] or not np.isfinite(high[place] - low[place]):
+        return None
+    return float(low[place]), float(high[place])
 
 
 def shared_sources(views: Sequence[TestView], names: Sequence[str]) -> list[str]:

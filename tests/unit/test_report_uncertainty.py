@@ -13,12 +13,13 @@ from reduction.report.answers import answer_budgets, budget_sentences, budget_ta
 from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.budgets import draw_budgets
 from reduction.report.figures.moduli import draw_moduli
-from reduction.report.htmltable import factors_of
+from reduction.report.htmltable import NOT_GIVEN, factors_of
 from reduction.report.instruments import (
     NOTHING_STATED,
     instrument_sentences,
     instrument_table,
 )
+from reduction.report.linetables import line_table
 from reduction.report.section import make_section
 from reduction.report.sources import bar_look, in_order
 from reduction.report.surfacetables import answer_table, coefficient_table
@@ -157,6 +158,33 @@ def test_the_budget_of_each_answer_adds_up_and_one_source_is_one_piece():
         assert sum(one.share(name) for name in in_order(set(SOURCES) | {"random"})) == (
             pytest.approx(1)
         )
+
+
+def test_where_linear_propagation_bends_the_interval_by_monte_carlo_stands_instead():
+    view = make_view()
+    name = "test_relaxation_time"
+    data = view.data.assign({
+        name: (S, [4.81], {"units": "s"}),
+        f"{name}_standard_uncertainty": (S, [0.68]),
+        f"{name}_random_standard_uncertainty": (S, [0.01]),
+        f"{name}_uncertainty_contribution": (("uncertainty_component", S), [[0], [0], [0], [0.6]]),
+        f"{name}_low": (S, [3.816]),
+        f"{name}_high": (S, [6.482]),
+        "test_line_uncertainty_method": (S, [2]),
+    })  # fmt: skip
+    drawn = TestView("test-0", data)
+    table = line_table(drawn)
+    place = next(k for k, text in enumerate(table.columns) if text.startswith("tau"))
+    assert texts(table)[0][place] == "4.8 (3.8 to 6.5)"
+    assert any("Monte Carlo" in text for text in table.remarks)
+    answers = answer_budgets(drawn)
+    assert answers[-1].text == "4.8 (3.8 to 6.5) s"
+    budget = budget_table(drawn, answers)
+    assert texts(budget)[-1][1:4] == ["4.8 (3.8 to 6.5)", "s", NOT_GIVEN]
+    assert any("Shares are of first order" in text for text in budget.remarks)
+    linear = TestView("test-0", data.assign(test_line_uncertainty_method=(S, [1])))
+    assert "±" in texts(line_table(linear))[0][place]
+    assert not any("Monte Carlo" in text for text in line_table(linear).remarks)
 
 
 def test_bars_are_stacked_in_one_order_with_one_look_a_source_and_can_be_heard():
