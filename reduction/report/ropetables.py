@@ -20,8 +20,15 @@ from reduction.report.htmltable import (
     words,
 )
 from reduction.report.ropeview import RopeView, expanded_property
+from reduction.report.sources import source_words
 from reduction.report.style import Shown, shown
-from reduction.report.uncertainty import MANY, expanded_of, plus_minus, plus_minus_of_tests
+from reduction.report.uncertainty import (
+    MANY,
+    expanded_of,
+    plus_minus,
+    plus_minus_of_tests,
+    shared_sources,
+)
 from reduction.report.view import TestView
 
 __all__ = [
@@ -34,6 +41,11 @@ __all__ = [
     "told_of",
 ]
 
+_SCATTER = "scatter between cycles, noise, regression"
+_KNOWN_OF_STEPS = (
+    "bedding_first_stiffness", "bedding_permanent_strain", "dynamic_stiffness", "static_stiffness",
+    "creep_rate_per_decade",
+)  # fmt: skip
 _NOT_IN_IT = "load-cell calibration, scale of position or strain, lag between the channels"
 # what is shown of a step: variable, unit of the page or None for a share, words
 _Column = tuple[str, Shown | None, str]
@@ -57,12 +69,18 @@ def answer_of_ropes(views: Sequence[RopeView]) -> Table | None:
         " several; between which tensions, and why one is missing, is in the section of the rope.",
         ("rope", *(unit.label(name) for name, unit in zip(PROPERTY_NAMES, units, strict=True))),
         rows, synthetic=any(view.is_synthetic for view in views), is_tall=len(rows) > 16,
-        remarks=[_about(rows)],
+        remarks=[_about(rows, views)],
     )  # fmt: skip
 
 
-def _about(rows: Sequence[Sequence[Cell]]) -> str:
-    return plus_minus(factors_of(rows), left_out=_NOT_IN_IT)
+def _about(rows: Sequence[Sequence[Cell]], views: Sequence[RopeView]) -> str:
+    """Say what ± holds: of the instruments what the steps of the programmes know of them."""
+    shared = shared_sources([test for view in views for test in view.tests], _KNOWN_OF_STEPS)
+    if not shared:
+        return plus_minus(factors_of(rows), left_out=_NOT_IN_IT)
+    told = ", ".join(source_words(one) for one in shared)
+    held = f"{_SCATTER}; and what all samples share, where a step knows it: {told}"
+    return plus_minus(factors_of(rows), held, left_out="")
 
 
 def _least_to_greatest(view: RopeView, name: str, unit: Shown) -> Cell:
@@ -128,7 +146,7 @@ def property_table(view: RopeView) -> Table | None:
             " held tensions. Dynamic: last cycles of a level. Construction strain: what bedding-in"
             " left at equal tension. Polymer strain: creep from the reference time to the end of"
             " the hold. Working strain: rise of tension over static stiffness, after bedding-in.",
-            _about(rows),
+            _about(rows, [view]),
         ],
     )  # fmt: skip
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.record import Floats
-from reduction.report.uncertainty import MANY, Expanded, expand
+from reduction.report.uncertainty import Expanded, expand, expanded_of
 from reduction.report.view import TestView
 from reduction.units import UnitSystem
 
@@ -87,15 +87,17 @@ def expanded_property(view: RopeView, name: str) -> Expanded:
 
     A dynamic stiffness is the mean of the last cycles of its step; the others are of many samples.
     """
-    freedom = np.full(len(view.names), MANY)
-    cycles = {
-        test.id: float(test.data["dynamic_cycles"].values[place])
-        for test, place in view.entries("specimen", "dynamic_cycles")
-    }
-    for row, (kind, test) in enumerate(zip(view.names, view.texts("property_test"), strict=True)):
-        if kind == "dynamic stiffness" and test in cycles:
-            freedom[row] = max(cycles[test] - 1, 1.0)
-    return expand(view.array(f"{name}_standard_uncertainty"), degrees_of_freedom=freedom)
+    found = expand(view.array(f"{name}_standard_uncertainty"))
+    factor = found.factor.copy()
+    for test, place in view.entries("specimen", "dynamic_stiffness"):
+        values = np.asarray(test.data["dynamic_stiffness"].values, dtype=np.float64)
+        cycles = np.asarray(test.data["dynamic_cycles"].values, dtype=np.float64)
+        freedom = np.maximum(cycles - 1, 1.0)
+        own = expanded_of(test, "dynamic_stiffness", values, freedom=freedom).factor[place]
+        for row, pair in enumerate(zip(view.names, view.texts("property_test"), strict=True)):
+            if pair == ("dynamic stiffness", test.id):
+                factor[row] = own
+    return Expanded(found.half / found.factor * factor, factor)
 
 
 def view_ropes(

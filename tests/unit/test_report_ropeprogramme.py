@@ -1,6 +1,7 @@
 """The section of a rope's programme: every property, and why one is missing; figures that draw."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import plotly.graph_objects as go
@@ -174,3 +175,25 @@ def test_properties_alone_are_a_page(tmp_path):
     assert 'id="rope-0"' in html
     assert "Programme of rope R-1" in html
     assert "construction strain: no step beds the rope in" in html
+
+
+def test_a_property_of_a_step_that_knows_its_instruments_says_so_and_has_the_factor_of_both(ropes):
+    first = ropes[0]
+    level = next(test for test in first.tests if "dynamic_stiffness" in test.data)
+    known = level.data.assign(
+        dynamic_stiffness_standard_uncertainty=("specimen", np.array([900.0, 900.0])),
+        dynamic_stiffness_random_standard_uncertainty=("specimen", np.array([1.0, 1.0])),
+        dynamic_stiffness_uncertainty_contribution=(
+            ("uncertainty_component", "specimen"), np.array([[900.0, 900.0]]),
+        ),
+        uncertainty_source=("uncertainty_component", np.array(["tension_gain"])),
+    )  # fmt: skip
+    tests = tuple(replace(one, data=known) if one is level else one for one in first.tests)
+    table = property_table(replace(first, tests=tests))
+    by_name = [row[3] for row in texts(table) if row[0] == "dynamic stiffness"]
+    # the scatter of ten cycles is nothing beside the gain: 1.960 and not 2.262
+    assert by_name[0] == "1,000,000 ± 1,764"
+    assert table.remarks[-1].endswith(
+        "what all samples share, where a step knows it: tension gain."
+    )
+    assert "load-cell calibration" in property_table(first).remarks[-1]

@@ -45,7 +45,7 @@ def draw_stiffness(view: RopeView) -> list[Figure]:
         make_figure(
             f"{view.key}-stiffness", f"Stiffness against tension, {view.specimen}",
             "Force per unit strain. Bars across: the tensions it is between, cycle or holds; bars"
-            f" up: expanded uncertainty (95 %, {factor_words(spread.factors)}), scatter alone.",
+            f" up: expanded uncertainty (95 %, {factor_words(spread.factors)}).",
             data, synthetic=view.is_synthetic, height=400,
             xaxis=axis(force.label("tension"), rangemode="tozero"),
             yaxis=axis(force.label("stiffness"), rangemode="tozero"),
