@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any, cast
 
 from reduction.errors import SettingsError
+from reduction.export.deck import segment_length
 from reduction.export.dynamics import Syrope
 from reduction.export.moordyn import fast_damping
 from reduction.export.product import ExportLine
@@ -23,6 +24,7 @@ def with_syrope(
     greatest_mean_tension: str | None,
     *,
     form: str | None,
+    rated_break_strength: float | None = None,
 ) -> ExportLine:
     """Give a line with dynamics the working curves of a Syrope model.
 
@@ -36,6 +38,8 @@ def with_syrope(
         That the line has had before.
     form : str or None
         Of the export: these say nothing to another one than ``syrope``.
+    rated_break_strength : float, optional
+        That %RBS is a share of, as at the other levels. [N]
 
     Returns
     -------
@@ -82,8 +86,12 @@ def with_syrope(
         dynamic_stiffness=part.dynamic_stiffness,
         dynamic_stiffness_per_mean_tension=part.dynamic_stiffness_per_mean_tension,
         slow_damping=part.slow_dashpot_coefficient,
-        fast_damping=fast_damping(part.fast_stiffness, line.needed("linear_density")),
-        greatest_mean_tension=parse_quantity(greatest_mean_tension, "force"),
+        fast_damping=fast_damping(
+            part.fast_stiffness, line.needed("linear_density"), segment_length(line)
+        ),
+        greatest_mean_tension=parse_quantity(
+            greatest_mean_tension, "force", rated_break_strength=rated_break_strength
+        ),
         mean_tension=part.mean_tension,
     )
     return replace(

@@ -138,5 +138,5 @@ def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
             *line.source.notes,
         ),
         is_synthetic=line.source.is_synthetic,
-        **given,
+        **{"unstretched_length": float(assembly.total_length[0])} | given,
     )

@@ -70,5 +70,8 @@ def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) ->
     return [
         part
         for text in told
-        for part in textwrap.wrap(one_line(text), _WIDTH, subsequent_indent="  ")
+        # a hyphen is the sign of an option too, which is nothing when it is cut
+        for part in textwrap.wrap(
+            one_line(text), _WIDTH, subsequent_indent="  ", break_on_hyphens=False
+        )
     ]

@@ -30,7 +30,7 @@ from typing import Literal
 import numpy as np
 
 from reduction.errors import SettingsError
-from reduction.export.deck import SEGMENT_LENGTH, deck, line_type
+from reduction.export.deck import deck, line_type, segment_length
 from reduction.export.dynamics import Syrope, Viscoelasticity
 from reduction.export.header import header_lines, number, one_line
 from reduction.export.product import ExportLine
@@ -64,7 +64,7 @@ def table_text(line: ExportLine, curve: ThinnedCurve) -> str:
     )
 
 
-def fast_damping(stiffness: float, linear_density: float) -> float:
+def fast_damping(stiffness: float, linear_density: float, apart: float) -> float:
     """Numerical damping of the fast spring, a tenth of critical for the segments of a deck. [N s].
 
     Parameters
@@ -73,6 +73,8 @@ def fast_damping(stiffness: float, linear_density: float) -> float:
         Of the fast spring. [N]
     linear_density : float
         In air. [kg m-1]
+    apart : float
+        Length of a segment. [m]
 
     Returns
     -------
@@ -86,10 +88,10 @@ def fast_damping(stiffness: float, linear_density: float) -> float:
 
     Examples
     --------
-    >>> fast_damping(5e4, 0.5)
+    >>> fast_damping(5e4, 0.5, 2.0)
     31.622776601683796
     """
-    return _FAST_SHARE * SEGMENT_LENGTH * math.sqrt(stiffness * linear_density)
+    return _FAST_SHARE * apart * math.sqrt(stiffness * linear_density)
 
 
 def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -> dict[str, str]:
@@ -137,10 +139,12 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
     if part is None:
         raise SettingsError(
             f"static and dynamic stiffness of {line.name} are not known",
-            needed="K_0, K_1 and tau",
+            needed="K_0, K_1 and tau of a published line, which are taken at "
+            "--frequency, --mean-tension and --tension-amplitude",
             hint="Export the curve instead: --form table.",
         )
-    fast = fast_damping(part.fast_stiffness, line.needed("linear_density"))
+    apart = segment_length(line)
+    fast = fast_damping(part.fast_stiffness, line.needed("linear_density"), apart)
     damping = f"{number(part.slow_dashpot_coefficient)}|{number(fast)}"
     if form == "static-dynamic":
         stiffness = f"{number(part.static_stiffness)}|{number(part.fast_stiffness)}"
@@ -165,7 +169,7 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
         else "MoorDyn takes the running tension of the slow part for "
         "the mean: about it K_ap of a cycle is 2 to 4 percent above that of static-dynamic on the "
         "published lines",
-        f"BA_d {fast:.4g} N s: {_FAST_SHARE:g} of critical for segments of {SEGMENT_LENGTH:g} "
+        f"BA_d {fast:.4g} N s: {_FAST_SHARE:g} of critical for segments of {apart:g} "
         "m, numerical, not measured; without it the integration grows",
     )
     return {
@@ -206,7 +210,9 @@ def _table_files(line: ExportLine, stem: str) -> dict[str, str]:
         line,
         curve,
         *_said(line),
-        f"internal damping {NUMERICAL_DAMPING:g}: share of critical, numerical, not measured",
+        f"internal damping {NUMERICAL_DAMPING:g}: MoorDyn takes a number below zero for minus a "
+        "share of critical damping, and finds the damping of each segment by it; numerical, not "
+        "measured",
         f"{table} belongs beside this file",
     )
     row = line_type(line, table, number(NUMERICAL_DAMPING))

@@ -64,6 +64,8 @@ class ExportLine:
         In air, and less the displaced water; NaN where not stated. [kg m-1]
     rated_break_strength : float
         NaN where not stated. [N]
+    unstretched_length : float
+        Of the whole line; NaN where a curve holds for any length. [m]
     material : str
         Of the fibre, where it is stated.
     viscoelasticity : Viscoelasticity, optional
@@ -89,6 +91,7 @@ class ExportLine:
     linear_density: float = math.nan
     wet_linear_density: float = math.nan
     rated_break_strength: float = math.nan
+    unstretched_length: float = math.nan
     material: str = ""
     viscoelasticity: Viscoelasticity | None = None
     syrope: Syrope | None = None

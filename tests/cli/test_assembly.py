@@ -320,3 +320,18 @@ def test_folders_are_looked_for_beside_the_specification(command, synthetic):
     done = command("assembly", path)
     assert done.returncode == 2
     assert "assembly.curve: " in done.stderr and "several specimens; found new, used" in done.stderr
+
+
+def test_the_deck_of_an_assembly_has_its_slack_length(command, tmp_path):
+    """8.8 m of rubber, 3.92 ft of splices (Table 3) and 1 m of bridle, in deck and header."""
+    done = command(
+        "export", DOCS / "new-hampshire.toml", "--to", "moordyn", "--out", tmp_path / "a.dat",
+        "--diameter", "60 mm", "--linear-density", "2 kg/m",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    text = (tmp_path / "a.dat").read_text()
+    (row,) = re.findall(r"^1 new-hampshire 1 2 (\S+) ", text, re.MULTILINE)
+    assert float(row) == pytest.approx(8.8 + 3.92 * 0.3048 + 1.0, abs=1e-9)
+    assert f"whole assembly, {float(row):.6g} m: this is the length of the line in the deck" in (
+        " ".join(text.split())
+    )

@@ -73,7 +73,9 @@ def write(folder, files):
 
 
 def run(folder, **job):
-    job |= {"deck": str(folder / "deck.dat"), "length": 10.0, "out": str(folder / "out.json")}
+    deck = folder / "deck.dat"
+    ((*_, length, _, _),) = moordyn_sections(deck.read_text())["LINES"]
+    job |= {"deck": str(deck), "length": float(length), "out": str(folder / "out.json")}
     (folder / "job.json").write_text(json.dumps(job))
     done = subprocess.run(
         [sys.executable, "-c", DRIVER, str(folder / "job.json")],

@@ -35,3 +35,9 @@ def test_a_prediction_was_not_tested():
     assert "nothing was tested" in " ".join(
         header_lines(one, thin_curve(one.strain, one.tension, most=30))
     )
+
+
+def test_a_line_of_a_header_never_breaks_inside_an_option():
+    said = "9" * 84  # "Note: " and this leave nine signs: room for "-wet-", not for the option
+    lines = header_lines(line(notes=(f"{said} --wet-linear-density",)), None)
+    assert any(text.split() == ["-wet-linear-density"] for text in lines)

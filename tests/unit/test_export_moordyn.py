@@ -69,3 +69,20 @@ def test_a_syrope_has_its_three_files_and_its_initial_conditions():
 def test_what_the_line_has_not_is_refused(fields, form, message):
     with pytest.raises(SettingsError, match=message):
         moordyn_files(line(**fields), "x", form=form)
+
+
+def test_the_line_of_a_deck_is_as_long_as_the_line_that_is_exported():
+    """36 m of line in segments of 7.2 m; half its stretch of 1.5 puts the end 63 m up."""
+    text = moordyn_files(line(unstretched_length=36.0), "x")[""]
+    rows = text.splitlines()
+    below, above = (float(next(row for row in rows if row.startswith(start)).split()[4])
+                    for start in ("1 Fixed", "2 Coupled"))  # fmt: skip
+    assert "1 new_tether 1 2 36 5 -" in rows
+    assert 36 < above - below < 36 * 2.5 and above < 0
+    assert -2 * below == float(next(row for row in rows if row.endswith("WtrDpth")).split()[0])
+    # a stable step grows with the segment
+    step, of_ten = (
+        float(next(row for row in one.splitlines() if row.endswith("dtM")).split()[0])
+        for one in (text, moordyn_files(line(), "x")[""])
+    )
+    assert step == pytest.approx(3.6 * of_ten, rel=0.01)
