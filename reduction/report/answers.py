@@ -89,18 +89,24 @@ def answer_budgets(view: TestView) -> list[AnswerBudget]:
     answers : list of AnswerBudget
         By quantity, in the order of the archive.
     """
-    return [
-        AnswerBudget(
-            text or f"segment {one.place['segment']}, {one.place['branch_name']}",
-            one.place["specimen"],
-            shown(kind, view.units),
-            one,
-            drawn_interval(view, name, view.specimens.index(one.place["specimen"])),
-        )
-        for name, text, kind in _ANSWERS
-        for one in all_budgets(view.data, name)
-        if np.isfinite(one.standard_uncertainty) and one.standard_uncertainty > 0
-    ]
+    names = view.data["specimen"].values if "specimen" in view.data else ()
+    places = {str(name): place for place, name in enumerate(names)}
+    found = []
+    for name, text, kind in _ANSWERS:
+        for one in all_budgets(view.data, name):
+            if not (np.isfinite(one.standard_uncertainty) and one.standard_uncertainty > 0):
+                continue
+            place = places[one.place["specimen"]]
+            found.append(
+                AnswerBudget(
+                    text or f"segment {one.place['segment']}, {one.place['branch_name']}",
+                    view.specimens[place],
+                    shown(kind, view.units),
+                    one,
+                    drawn_interval(view, name, place),
+                )
+            )
+    return found
 
 
 def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> Table | None:
