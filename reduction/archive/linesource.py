@@ -34,6 +34,8 @@ _TEXTS = {
     "construction": "specimen_construction",
     "condition": "specimen_condition",
 }
+_ON_PLAN = 0.3
+"""Coded distance from the plan of a run that a machine with poor control still meets."""
 _NUMBERS = ("diameter", "linear_density", "wet_linear_density")
 
 
@@ -86,7 +88,10 @@ def line_of_experiment(
         name = next((f"{one}{response}" for one in _SCALES if f"{one}{response}" in names), None)
         if name is not None:
             shared = _shared(dataset, row, name, len(fitted.exponents))
-            surfaces[response] = _surface(fitted, names.index(name), response, name, scale, shared)
+            plan = dataset["run_plan"].to_numpy()[row, :, : len(factors)]
+            surfaces[response] = _surface(
+                fitted, names.index(name), response, name, scale, shared, plan
+            )
     return LineSource(
         name=experiment,
         source=f"{dataset.attrs.get('id', 'surfaces')}, experiment {experiment}",
@@ -148,10 +153,12 @@ def _surface(
     name: str,
     scale: Floats,
     shared: Floats,
+    plan: Floats,
 ) -> LineSurface:
     covariance = fitted.covariance_factor[fitted.pattern[index]]
     used = fitted.is_used[fitted.pattern[index]]
-    runs = model_matrix(fitted.coded[used], fitted.exponents)
+    reached = fitted.coded[used]
+    runs = model_matrix(_tested(reached, plan[: len(used)][used]), fitted.exponents)
     n_terms = len(fitted.exponents)
     notes = [] if name == response else [f"from the surface of {name}, brought back"]
     if not shared.size:
@@ -177,6 +184,16 @@ def _surface(
         contribution=shared,
         notes=tuple(notes),
     )
+
+
+def _tested(reached: Floats, plan: Floats) -> Floats:
+    """Coded levels that count as tested: those reached, and those of the plan beside them.
+
+    A planned level is no farther from its run than the run is from its plan: that scatter of the
+    machine is no reason to call the level untested.  Of a run that went elsewhere it says nothing.
+    """
+    is_near = np.all(np.abs(reached - plan) <= _ON_PLAN, axis=1)
+    return np.concatenate([reached, plan[is_near]])
 
 
 def _one_strength(dataset: xr.Dataset, row: int) -> float:

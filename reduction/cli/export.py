@@ -83,7 +83,8 @@ def export_source(
         levels={name: text for name, text in levels.items() if text is not None},
         extrapolate=cast('Literal["refuse", "flag"]', extrapolate),
     )
-    line = with_syrope(line, *syrope, form=form)
+    strength = _strength_of_shares(sources, values)
+    line = with_syrope(line, *syrope, form=form, rated_break_strength=strength)
     units = cast("UnitSystem", outcome.units)
     there = set(out.parent.iterdir()) if out.parent.is_dir() else set()
     paths = export_line(line, to, out, form=form, units=units)
@@ -152,17 +153,12 @@ def line_of(
                 found=f"--curve {curve}" if curve == "mean" else f"--specimen {specimen}",
                 needed="--curve ascending or descending, or neither",
             )
-        # levels mean at the export what they mean at the look-up
-        own = line.rated_break_strength
-        strength = own if own > 0 else float(stated.get("rated_break_strength", own))
+        strength = _strength_of_shares(sources, stated)
         at = {
-            name: parse_quantity(
-                text,
-                _LEVELS[name],
-                rated_break_strength=strength if strength > 0 else None,
-            )
+            name: parse_quantity(text, _LEVELS[name], rated_break_strength=strength)
             for name, text in levels.items()
         }
+        _refuse_half_levels(source, levels)
         made = line_from_lookup(
             line,
             branch=curve,
@@ -171,9 +167,9 @@ def line_of(
             extrapolate=extrapolate,
             **stated,
         )
-        if not any("%" in text for text in levels.values()):
+        if strength is None or not any("%" in text for text in levels.values()):
             return made
-        whose = "the source" if own > 0 else "the export"
+        whose = "the source" if line.rated_break_strength > 0 else "the export"
         said = f"levels in percent of the break strength: of {strength:.6g} N, that of {whose}"
         return replace(made, sources=(*made.sources, said))
     path = Path(source)
@@ -189,6 +185,25 @@ def line_of(
     if levels:
         raise _levels_choose_nothing(levels, "an archive of one test")
     return line_from_archive(path, curve=curve, specimen=specimen, **stated)
+
+
+def _strength_of_shares(sources: Sequence[str], stated: dict[str, Any]) -> float | None:
+    """What %RBS is a share of: of a published line what it is at the look-up, else as stated."""
+    line = published_sources().get(sources[0]) if len(sources) == 1 else None
+    if line is not None and line.rated_break_strength > 0:
+        return line.rated_break_strength
+    return cast("float | None", stated.get("rated_break_strength"))
+
+
+def _refuse_half_levels(source: str, levels: dict[str, str]) -> None:
+    """Dynamics are at a point: all of its levels are needed, or none."""
+    missing = [f"--{name.replace('_', '-')}" for name in _LEVELS if name not in levels]
+    if levels and missing:
+        raise SettingsError(
+            f"static and dynamic stiffness of {source} need all levels of a cycle",
+            found=", ".join(f"--{name.replace('_', '-')}" for name in levels),
+            needed=" and ".join(missing) + " too",
+        )
 
 
 def _of_assembly(

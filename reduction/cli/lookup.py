@@ -44,6 +44,9 @@ def list_sources(source: str, search: Mapping[str, Any], *, outcome: Outcome) ->
         f"%RBS are of\n[{force}]", "quantities", texts=5,
     )  # fmt: skip
     fold_last(table)
+    # what is copied into the next command is never broken
+    table.columns[0].no_wrap = True
+    table.columns[-1].min_width = 1 + max(len(name) for line in lines for name in line.quantities)
     for line in lines:
         table.add_row(
             line.name, line.source, line.material, line.construction, line.condition,
@@ -199,6 +202,10 @@ def _remarks(found: DesignValues, place: int) -> list[str]:
             ("peak above the rule", at(found.is_above_rule)),
             ("snap load: goes slack", at(found.is_slack) and at(found.peak_tension) > 0),
             ("below zero: no value", at(found.is_below_zero)),
+            (
+                "lower end below zero: not told from zero",
+                not at(found.is_below_zero) and (at(found.low) < 0 or at(found.surface_low) < 0),
+            ),
         )
         if is_so
     ]

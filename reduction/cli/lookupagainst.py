@@ -78,6 +78,9 @@ def _show(
         outcome.show(_table(first, found, points, unit, factor, system))
     outcome.say("differ: zero is not in the 95 % interval that follows from those of both lines")
     outcome.say(
+        "95 % of the difference is of these lines: the surfaces, or the curves, that were tested"
+    )
+    outcome.say(
         "these lines: the two surfaces, of the lines that were tested; the kinds, another line of "
         "each: with how lines differ among each other, where a source says it"
     )
@@ -95,8 +98,8 @@ def _table(
     heads, levels = shown_levels(points, first.rated_break_strength, found.difference.size, system)
     table = table_of(
         *heads, f"first\n[{unit}]", f"second\n[{unit}]", f"difference\n[{unit}]", "ratio",
-        "95 % of the\ndifference", "these\nlines", "the kinds", "another line\nof each", "remark",
-        texts=0,
+        "95 % of the\ndifference of\nthese lines", "these\nlines", "the kinds",
+        "another line\nof each", "remark", texts=0,
     )  # fmt: skip
     fold_last(table)
     numbers = ("difference", "ratio", "surface_low", "surface_high")

@@ -36,7 +36,9 @@ def lookup(
             show_default=False,
         ),
     ],
-    quantity: Annotated[str | None, typer.Option(help="What is wanted.")] = None,
+    quantity: Annotated[
+        str | None, typer.Option(help="What is wanted: its name, or K_ap, H, K_0, K_1, tau, N.")
+    ] = None,
     frequency: Annotated[str | None, typer.Option(help='"0.3 Hz".')] = None,
     mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
     tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
@@ -71,6 +73,7 @@ def lookup(
         from reduction.cli.lookup import list_sources, look_up_values
         from reduction.cli.lookupagainst import look_up_against
         from reduction.cli.lookuppoints import Wanted, parsed_search
+        from reduction.cli.lookupsource import name_of_quantity
 
         words = {"material": material, "construction": construction, "condition": condition}
         search = parsed_search(words, diameter, tolerance)
@@ -85,7 +88,7 @@ def lookup(
             "strain": strain,
         }
         wanted = Wanted(
-            quantity=quantity,
+            quantity=name_of_quantity(quantity),
             levels={name: text for name, text in levels.items() if text is not None},
             search=search,
             name=line,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from reduction.archive.linecurves import CURVES
@@ -18,8 +19,15 @@ from reduction.archive.products import archives_of_tests
 from reduction.errors import ArchiveError, SettingsError
 from reduction.lookup.product import LineSource
 from reduction.published.linesource import published_sources
+from reduction.vocabulary import SINGLE_QUANTITIES
 
-__all__ = ["lines_of", "lines_of_archive", "one_of"]
+__all__ = ["lines_of", "lines_of_archive", "name_of_quantity", "one_of"]
+
+_OF_CYCLES = (
+    "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
+    "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient",
+)  # fmt: skip
+_ENDINGS = (".nc", ".toml", ".csv")
 
 
 def lines_of(source: str) -> list[LineSource]:
@@ -60,17 +68,44 @@ def lines_of(source: str) -> list[LineSource]:
     if path.is_dir():
         paths = archives_of_tests(path)
         paths += [path / "surfaces.nc"] if (path / "surfaces.nc").is_file() else []
-        lines = [line for one in paths for line in lines_of_archive(one)]
+        lines = _told_apart([(one.stem, lines_of_archive(one)) for one in paths])
         if lines:
             return lines
+    if _is_path(source):
+        raise _no_products(path)
     words = source.lower().replace("-", " ").split()
     near = [name for name in published if all(word in name for word in words)]
     raise SettingsError(
         f"no line is called '{source}'",
-        needed="an archive, a folder of a processed campaign, or one of "
-        + ", ".join(near or published),
+        needed="an archive, a folder of a processed campaign, or "
+        + (f"one of {', '.join(near)}" if near else f"one of {len(published)} published lines"),
         hint="`reduction lookup published --list` says what there is.",
     )
+
+
+def name_of_quantity(text: str) -> str:
+    """Name of a quantity that is asked for by the symbol of its source, such as ``K_ap``.
+
+    Parameters
+    ----------
+    text : str
+        A name, or a symbol; K_0 or K0.
+
+    Returns
+    -------
+    name : str
+        The text itself where it is no symbol of a number of the three-parameter line.
+
+    Examples
+    --------
+    >>> [name_of_quantity(text) for text in ("K_ap", "tau", "loss_factor")]
+    ['apparent_spring_constant', 'relaxation_time', 'loss_factor']
+    """
+    symbols = {
+        SINGLE_QUANTITIES[name].symbol.split(",")[0].split()[-1].replace("_", ""): name
+        for name in _OF_CYCLES
+    }
+    return symbols.get(text.replace("_", ""), text)
 
 
 def lines_of_archive(path: Path) -> list[LineSource]:
@@ -102,6 +137,35 @@ def lines_of_archive(path: Path) -> list[LineSource]:
         return [line_of_test(archive, name) for name in names]
 
 
+def _told_apart(found: Sequence[tuple[str, list[LineSource]]]) -> list[LineSource]:
+    """Lines of a campaign; one whose specimen is in several tests is called TEST SPECIMEN."""
+    names = [line.name for _, lines in found for line in lines]
+    return [
+        replace(line, name=f"{test} {line.name}") if names.count(line.name) > 1 else line
+        for test, lines in found
+        for line in lines
+    ]
+
+
+def _is_path(source: str) -> bool:
+    return "/" in source or "\\" in source or source.endswith(_ENDINGS) or Path(source).exists()
+
+
+def _no_products(path: Path) -> SettingsError:
+    """Why a path has nothing to look up, and which command makes it."""
+    if path.is_dir():
+        problem, found = "the folder holds no archive with values to look up", str(path)
+    else:
+        problem, found = "there is no such folder or archive", str(path)
+    campaign = path.parent.name if path.suffix == ".nc" else path.name
+    return SettingsError(
+        problem,
+        found=found,
+        needed="the products of a campaign, which are made first",
+        hint=f"`reduction run raw/{campaign}/campaign.toml` makes processed/{campaign}.",
+    )
+
+
 def one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> LineSource:
     """The line that was meant: by its name, else the only one that has the quantity.
 
@@ -126,9 +190,17 @@ def one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> Line
     """
     named = [line for line in lines if name in (None, line.name)]
     if not named:
+        # of "T-1 new" the test or the specimen alone, as far as it leaves one
+        named = [
+            line
+            for line in lines
+            if line.name.startswith(f"{name} ") or line.name.endswith(f" {name}")
+        ]
+    if not named:
         raise SettingsError(
             f"there is no line '{name}'",
             needed=", ".join(dict.fromkeys(line.name for line in lines)),
+            hint=f'Such as `--line "{lines[0].name}"`.',
         )
     having = [line for line in named if quantity in line.quantities]
     if not having and len(named) > 1:
@@ -142,6 +214,7 @@ def one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> Line
             f"several lines have {quantity}",
             found=", ".join(dict.fromkeys(f"{line.name} ({line.source})" for line in having)),
             needed="one archive, --line NAME, or a search that leaves one",
+            hint=f'Such as `--line "{having[0].name}"`.',
         )
     return having[0] if having else named[0]
 

@@ -87,7 +87,8 @@ def _least_width(table: Table, console: Console, *, words: int) -> int:
         if column.no_wrap:
             total += max(size.maximum for size in sizes)
         else:
-            total += min(words, max(size.maximum for size in sizes))
+            least = max(words, column.min_width or 0)
+            total += min(least, max(size.maximum for size in sizes))
     return total + 2 * len(table.columns)
 
 

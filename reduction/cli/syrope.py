@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any, cast
 
@@ -15,6 +16,7 @@ from reduction.units import parse_quantity
 
 __all__ = ["with_syrope"]
 
+_ROUNDING = 1e-9
 _NEEDED = 'a form and its numbers: "LINEAR, 0.2", "QUADRATIC, 0.2, 0.5" or "EXP, 0.2, 1.5"'
 
 
@@ -76,7 +78,13 @@ def with_syrope(
             needed="a published line with --frequency, --mean-tension and --tension-amplitude",
         )
     shape, k1, k2 = _parts(working_curve)
+    greatest = parse_quantity(
+        greatest_mean_tension, "force", rated_break_strength=rated_break_strength
+    )
     strain, tension, _ = curve_from_zero(line.strain, line.tension)
+    # 30 %RBS is the end of many printed curves, but for the last digit of a product
+    if math.isclose(greatest, tension[-1], rel_tol=_ROUNDING):
+        greatest = float(tension[-1])
     syrope = Syrope(
         strain=strain,
         tension=tension,
@@ -89,9 +97,7 @@ def with_syrope(
         fast_damping=fast_damping(
             part.fast_stiffness, line.needed("linear_density"), segment_length(line)
         ),
-        greatest_mean_tension=parse_quantity(
-            greatest_mean_tension, "force", rated_break_strength=rated_break_strength
-        ),
+        greatest_mean_tension=greatest,
         mean_tension=part.mean_tension,
     )
     return replace(

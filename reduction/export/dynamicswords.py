@@ -129,9 +129,11 @@ def interval_of(found: DesignValues) -> str:
 def said_of_value(found: DesignValues) -> str:
     """Where one design value is from."""
     known = math.isfinite(float(found.surface_high))
+    is_vague = known and float(found.surface_low) < 0
     return (
         f"{found.source}: {found.quantity} {float(found.value):.6g} {found.unit}, "
         + (f"95 percent of the surface {interval_of(found)}" if known else "no interval known")
+        + (": its lower end is below zero: not told from zero" if is_vague else "")
         + (f", errata {', '.join(found.errata)}" if found.errata else "")
         + ("" if found.is_inside else ", OUTSIDE what was tested")
         + (", untested corner" if found.is_untested else "")

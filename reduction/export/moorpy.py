@@ -76,7 +76,9 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
         "with a table MoorPy takes the line as straight, and halves its weight to the ends",
     )
     steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
-    text = deck(line, row, head, strain=float(line.strain[-1]) / 2, stiffness=steepest)
+    text = deck(
+        line, row, head, strain=float(line.strain[-1]) / 2, stiffness=steepest, program="MoorPy"
+    )
     return {"": text, table: f"{table_text(line, curve)}\n---"}
 
 
@@ -85,7 +87,8 @@ def _library(line: ExportLine) -> str:
     if part is None:
         raise SettingsError(
             f"static and dynamic stiffness of {line.name} are not known",
-            needed="K_0, K_1 and tau: the library of MoorPy is linear",
+            needed="K_0, K_1 and tau of a published line, which are taken at --frequency, "
+            "--mean-tension and --tension-amplitude: the library of MoorPy is linear",
             hint="Export the curve instead: --form table.",
         )
     strength, diameter = line.needed("rated_break_strength"), line.needed("diameter")

@@ -76,7 +76,7 @@ def values_of_curve(
     value, spread, inside = evaluate_curve(curve, at)
     if extrapolate == "refuse" and not inside.all():
         first = at.ravel()[np.flatnonzero(~inside.ravel())[0]]
-        unit = quantity_of(curve.variable).unit
+        unit = _unit(curve.variable)
         gaps = "".join(
             f", nothing between {low:.5g} and {high:.5g}"
             for low, high in curve.gaps
@@ -85,8 +85,8 @@ def values_of_curve(
         raise DataError(
             f"{int((~inside).sum())} of {inside.size} points are outside what was tested of "
             f"{curve.quantity} of {line.name}",
-            found=f"{curve.variable} {first:.5g} {unit}",
-            needed=f"{curve.low:.5g} to {curve.high:.5g} {unit}{gaps}",
+            found=f"{curve.variable} {first:.5g}{unit}",
+            needed=f"{curve.low:.5g} to {curve.high:.5g}{unit}{gaps}",
             hint=". ".join(
                 part
                 for part in (
@@ -117,6 +117,12 @@ def values_of_curve(
     )
 
 
+def _unit(name: str) -> str:
+    """Unit as it stands behind a number; a plain number has none."""
+    unit = quantity_of(name).unit
+    return "" if unit == "1" else f" {unit}"
+
+
 def _factor(curve: LineCurve, at: Floats) -> Floats:
     """Half width of a 95 % interval over the standard uncertainty."""
     if not curve.degrees_of_freedom.size:
@@ -131,8 +137,8 @@ def _joints(curve: LineCurve, at: Floats) -> list[str]:
         return []
     meet = (np.diff(curve.at) == 0) & (np.diff(curve.value) != 0)
     return [
-        f"at {curve.variable} {curve.at[place]:.5g} two pieces meet: {curve.value[place]:.4g} "
-        f"{quantity_of(curve.quantity).unit} below, {curve.value[place + 1]:.4g} above"
+        f"at {curve.variable} {curve.at[place]:.5g} two pieces meet: {curve.value[place]:.4g}"
+        f"{_unit(curve.quantity)} below, {curve.value[place + 1]:.4g} above"
         for place in np.flatnonzero(meet)
         if np.any(at == curve.at[place])
     ]

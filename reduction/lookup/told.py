@@ -65,6 +65,8 @@ def design_values(
     notes = [*line.notes, *of.notes, *more]
     if words[0] or words[1]:
         notes.append(_scatter_told(of, words))
+    elif isinstance(of, LineCurve):
+        notes.append("no interval is given: the source states no scatter of this curve")
     if loads.is_above_rule.any():
         notes.append(f"the peak tension is above what the source allows: {line.rule}")
     if loads.is_slack.any() and loads.peak_tension.max() > 0:

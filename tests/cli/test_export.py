@@ -87,7 +87,8 @@ def test_units_are_for_tables_and_never_for_a_code(command, tmp_path):
             4, "outside what was tested",
         ),
         (["polyester-double-braid-0.5in-new", "--to", "csv", "--mean-tension", "3 ft"], 2, "force"),
-        (["nylon-8-strand-plaited-0.5in-5-years", "--to", "csv", "--mean-tension", "20 %RBS"], 2, "tension_amplitude"),
+        (["nylon-8-strand-plaited-0.5in-5-years", "--to", "csv", "--mean-tension", "20 %RBS"], 2,
+         "needed --frequency and --tension-amplitude too"),
     ],
 )  # fmt: skip
 def test_bad_input_is_named(command, tmp_path, arguments, status, message):
@@ -200,3 +201,49 @@ def test_a_syrope_of_a_published_line(command, tmp_path):
     assert done.returncode == 0, done.stderr
     assert moordyn_sections((tmp_path / "s.dat").read_text())["SYROPE IC"][-1][1] == "8000"
     assert (tmp_path / "s_syrope.dat").read_text().split("\n")[1] == "LINEAR WCType"
+
+
+SYROPE = (
+    "--to", "moordyn", "--form", "syrope", "--frequency", "0.3 Hz", "--mean-tension", "21 %RBS",
+    "--tension-amplitude", "8.5 %RBS", "--working-curve", "LINEAR, 0.1", "--linear-density",
+    "0.11 kg/m",
+)  # fmt: skip
+
+
+def test_a_share_of_the_break_strength_is_one_tension_for_every_option(command, tmp_path):
+    line = "polyester-double-braid-0.5in-new"
+    told = []
+    # 6,400 lbf is the rated strength of Table 10
+    for number, greatest in enumerate(("30 %RBS", "1920 lbf")):
+        path = tmp_path / f"leg{number}.dat"
+        done = command("export", line, *SYROPE, "--greatest-mean-tension", greatest, "--out", path,
+                       "--json")  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        told.append(json.loads(done.stdout)["sources"][-1])
+    assert "greatest mean tension" in " ".join(told)
+    assert told[0] == told[1]
+
+
+@pytest.mark.parametrize(
+    ("options"),
+    [("--to", "moordyn", "--form", "static-dynamic"), ("--to", "moorpy", "--form", "library")],
+)
+def test_dynamics_without_levels_name_the_options_that_are_missing(command, tmp_path, options):
+    done = command("export", "polyester-double-braid-0.5in-new", *options, "--linear-density",
+                   "0.11 kg/m", "--out", tmp_path / "x")  # fmt: skip
+    assert done.returncode == 2
+    for name in ("--frequency", "--mean-tension", "--tension-amplitude"):
+        assert name in done.stderr
+
+
+def test_a_deck_is_called_after_the_program_that_reads_it(command, tmp_path):
+    for program, name in (("moordyn", "MoorDyn"), ("moorpy", "MoorPy")):
+        path = tmp_path / f"{program}.dat"
+        command("export", "polyester-double-braid-0.5in-new", "--to", program, "--linear-density",
+                "0.11 kg/m", "--out", path)  # fmt: skip
+        text = path.read_text(encoding="utf-8")
+        assert text.startswith(f"{name} input file")
+        if program == "moordyn":
+            assert "MoorDyn takes a number below zero for minus a share of critical" in " ".join(
+                text.replace("\n", " ").split()
+            )

@@ -1,6 +1,7 @@
 import csv
 import json
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -87,7 +88,9 @@ def test_a_search_in_a_campaign(command, synthetic):
     done = command("lookup", synthetic.processed, "--material", "RUBBER", "--condition", "used",
                    "--json")  # fmt: skip
     lines = json.loads(done.stdout)["lines"]
-    assert {one["name"] for one in lines} == {"used"}
+    # nine tests have the specimen: a name that can be copied is that of both
+    assert {"T-1 used", "T-2 used"} <= {one["name"] for one in lines}
+    assert all(one["name"].endswith(" used") for one in lines)
     assert {one["kind"] for one in lines} == {"rubber tether"}
     none = command("lookup", synthetic.processed, "--list", "--material", "nylon")
     assert none.returncode == 2
@@ -378,3 +381,73 @@ def test_kinds_are_told_apart_with_the_scatter_between_lines_alone(command):
     text = command(*pair).stdout
     assert "not told apart" in text
     assert "lines of this kind differ among each other by about 50 %" in text
+
+
+def test_one_line_of_a_campaign_is_named_by_its_test_and_specimen(command, synthetic):
+    ask = ("--quantity", "tangent_modulus", "--branch", "ascending", "--strain", "100 %", "--line")
+    whole = command("lookup", synthetic.processed, *ask, "T-1 new", "--json")
+    assert whole.returncode == 0, whole.stderr
+    alone = command("lookup", synthetic.processed / "T-1.nc", *ask, "new", "--json")
+    assert json.loads(whole.stdout)["value"] == json.loads(alone.stdout)["value"]
+    for several in ("T-1", "new"):
+        done = command("lookup", synthetic.processed, *ask, several)
+        assert done.returncode == 2
+        assert 'Such as `--line "T-1 new"`.' in done.stderr
+    none = command("lookup", synthetic.processed, *ask, "T-99")
+    assert "there is no line 'T-99'" in none.stderr
+    assert '--line "T-1 new"' in none.stderr
+
+
+def test_products_that_are_not_made_yet_are_told_with_the_command_that_makes_them(
+    command, tmp_path
+):
+    done = command("lookup", "processed/nylon-synthetic", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("there is no such folder or archive; found processed/nylon-syn")
+    assert "`reduction run raw/nylon-synthetic/campaign.toml` makes" in done.stderr
+    assert "polyester" not in done.stderr
+    empty = command("lookup", tmp_path)
+    assert "the folder holds no archive with values to look up" in empty.stderr
+
+
+@pytest.mark.parametrize(
+    ("symbol", "name"),
+    [("K_ap", "apparent_spring_constant"), ("H", "hysteresis_energy"), ("tau", "relaxation_time"),
+     ("K_1", "dissipation_spring_constant"), ("N", "dashpot_coefficient")],
+)  # fmt: skip
+def test_a_quantity_can_be_asked_for_by_its_symbol(command, symbol, name):
+    answer = json.loads(command("lookup", NYLON, "--quantity", symbol, *LEVELS, "--json").stdout)
+    assert answer["quantity"] == name
+
+
+def test_no_name_is_broken_in_a_pipe(command):
+    words = set(command("lookup", "published", "--list").stdout.split())
+    lines = json.loads(command("lookup", "published", "--list", "--json").stdout)["lines"]
+    for line in lines:
+        assert {line["name"], *line["quantities"]} <= {word.rstrip(",") for word in words}
+
+
+def test_a_curve_without_an_interval_says_why(command):
+    text = command("lookup", "rubber-tether-new-T-5", "--quantity", "tangent_modulus", "--strain",
+                   "200 %").stdout  # fmt: skip
+    assert "no interval is given: the source states no scatter of this curve" in text
+
+
+def test_a_difference_says_of_which_lines_its_interval_is(command):
+    text = command("lookup", f"{PLAIT}-new", "--against", f"{PLAIT}-4-years", "--quantity", "K_ap",
+                   *LEVELS).stdout  # fmt: skip
+    assert "95 % of the difference is of these lines" in text
+
+
+def test_an_interval_that_reaches_below_zero_is_not_told_from_zero(command):
+    ask = ("lookup", NYLON, "--quantity", "relaxation_time", "--table")
+    answer = json.loads(command(*ask, "--json").stdout)
+    vague = [
+        low < 0 <= value
+        for (low, value) in zip(
+            np.minimum(answer["interval"][0], answer["surface_interval"][0]), answer["value"],
+            strict=True,
+        )
+    ]  # fmt: skip
+    assert any(vague)
+    assert command(*ask).stdout.count("lower end") == sum(vague)

@@ -6,7 +6,12 @@ import pytest
 from scipy import stats
 
 from reduction.archive.linecurves import CURVES
-from reduction.archive.linesource import line_of_experiment, line_of_test, specimens_of
+from reduction.archive.linesource import (
+    _tested,
+    line_of_experiment,
+    line_of_test,
+    specimens_of,
+)
 from reduction.archive.open import open_archive
 from reduction.archive.surface_read import surfaces_of
 from reduction.batch.run import run_campaign
@@ -15,6 +20,7 @@ from reduction.cli.lookupsource import lines_of
 from reduction.errors import ArchiveError, DataError
 from reduction.lookup.line import look_up
 from reduction.surface.bands import evaluate_surfaces
+from reduction.surface.designs import box_behnken
 
 RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
 
@@ -55,7 +61,26 @@ def test_a_surface_is_looked_up_as_it_was_fitted(surfaces):
     assert shared.min() > 0.5 * scatter.max()
     assert found.high - found.value == pytest.approx(np.hypot(scatter, shared), rel=1e-9)
     assert found.value - found.low == pytest.approx(np.hypot(scatter, shared), rel=1e-9)
-    assert found.is_untested.tolist() == expected.above_leverage.ravel().tolist()
+    # [1, 0, -1] is the plan of R07, which missed it by a ten-thousandth: it was tested
+    assert found.is_untested.tolist() == [False, False, True]
+
+
+def test_every_level_of_the_plan_is_tested_and_a_corner_is_not(surfaces):
+    line = line_of_experiment(surfaces, "nylon")
+    (surface,) = (one for name, one in line.surfaces.items() if name == "relaxation_time")
+    centre, half = (surface.high + surface.low) / 2, (surface.high - surface.low) / 2
+    edges = centre + half * box_behnken(3).coded
+    corners = centre + half * np.array([[-1, 1, 1], [1, 1, -1], [1, -1, -1]])
+    for points, is_untested in ((edges, False), (corners, True)):
+        at = dict(zip(line.factor_names, points.T, strict=True))
+        found = look_up(line, "relaxation_time", **at)
+        assert set(found.is_untested.tolist()) == {is_untested}
+
+
+def test_a_run_that_went_elsewhere_leaves_its_plan_untested():
+    reached = np.array([[0.9, 0.0], [0.6, -1.0]])
+    plan = np.array([[1.0, 0.0], [1.0, -1.0]])
+    assert _tested(reached, plan).tolist() == [*reached.tolist(), [1.0, 0.0]]
 
 
 def test_a_response_that_was_asked_for_on_a_scale_is_read_from_that_scale(surfaces):
