@@ -19,21 +19,23 @@ __all__ = [
     "all_budgets",
     "budget_from_archive",
     "degrees_of_freedom",
+    "place_name",
     "quantities_with_budget",
 ]
 
 _CONTRIBUTION = "_uncertainty_contribution"
 _RANDOM = "_random_standard_uncertainty"
-# what a user calls a dimension
-_ALIAS = {"branch": "branch_name", "strain": "strain_bin", "first_loading_strain":
-          "first_loading_strain_bin"}  # fmt: skip
+# what a user calls a dimension; no quantity has two of one name
+_CALLED = {"branch_name": "branch", "strain_bin": "strain", "first_loading_strain_bin": "strain",
+           "ratio_strain_bin": "strain"}  # fmt: skip
 # one of them is a regression on samples, of which there are hundreds
 _OF_SAMPLES = frozenset({
     "cycle", "selected_cycle", "hold", "held_pair", "slip", "step", "interval", "tension_grid",
     "break_share", "pull_term", "strain_level", "elastomer_parameter",
 })  # fmt: skip
 _LINES = ("_per_decade", "_per_cycle", "_change", "_drift")
-_ON_AN_AXIS = ("strain_bin", "first_loading_strain_bin")
+_ROUNDING = 1e-9
+_ON_AN_AXIS = ("strain_bin", "first_loading_strain_bin", "ratio_strain_bin")
 
 
 def quantities_with_budget(archive: xr.Dataset) -> tuple[str, ...]:
@@ -43,6 +45,11 @@ def quantities_with_budget(archive: xr.Dataset) -> tuple[str, ...]:
         for name in archive.variables
         if str(name).endswith(_CONTRIBUTION)
     )
+
+
+def place_name(dim: str) -> str:
+    """What a dimension is called where a place along it is asked for: ``branch``, ``strain``."""
+    return _CALLED.get(dim, dim)
 
 
 def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str]) -> Budget:
@@ -79,18 +86,22 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
             f"{quantity} {why}", needed="one of " + (", ".join(known) or "none: no error is shared")
         )
     variable = archive[name]
-    wanted = {_ALIAS.get(key, key): text for key, text in at.items()}
     dims = [str(dim) for dim in variable.dims]
-    strange = sorted(set(wanted) - set(dims))
+    strange = sorted(set(at) - set(dims) - {place_name(dim) for dim in dims})
     if strange:
         raise SettingsError(
-            f"{name} does not vary with {', '.join(strange)}", needed="--at " + ", ".join(dims)
+            f"{name} does not vary with {', '.join(strange)}",
+            needed="--at " + ", ".join(map(place_name, dims)),
         )
-    place = {dim: _place(archive, dim, wanted.get(dim)) for dim in dims}
+    place = {dim: _place(archive, dim, at.get(place_name(dim), at.get(dim))) for dim in dims}
     number = float(variable.isel(place))
     if not np.isfinite(number):
         raise ArchiveError(
-            f"there is no {name} there", found=", ".join(f"{dim}={place[dim]}" for dim in dims)
+            f"there is no {name} there",
+            found=", ".join(
+                f"{place_name(dim)}={_shown(_label(archive, dim, place[dim]))}" for dim in dims
+            ),
+            needed=_where_known(archive, variable, place),
         )
     return _budget_at(archive, name, place)
 
@@ -170,6 +181,25 @@ def _budget_at(archive: xr.Dataset, name: str, place: Mapping[str, int]) -> Budg
     )
 
 
+def _where_known(archive: xr.Dataset, variable: xr.DataArray, place: Mapping[str, int]) -> str:
+    """Places along the last dimension that have a number, the others as asked for."""
+    dim = str(variable.dims[-1])
+    row = variable.isel({one: at for one, at in place.items() if one != dim})
+    known = np.flatnonzero(np.isfinite(row.values))
+    if not known.size:
+        return "another place: there is none at any " + place_name(dim)
+    if dim in _ON_AN_AXIS:
+        bounds = _bounds(archive, dim)
+        ends = f"{bounds[known[0], 0]:.4g} to {bounds[known[-1], 1]:.4g}"
+        return f"{place_name(dim)} {ends}"
+    labels = [str(_label(archive, dim, int(index))) for index in known]
+    return f"{place_name(dim)} " + ", ".join(labels[:12]) + (", ..." if len(labels) > 12 else "")
+
+
+def _shown(label: Any) -> str:
+    return f"{label:.6g}" if isinstance(label, float) else str(label)
+
+
 def _label(archive: xr.Dataset, dim: str, index: int) -> Any:
     return archive[dim].values[index] if dim in archive.variables else index + 1
 
@@ -182,20 +212,32 @@ def _place(archive: xr.Dataset, dim: str, text: str | None) -> int:
         if len(labels) == 1:
             return 0
         raise SettingsError(
-            f"which {dim} is meant is not said", needed=f'--at "{dim}=..." ({shown})'
+            f"which {place_name(dim)} is meant is not said",
+            needed=f'--at "{place_name(dim)}=..." ({shown})',
         )
     if dim in _ON_AN_AXIS:
         return _bin(archive, dim, float(text))
     if text not in labels:
-        raise SettingsError(f"there is no {dim} '{text}'", needed=shown)
+        raise SettingsError(f"there is no {place_name(dim)} '{text}'", needed=shown)
     return labels.index(text)
 
 
+def _bounds(archive: xr.Dataset, dim: str) -> Floats:
+    """Ends of bins; of a ratio, whose bins are those that two tests share, about their middles."""
+    if f"{dim}_bounds" in archive:
+        return np.asarray(archive[f"{dim}_bounds"].values)
+    middle = archive[dim].values
+    # a strain just between two of them is in one of them
+    half = np.min(np.diff(middle), initial=np.inf) / 2 * (1 + _ROUNDING)
+    return np.stack([middle - half, middle + half], axis=1)
+
+
 def _bin(archive: xr.Dataset, dim: str, strain: float) -> int:
-    bounds = archive[f"{dim}_bounds"].values
+    bounds = _bounds(archive, dim)
     inside = np.flatnonzero((bounds[:, 0] <= strain) & (strain <= bounds[:, 1]))
     if inside.size == 0:
         raise SettingsError(
-            f"{dim} has no bin at {strain:g}", needed=f"{bounds.min():.4g} to {bounds.max():.4g}"
+            f"{place_name(dim)} has no bin at {strain:g}",
+            needed=f"{bounds.min():.4g} to {bounds.max():.4g}",
         )
     return int(inside[0])

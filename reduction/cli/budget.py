@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import cast
 
 import xarray as xr
 
-from reduction.archive.budget import budget_from_archive, quantities_with_budget
+from reduction.archive.budget import budget_from_archive, place_name, quantities_with_budget
 from reduction.archive.open import open_archive
 from reduction.cli.numbers import plain, short, table_of
 from reduction.cli.outcome import Outcome
@@ -20,6 +21,8 @@ from reduction.units import UnitSystem, display_unit, parse_quantity
 
 __all__ = ["list_budgets", "show_budget"]
 
+_WIDTH = 30
+
 
 def list_budgets(path: Path, *, outcome: Outcome) -> None:
     """Print what PRODUCT keeps a budget of."""
@@ -27,7 +30,7 @@ def list_budgets(path: Path, *, outcome: Outcome) -> None:
         names = {name: list(archive[name].dims) for name in quantities_with_budget(archive)}
     table = table_of("quantity", "--at", texts=2)
     for name, dims in names.items():
-        table.add_row(name, ", ".join(str(dim) for dim in dims))
+        table.add_row(name, ", ".join(place_name(str(dim)) for dim in dims))
     outcome.show(table)
     outcome.answer(
         {"quantities": {name: [str(dim) for dim in dims] for name, dims in names.items()}}
@@ -41,13 +44,15 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, outcome: Ou
         synthetic = archive.attrs.get("synthetic", "no") == "yes"
         drawn = _drawn_uncertainty(archive, budget)
     unit, scale = display_unit(budget.unit, cast("UnitSystem", outcome.units))
-    where = ", ".join(f"{dim} {label}" for dim, label in budget.place.items())
+    where = ", ".join(f"{place_name(dim)} {label}" for dim, label in budget.place.items())
     table = table_of(
         "source", "of", f"contribution [{unit}]", "share of u2", texts=2,
         title=f"{budget.quantity}, {where}" + (" (synthetic data)" if synthetic else ""),
     )  # fmt: skip
     for row in budget.rows:
-        table.add_row(row.source, row.of, short(row.contribution * scale, 3), f"{row.share:.1%}")
+        table.add_row(
+            row.source, _short_name(row.of), short(row.contribution * scale, 3), f"{row.share:.1%}"
+        )
     outcome.show(table)
     outcome.say(
         f"value {short(budget.value * scale)} {unit}, standard uncertainty "
@@ -74,6 +79,11 @@ def _drawn_uncertainty(archive: xr.Dataset, budget: Budget) -> float | None:
     if int(method.values[place]) != LINE_METHODS["monte_carlo"]:
         return None
     return float(archive[f"{budget.quantity}_standard_uncertainty"].values[place])
+
+
+def _short_name(text: str) -> str:
+    """Name of an instrument for a column: its first words, where it has a sentence."""
+    return textwrap.shorten(text, _WIDTH, placeholder=" ...")
 
 
 def _places(texts: Sequence[str]) -> dict[str, str]:

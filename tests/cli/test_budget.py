@@ -94,6 +94,22 @@ def test_without_a_quantity_it_says_what_there_is(product):
     assert "segment_modulus" in answer(product)["quantities"]
 
 
+def test_places_have_the_names_by_which_they_are_asked_for(product):
+    listed = run("budget", product).output
+    assert "specimen, branch, strain" in listed
+    assert "branch_name" not in listed and "strain_bin" not in listed
+    told = run("budget", product, "--quantity", "tangent_modulus_first_loading", "--at",
+               "specimen=new", "--at", "branch=ascending", "--at", "strain=90 %")  # fmt: skip
+    assert told.exit_code == 0, told.output
+    assert "branch ascending, strain 0.895" in told.output
+    # the machine is a sentence in the campaign
+    assert "generated in the shape of ..." in told.output
+    away = run("budget", product, "--quantity", "tangent_modulus", "--at", "specimen=new", "--at",
+               "branch=descending", "--at", "strain=131 %")  # fmt: skip
+    assert "found specimen=new, branch=descending, strain=1.3" in away.output
+    assert "needed strain 0." in away.output
+
+
 def test_the_screen_says_that_the_data_are_synthetic(product):
     found = run("budget", product, "--quantity", "loss_factor", "--at", "specimen=new")
     assert "synthetic" in found.output and "k = " in found.output

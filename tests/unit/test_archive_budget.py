@@ -8,6 +8,7 @@ from reduction.archive.budget import (
     all_budgets,
     budget_from_archive,
     degrees_of_freedom,
+    place_name,
     quantities_with_budget,
 )
 from reduction.errors import ArchiveError, SettingsError
@@ -94,13 +95,14 @@ def test_what_has_a_budget_is_listed(archive):
     [
         ("peak_tension", {}, SettingsError, "peak_tension has no shared part.*segment_modulus"),
         ("colour", {}, SettingsError, "colour is not in this archive"),
-        ("segment_modulus", {"segment": "1"}, SettingsError, "which branch_name is meant"),
+        ("segment_modulus", {"segment": "1"}, SettingsError, "which branch is meant"),
         ("segment_modulus", {"cycle": "1"}, SettingsError, "does not vary with cycle"),
-        ("segment_modulus", {"branch": "up", "segment": "1"}, SettingsError, "no branch_name 'up'"),
+        ("segment_modulus", {"branch": "up", "segment": "1"}, SettingsError, "no branch 'up'"),
         ("tangent_modulus", {"strain": "3"}, SettingsError, "no bin at 3.*0.9 to 1.1"),
         (
             "segment_modulus", {"branch": "ascending", "segment": "2"}, ArchiveError,
-            "there is no segment_modulus there",
+            "no segment_modulus there; found specimen=new, branch=ascending, segment=2; "
+            "needed segment 1",
         ),
     ],
 )  # fmt: skip
@@ -134,3 +136,29 @@ def test_a_line_over_the_cycles_has_lost_two_and_a_regression_on_samples_counts_
     with_holds = archive.assign(relaxation_drop=("hold", [1.0]))
     assert np.isinf(degrees_of_freedom(with_holds, "relaxation_drop"))
     assert np.isinf(degrees_of_freedom(archive, "peak_tension"))
+
+
+def test_every_axis_of_strain_is_asked_for_by_the_word_strain(archive):
+    first = archive["tangent_modulus"].dims[1]
+    renamed = archive.rename({first: "first_loading_strain_bin"}).rename(
+        {"strain_bin_bounds": "first_loading_strain_bin_bounds"}
+    )
+    assert budget_from_archive(renamed, "tangent_modulus", {"strain": "1.02"}).value == 6.0
+    assert place_name("first_loading_strain_bin") == "strain"
+    assert place_name("specimen") == "specimen"
+
+
+def test_where_there_is_no_number_it_says_at_which_strains_there_is(archive):
+    archive["tangent_modulus"][0, 0] = np.nan
+    with pytest.raises(ArchiveError, match="found specimen=new, strain=0.95; needed strain 1 to 1"):
+        budget_from_archive(archive, "tangent_modulus", {"strain": "0.95"})
+    archive["tangent_modulus"][0, 1] = np.nan
+    with pytest.raises(ArchiveError, match="needed another place: there is none at any strain"):
+        budget_from_archive(archive, "tangent_modulus", {"strain": "0.95"})
+
+
+def test_bins_without_bounds_are_about_their_middles(archive):
+    bins = archive.rename(strain_bin="ratio_strain_bin").drop_vars("strain_bin_bounds")
+    assert budget_from_archive(bins, "tangent_modulus", {"strain": "1.02"}).value == 6.0
+    between = budget_from_archive(bins, "tangent_modulus", {"strain": "1.0"})
+    assert between.value in (5.0, 6.0)
