@@ -23,6 +23,8 @@ from reduction.units import UnitSystem, display_unit
 __all__ = ["PAGE", "compose_tests", "table_format"]
 
 _ROWS = 24
+_SHOWN = 1e-3
+"""Share of the tension above which a row says that it was moved."""
 PAGE = "page"
 _FORMATS = {
     ".csv": "csv", ".json": "json", ".nc": "netcdf", ".md": "markdown", ".tex": "latex",
@@ -74,26 +76,31 @@ def compose_tests(
 def _show(source: PieceSource, curve: CompositeCurve, outcome: Outcome, system: UnitSystem) -> None:
     unit, factor = display_unit("N", system)
     made = ", SYNTHETIC: nothing was tested" if source.is_synthetic else ""
-    outcome.say(f"{composite_table(source, curve).title}{made}")
+    doubt = f"; DOUBTFUL: {curve.doubt}" if curve.doubt else ""
+    outcome.say(f"{composite_table(source, curve).title}{made}{doubt}")
     table = table_of(
         "strain [%]", f"tension [{unit}]", f"standard uncertainty [{unit}]", "piece", "remark",
         texts=0,
     )  # fmt: skip
     ends = np.flatnonzero(np.diff(curve.is_gap)) + 1
     some = np.linspace(0, curve.strain.size - 1, _ROWS).round().astype(int)
+    is_moved = np.abs(np.nan_to_num(curve.monotone_change)) > _SHOWN * curve.tension
     for place in np.union1d(ends, some):
         flags = [
             word
             for word, of in (
-                ("gap", curve.is_gap), ("join", curve.is_join), ("moved", curve.is_moved),
+                ("gap", curve.is_gap), ("join", curve.is_join),
             )
             if place and of[place - 1]
         ]  # fmt: skip
+        change = factor * float(curve.monotone_change[place])
+        if is_moved[place]:
+            flags.append(f"moved {change:+.3g} by the rule of rising")
         table.add_row(
             short(100 * float(curve.strain[place]), 4),
             short(factor * float(curve.tension[place])),
             short(factor * float(curve.standard_uncertainty[place]), 3),
-            curve.piece_names[curve.piece[place]] if curve.piece[place] >= 0 else "-",
+            curve.piece_words[curve.piece[place]] if curve.piece[place] >= 0 else "-",
             ", ".join(flags),
         )
     outcome.show(table)
@@ -118,7 +125,7 @@ def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -
         "strain": plain(curve.strain),
         "tension": plain(curve.tension),
         "tension_standard_uncertainty": plain(curve.standard_uncertainty),
-        "piece": [curve.piece_names[one] if one >= 0 else None for one in curve.piece],
+        "piece": [curve.piece_words[one] if one >= 0 else None for one in curve.piece],
         "units": {
             "strain": "1", "tension": "N", "tension_standard_uncertainty": "N",
             "joins": "1", "gaps": "1", "moved": "1", "monotone_change": "N",
@@ -139,6 +146,7 @@ def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -
         "moved": [list(one) for one in ranges_of(curve, curve.is_moved)],
         "monotone_change": plain(curve.monotone_change),
         "between_pieces": plain(curve.between_pieces),
+        "doubt": curve.doubt,
         "sources": list(source.sources),
         "notes": [*curve.notes, *source.notes],
         "synthetic": source.is_synthetic,

@@ -47,6 +47,11 @@ class Blend:
         Of each interval: a piece reaches over it; more than one has a say.
     between_pieces : dict of str to float
         Relative deviation between pieces of each kind; NaN without an overlap. [1]
+    beside_loops : float
+        Greatest relative difference of first loadings to the kinds before them; NaN where these do
+        not overlap. [1]
+    farthest : ndarray
+        Of the rising curve from a piece that has a say there. [N]
     """
 
     strain: Floats
@@ -57,6 +62,8 @@ class Blend:
     is_covered: Bools
     is_join: Bools
     between_pieces: dict[PieceKind, float]
+    beside_loops: float
+    farthest: Floats
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -95,6 +102,10 @@ def blend_pieces(
     of all pieces there, bounded below by zero tension: the least squares solution.  Where one
     piece is alone its slope is above a share of itself, and nothing is moved.
 
+    A first loading is another state than the loops that follow it.  Behind another kind it has no
+    say where that one reaches, and what it differs by from it there is in its uncertainty beyond,
+    a straight line between the strains where that is known.  Other kinds hand over inside.
+
     Examples
     --------
     >>> at = np.array([0.5, 1.0])
@@ -106,8 +117,11 @@ def blend_pieces(
     tension, variance, fade = _on_grid(pieces, strain, taper)
     simple = (fade * tension).sum(axis=0) / fade.sum(axis=0)
     between = _between(pieces, tension, variance, fade > 0)
+    apart = _beside_loops(pieces, strain, tension, fade > 0)
+    is_first = np.array([one.kind == "first-loading" for one in pieces])
     # of the kind of each piece: rises from slack differ by far more than cycles do
-    shared = np.nan_to_num([between[one.kind] for one in pieces])[:, None] * simple
+    own_kind = np.nan_to_num([between[one.kind] for one in pieces])[:, None]
+    shared = np.hypot(own_kind, is_first[:, None] * np.nan_to_num(apart)) * simple
     weight = fade / np.maximum(variance + shared**2, (_LEAST_UNCERTAINTY * simple) ** 2)
     total = weight.sum(axis=0)
     share = weight / total
@@ -126,6 +140,8 @@ def blend_pieces(
         is_covered=is_covered,
         is_join=is_covered & ((middle > _NO_SAY).sum(axis=0) > 1),
         between_pieces=between,
+        beside_loops=float(apart.max()),
+        farthest=np.where(share > _NO_SAY, np.abs(tension - rising), 0.0).max(axis=0),
     )
 
 
@@ -166,7 +182,33 @@ def _on_grid(
         fade[row, inside] = full * (1 - over[inside]) + _LEAST_WEIGHT
         alone = np.minimum(depth / _HAND_OVER, 1.0)
         taken[inside] = np.maximum(taken[inside], alone)
+    for row, one in enumerate(pieces):
+        before = [other for other in pieces[:row] if other.kind != one.kind]
+        if one.kind == "first-loading" and before:
+            inside = (strain >= one.strain[0]) & (strain <= one.strain[-1])
+            hidden = inside & np.any(
+                [(strain >= each.strain[0]) & (strain <= each.strain[-1]) for each in before],
+                axis=0,
+            )
+            fade[row, hidden] = _LEAST_WEIGHT**2
     return tension, variance, fade
+
+
+def _beside_loops(
+    pieces: Sequence[CurvePiece], strain: Floats, tension: Floats, known: Bools
+) -> Floats:
+    """Relative difference of first loadings to the kinds before them; NaN where never known."""
+    own = np.array([one.kind == "first-loading" for one in pieces])
+    before = np.cumsum(own) == 0
+    both = known[own].any(axis=0) & known[before].any(axis=0)
+    if not both.any():
+        return np.full(strain.size, np.nan)
+    # tension is zero where a piece is not
+    first, other = (
+        tension[rows][:, both].sum(axis=0) / known[rows][:, both].sum(axis=0)
+        for rows in (own, before)
+    )
+    return np.asarray(np.interp(strain, strain[both], 2 * np.abs(first - other) / (first + other)))
 
 
 def _between(

@@ -37,6 +37,8 @@ __all__ = ["CompositeCurve", "CompositeRule", "composite_curve", "composite_line
 
 _KINDS: tuple[PieceKind, ...] = ("cyclic", "static", "first-loading")
 _MOVED = 1e-9
+_FAR = 2.0
+_LITTLE = 0.03
 _TANGENT_NODES = 5
 
 
@@ -109,8 +111,11 @@ class CompositeCurve:
     between_pieces : float
         Relative deviation between pieces where they overlap, of the first kind of the rule that
         has two; NaN where none has. [1]
-    piece_names : tuple of str
-        By index.
+    piece_names, piece_words : tuple of str
+        By index: its test, and its test with its kind.
+    doubt : str
+        Where the curve is farther from a piece that has a say than twice its uncertainty and 3 % of
+        the greatest tension, and how far; else empty.
     notes : tuple of str
         Rule, range, joins, gaps, and the greatest change.
     """
@@ -125,6 +130,8 @@ class CompositeCurve:
     monotone_change: Floats
     between_pieces: float
     piece_names: tuple[str, ...]
+    piece_words: tuple[str, ...]
+    doubt: str = ""
     notes: tuple[str, ...] = field(default=())
 
     def __post_init__(self) -> None:
@@ -239,7 +246,24 @@ def composite_curve(
             (one for one in blend.between_pieces.values() if not np.isnan(one)), float("nan")
         ),
         piece_names=tuple(one.name for one in used),
+        piece_words=tuple(one.words for one in used),
+        doubt=_far_off(blend),
         notes=_notes(used, rule, blend, moved),
+    )
+
+
+def _far_off(blend: Blend) -> str:
+    """Where the curve is not among its pieces by its own uncertainty, in words."""
+    # near slack a little strain is any share of the tension
+    told = blend.farthest > _LITTLE * blend.tension[-1]
+    share = told * blend.farthest / np.sqrt(blend.variance + _MOVED * blend.tension**2)
+    worst = int(np.argmax(share))
+    if share[worst] <= _FAR:
+        return ""
+    far = float(blend.farthest[worst])
+    return (
+        f"up to {share[worst]:.3g} standard uncertainties from a piece: {far:.4g} N "
+        f"({far / blend.tension[worst]:.1%}) at strain {blend.strain[worst]:.4g}"
     )
 
 
@@ -291,6 +315,11 @@ def _notes(
         f"{kind} pieces differ by {one:.1%} of tension where they overlap"
         for kind, one in between.items()
     ]
+    if not np.isnan(blend.beside_loops):
+        notes.append(
+            f"first loadings differ by up to {blend.beside_loops:.1%} from what goes before them: "
+            "this is in their uncertainty where they stand alone"
+        )
     if moved.any():
         share = change / blend.tension
         worst = int(np.argmax(np.abs(change)))
@@ -304,10 +333,17 @@ def _notes(
         off = float(np.sqrt(np.sum(change**2) / np.sum(blend.tension**2)))
         apart = next(iter(between.values()), np.inf)
         if off > apart:
+            several = len({one.kind for one in pieces}) > 1
             notes.append(
                 f"the curve is {off:.1%} off the mean of its pieces, which differ by {apart:.1%} "
-                "where they overlap: they are no pieces of one curve, as loops of a rope and its "
-                "slow pull are none; name the kinds that are wanted"
+                "where they overlap: "
+                + (
+                    "they are no pieces of one curve, as loops of a rope and its slow pull are "
+                    "none; name the kinds that are wanted"
+                    if several
+                    else "they hand over between tests in other states; name the tests that are "
+                    "wanted"
+                )
             )
     return tuple(notes)
 

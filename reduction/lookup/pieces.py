@@ -34,6 +34,7 @@ __all__ = [
 PieceKind = Literal["cyclic", "static", "first-loading"]
 PieceBranch = Literal["ascending", "descending", "mean"]
 _FEWEST = 2
+_KIND_WORDS = {"cyclic": "cycles", "static": "static", "first-loading": "first loading"}
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,11 @@ class CurvePiece:
     strain: Floats
     tension: Floats
     standard_uncertainty: Floats
+
+    @property
+    def words(self) -> str:
+        """Which test, and which part of it."""
+        return f"{self.name} {_KIND_WORDS[self.kind]}"
 
     def __post_init__(self) -> None:
         """Check that it is a curve, and make the arrays read-only."""

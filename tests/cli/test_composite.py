@@ -228,3 +228,41 @@ def test_what_a_composite_cannot_be_asked_at_the_export(command, tmp_path, argum
     assert done.returncode == 2
     assert told in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_loops_begin_at_their_own_tension_but_for_what_the_rule_of_rising_moved(command, synthetic):
+    """T-6 is the only window above 2.4: what its first node is off by is told, and is all of it."""
+    with xr.open_dataset(synthetic.processed / "T-6.nc", decode_timedelta=False) as archive:
+        load = archive["branch_tension"].values[0].mean(axis=0)
+        place = int(np.flatnonzero(np.isfinite(load))[0])
+        at, load = float(archive["strain_bin"].values[place]), float(load[place])
+    found = composite(command, synthetic.processed, "--specimen", "new", "--precedence", "cyclic")
+    node = int(np.argmin(np.abs(np.array(found["strain"]) - at)))
+    assert found["piece"][node] == "T-6 cycles"
+    change = found["tension"][node] - load
+    assert found["monotone_change"][node] == pytest.approx(change, abs=1e-6)
+    assert found["tension_standard_uncertainty"][node] >= abs(change)
+    said = command("composite", synthetic.processed, "--specimen", "new", "--precedence", "cyclic")
+    row = next(line for line in said.stdout.splitlines() if line.split()[0] == f"{100 * at:.4g}")
+    assert "T-6 cycles" in row and f"moved {change:+.3g} by the rule of rising" in row
+
+
+def test_the_first_loading_of_a_test_is_no_certain_neighbour_of_its_loops(command, synthetic):
+    """It has about twice the tension of the loops that begin there, and says so."""
+    found = composite(command, synthetic.processed, "--specimen", "new")
+    strain, tension, spread = (
+        np.array(found[name]) for name in ("strain", "tension", "tension_standard_uncertainty")
+    )
+    words = np.array([one or "" for one in found["piece"]])
+    begin = next(one["strain"][0] for one in found["pieces"]
+                 if (one["name"], one["kind"]) == ("T-6", "cyclic"))  # fmt: skip
+    near = (words == "T-6 first loading") & (strain > begin - 0.1)
+    assert near.any() and (spread[near] > 0.3 * tension[near]).all()
+    assert set(words[strain >= begin]) == {"T-6 cycles"}
+
+
+def test_a_curve_far_from_a_piece_says_so_in_the_first_line(command):
+    first = command("composite", "rubber-tether-used").stdout.splitlines()[0]
+    doubt = composite(command, "rubber-tether-used")["doubt"]
+    assert first.endswith(f"; DOUBTFUL: {doubt}")
+    assert float(re.match(r"up to ([\d.]+) standard uncertainties", doubt)[1]) > 2

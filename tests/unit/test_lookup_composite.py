@@ -236,3 +236,55 @@ def test_stiff_loops_along_a_soft_pull_are_told_to_be_no_pieces_of_one_curve():
     assert not any(told in note for note in alone.notes)
     windows = [piece(0.5, 1.2, "T-1"), piece(1.0, 2.0, "T-2", factor=1.1)]
     assert not any(told in note for note in composite_curve(windows).notes)
+
+
+def straight(slope, low, high, name="T-1", kind="cyclic"):
+    at = np.linspace(low, high, 81)
+    return CurvePiece(name, kind, "mean", at, slope * at, 0 * at)
+
+
+def test_a_first_loading_has_no_say_where_loops_reach_and_carries_what_it_differs_by():
+    """80 beside 100 N per unit strain: 20 of 90, which is 22.2 % of the 60 N at 0.75."""
+    first = straight(80, 0.5, 1.5, "T-2", "first-loading")
+    curve = composite_curve([first, straight(100, 1.0, 2.0)])
+    assert curve.tension_at([0.75, 0.95]) == pytest.approx([60.0, 76.0])
+    assert curve.tension_at([1.0, 1.02, 1.5]) == pytest.approx([100.0, 102.0, 150.0])
+    spread = np.interp(0.75, curve.strain, curve.standard_uncertainty)
+    assert spread == pytest.approx(60 * 20 / 90, rel=1e-3)
+    assert any("first loadings differ by up to 22.2% from what" in note for note in curve.notes)
+    words = [curve.piece_words[place] for place in curve.piece[curve.piece >= 0]]
+    assert (words[0], words[-1]) == ("T-2 first loading", "T-1 cycles")
+    at = curve.strain[curve.piece >= 0]
+    assert {word for word, strain in zip(words, at, strict=True) if strain >= 1} == {"T-1 cycles"}
+
+
+def test_a_stiffer_first_loading_gives_way_to_the_loops_that_begin_below_it():
+    """It ends on 150 N where loops begin at 100: its 40 % are wide enough for the way down."""
+    first = straight(150, 0.5, 1.4, "T-6", "first-loading")
+    curve = composite_curve([first, straight(100, 1.0, 2.0, "T-6")])
+    off = np.abs(curve.tension_at(np.linspace(1.0, 2.0, 50)) / np.linspace(100, 200, 50) - 1)
+    assert off.max() < 0.1
+    before = np.flatnonzero((curve.piece >= 0) & (curve.strain < 1))
+    assert (curve.standard_uncertainty[before] > 0.3 * curve.tension[before]).all()
+
+
+@pytest.mark.parametrize(("others", "told"), [(3, ""), (5, "2.24 standard uncertainties")])
+def test_a_curve_far_from_a_piece_for_its_uncertainty_is_doubtful(others, told):
+    """One piece of n + 1 is n off their mean, whose deviation is the root of n: root of 5 is 2.24."""
+    pieces = [straight(100, 0.5, 1.5, f"T-{place}") for place in range(others)]
+    curve = composite_curve([*pieces, straight(200, 0.5, 1.5, "T-9")])
+    assert told in curve.doubt
+    assert bool(curve.doubt) is bool(told)
+
+
+def test_tests_of_one_kind_are_not_told_to_be_of_several():
+    """Two first loadings alike to nothing, and a third that begins below the end of the others."""
+    kind = "first-loading"
+    pieces = [straight(slope, 0.5, 1.0, name, kind) for name, slope in (("a", 100), ("b", 100.1))]
+    curve = composite_curve(
+        [*pieces, straight(50, 1.05, 1.5, "c", kind)], rule=CompositeRule(precedence=(kind,))
+    )
+    told = [note for note in curve.notes if "off the mean of its pieces" in note]
+    assert len(told) == 1
+    assert "tests in other states; name the tests that are wanted" in told[0]
+    assert "kinds" not in told[0]
