@@ -108,11 +108,17 @@ def reproduce(
         str | None, typer.Argument(metavar="[REPORT]", help="All unless said.", show_default=False)
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Write page and table to this folder.")] = None,
+    erratum: Annotated[
+        str | None, typer.Option(help="One fault of a page with its evidence, such as CG-39.")
+    ] = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Recompute every printed number of the published reports: counts, errata, open cells."""
     with guarded(Outcome(json=json, quiet=quiet)) as outcome:
-        from reduction.cli.reproduce import reproduce_reports
+        from reduction.cli.reproduce import reproduce_erratum, reproduce_reports
 
+        if erratum is not None:
+            reproduce_erratum(report, erratum, outcome=outcome)
+            return
         reproduce_reports(report, out=out, outcome=outcome)

@@ -26,9 +26,17 @@ from reduction.reproduce.reports import (
     touched_errata,
 )
 
-__all__ = ["document", "reproduce_reports"]
+__all__ = ["document", "reproduce_erratum", "reproduce_reports"]
 
 UNEXPLAINED = DataError.exit_status
+_COLUMNS = (
+    "cells: printed numbers of a table. reproduced: comes back from other numbers of the pages "
+    "within its rounding; erratum: the page is wrong, and the corrected number comes back; open: "
+    "the page is wrong or doubtful, and nothing says what is right; not testable: nothing else on "
+    "the pages leads to it; unexplained: does not come back, and no erratum says why. Of an "
+    "erratum: right is the corrected text, sure how far it is proved, cells how many numbers it "
+    "touches; `--erratum ID` gives the evidence of one\n"
+)
 
 
 def reproduce_reports(report: str | None, *, out: Path | None, outcome: Outcome) -> None:
@@ -36,6 +44,7 @@ def reproduce_reports(report: str | None, *, out: Path | None, outcome: Outcome)
     reports = reproduce(None if report is None else _known(report))
     for one, items in reports.items():
         _show(one, items, outcome)
+    outcome.say(_COLUMNS)
     if len(reports) > 1:
         _show_total(reports, outcome)
     if out is not None:
@@ -50,6 +59,31 @@ def reproduce_reports(report: str | None, *, out: Path | None, outcome: Outcome)
             if item.verdict == "unexplained":
                 outcome.error(_unexplained(item))
                 outcome.raise_status(UNEXPLAINED)
+
+
+def reproduce_erratum(report: str | None, erratum: str, *, outcome: Outcome) -> None:
+    """Print one known fault of a page: what is right, why, and its cells."""
+    reports = reproduce(None if report is None else _known(report))
+    faults = [one for name, items in reports.items() for one in touched_errata(name, items)]
+    found = [one for one in faults if one.erratum.id.lower() == erratum.lower()]
+    if not found:
+        kinds = dict.fromkeys(one.erratum.id.rpartition("-")[0] for one in faults)
+        raise SettingsError(
+            "there is no such erratum", found=repr(erratum),
+            needed="one of " + ", ".join(f"{kind}-..." for kind in kinds),
+            hint="`reduction reproduce` lists them.",
+        )  # fmt: skip
+    (one,) = found
+    known = one.erratum
+    for name in ("place", "printed", "corrected", "evidence", "confidence"):
+        outcome.say(f"{name}: {getattr(known, name)}")
+    cells = table_of("cell", "printed", "recomputed", "verdict", "how", texts=5)
+    for item in one.items:
+        printed = f"{item.cell.printed} {item.cell.unit}"
+        again = number_beside(item.recomputed, item.cell.printed) or "-"
+        cells.add_row(*map(escape, (_name(item), printed, again, item.verdict, item.how)))
+    outcome.show(cells)
+    outcome.answer({**vars(known), "items": [_described(item) for item in one.items]})
 
 
 def _known(report: str) -> ReportId:

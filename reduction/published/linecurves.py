@@ -82,7 +82,7 @@ def _curve(cubic: PublishedCubic) -> LineCurve | None:
     if [term.index for term in cubic.open_terms] == [0]:
         (term,) = cubic.open_terms
         coefficient[0] = term.values[0]
-        notes.append(f"open: {term.note}; the first is taken")
+        notes.append(f"open: constant of {cubic.quantity}: {term.note}; the first is taken")
     if not (np.isfinite(coefficient).all() and np.isfinite(cubic.tension_high)):
         return None
     is_strain = cubic.quantity == "quasi_static_strain"

@@ -117,7 +117,10 @@ def _surface(line: PublishedLine, found: PublishedSurface) -> LineSurface:
     edge = model_matrix(_DESIGN * (1 + 2 * rounding / (ends[0][1] - ends[0][0])), _EXPONENTS)
     names = tuple(f"B{number}" for number in range(1, len(_EXPONENTS) + 1))
     covariance = covariance_factor(matrix, names=names)
-    notes = [f"open: {term.note}; the interval spans them" for term in found.open_terms]
+    notes = [
+        f"open: B{term.index + 1} of {found.response}: {term.note}; the interval spans them"
+        for term in found.open_terms
+    ]
     if not np.isfinite(found.r2):
         notes.append("r2 is open: no interval can be given")
     if not found.passes_f_test:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from reduction.published.read import REPORTS, cells_of
+from reduction.published.read import REPORTS, cells_of, errata_of
 from reduction.reproduce import reports
 
 SETTINGS, DATA = 2, 4
@@ -87,3 +87,26 @@ def test_an_unexplained_cell_fails_the_command(command, monkeypatch, options):
     )
     if options == ("--json",):
         assert json.loads(done.stdout)["reports"]["Wang-2022"]["unexplained"] == 1
+
+
+def test_one_erratum_is_given_with_its_evidence_and_cells(command):
+    done = command("reproduce", "--erratum", "cg-39")
+    assert done.returncode == 0, done.stderr
+    (known,) = (one for one in errata_of("CG-D-39-80") if one.id == "CG-39")
+    assert f"evidence: {known.evidence}" in done.stdout
+    assert "CG-38" not in done.stdout.partition("evidence")[0]
+    answer = json.loads(command("reproduce", "CG-D-39-80", "--erratum", "CG-39", "--json").stdout)
+    assert answer["corrected"] == known.corrected
+    assert {item["erratum"] for item in answer["items"]} <= {"CG-39"}
+
+
+def test_an_erratum_that_is_not_known_is_refused(command):
+    done = command("reproduce", "--erratum", "XX-1")
+    assert done.returncode == SETTINGS
+    assert "there is no such erratum; found 'XX-1'; needed one of " in done.stderr
+
+
+def test_the_columns_are_explained(command):
+    text = command("reproduce", "Wang-2022").stdout
+    for word in ("reproduced:", "not testable:", "unexplained:", "right is", "sure how"):
+        assert word in text

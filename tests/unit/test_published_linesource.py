@@ -67,7 +67,7 @@ def test_an_open_coefficient_widens_the_interval_over_both_prints(lines):
     middle = (found.surface_low + found.surface_high) / 2
     # B1 + B4 + B7 with either; the half width differs by the sigma of either
     assert middle - found.value == pytest.approx(0.5 * 0.070e4 * LBF, rel=0.1)
-    assert any("open" in note for note in found.notes)
+    assert any("open: B4 of apparent_spring_constant: " in note for note in found.notes)
 
 
 def test_a_mean_that_is_open_is_not_given(lines):
