@@ -1,0 +1,71 @@
+"""What docs/export.md shows works as it is printed, for every format and form."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from reduction.cli.main import app
+from reduction.export.write import FORMATS, FORMS
+from reduction.vocabulary import SINGLE_QUANTITIES
+
+DOCS = Path(__file__).parents[2] / "docs"
+TEXT = (DOCS / "export.md").read_text(encoding="utf-8")
+
+
+def commands():
+    (body,) = re.findall(r"^```bash\n(.*?)^```$", TEXT, re.MULTILINE | re.DOTALL)
+    return [shlex.split(line)[1:] for line in body.replace("\\\n", " ").strip().split("\n")]
+
+
+def after(words, option):
+    return words[words.index(option) + 1] if option in words else None
+
+
+@pytest.mark.parametrize("arguments", commands(), ids=lambda words: after(words, "--out"))
+def test_commands_end_well(arguments, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / after(arguments, "--out")).is_file()
+
+
+def test_every_format_and_every_form_of_moordyn_and_moorpy_has_a_command():
+    shown = {(after(words, "--to"), after(words, "--form")) for words in commands()}
+    assert {name for name, _ in shown} == set(FORMATS)
+    for name in ("moordyn", "moorpy"):
+        first, *others = FORMS[name]
+        assert {(name, None), *((name, form) for form in others)} <= shown, first
+
+
+def test_no_two_commands_write_the_same_file():
+    names = [after(words, "--out") for words in commands()]
+    assert len(set(names)) == len(names)
+
+
+def test_symbols_of_the_look_up_are_those_of_the_vocabulary():
+    page = (DOCS / "lookup.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (\w+) \| `(\w+)` \|", page, re.MULTILINE)
+    assert len(rows) == 6
+    for symbol, name in rows:
+        assert SINGLE_QUANTITIES[name].symbol.split(",")[0].split()[-1] in (
+            symbol, symbol.replace("_", "")
+        )  # fmt: skip
+
+
+def test_every_source_of_uncertainty_is_explained():
+    page = (DOCS / "uncertainty.md").read_text(encoding="utf-8")
+    root = DOCS.parent / "reduction"
+    found = {
+        name
+        for folder in ("uncertainty", "pipeline")
+        for path in (root / folder).glob("*.py")
+        for name in re.findall(r'[^>]     *.*Component\("(\w+)"', path.read_text(encoding="utf-8"))
+        if ">>>" not in name
+    }
+    assert {"diameter", "lag", "splice_method"} <= found
+    part = page.partition("## Names of the sources")[2].partition("\n## ")[0]
+    told = set(re.findall(r"`(\w+)`", part))
+    assert found - {"tape"} <= told, found - told
