@@ -164,7 +164,7 @@ def source_of_tests(
     wholes = {str(one.attrs.get("test", "")) for one in own}
     one_campaign = len({str(one.attrs.get("campaign", "")) for one in own}) == 1
     pieces: list[CurvePiece] = []
-    sources = []
+    piece_sources: list[str] = []
     notes = [f"of other specimens: {', '.join(others)}"] if others else []
     for one in own:
         test = str(one.attrs.get("test", "")) if one_campaign else _id(one)
@@ -177,7 +177,7 @@ def source_of_tests(
             notes.append(f"{test} ({one.attrs.get('test_kind', 'unknown')}) has no {branch} curve")
             continue
         pieces += found
-        sources.append(_said(one))
+        piece_sources += [_said(one)] * len(found)
         place = specimens_of(one).index(specimen)
         slips = int(one["n_slips"].values[place]) if "n_slips" in one else 0
         if slips > 0:
@@ -204,7 +204,8 @@ def source_of_tests(
         rated_break_strength=_one_number(own, specimen, "rated_break_strength"),
         linear_density=_one_number(own, specimen, "linear_density"),
         wet_linear_density=_one_number(own, specimen, "wet_linear_density"),
-        sources=tuple(sources),
+        sources=tuple(dict.fromkeys(piece_sources)),
+        piece_sources=tuple(piece_sources),
         notes=tuple(notes),
         is_synthetic=any(one.attrs.get("synthetic") == "yes" for one in own),
     )

@@ -16,7 +16,7 @@ from reduction.cli.outcome import Outcome
 from reduction.errors import DataError, ReductionError
 from reduction.export.fromassembly import assembly_table
 from reduction.export.write import export_table
-from reduction.lookup.source import PieceSource, compose
+from reduction.lookup.source import PieceSource, compose, used_of
 from reduction.lookup.splices import stated_model
 from reduction.pipeline.deployed import DeployedLine, WorkingState, deploy
 from reduction.published.piecesource import published_piece_sources
@@ -82,7 +82,7 @@ def deployed_line(path: Path) -> DeployedLine:
     return DeployedLine(
         name=case.name,
         deployed=deployed,
-        source=source,
+        source=used_of(source, curve),
         curve=curve,
         splices=_splices_told(case, model),
         parts=case.parts,

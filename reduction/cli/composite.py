@@ -16,7 +16,7 @@ from reduction.export.fromcomposite import composite_table, ranges_of
 from reduction.export.write import export_table
 from reduction.lookup.composite import CompositeCurve, CompositeRule
 from reduction.lookup.pieces import PieceBranch
-from reduction.lookup.source import PieceSource, compose
+from reduction.lookup.source import PieceSource, compose, used_of
 from reduction.report.curvepage import write_composite_page
 from reduction.units import UnitSystem, display_unit
 
@@ -62,6 +62,7 @@ def compose_tests(
     rule = rule_of(precedence)
     source = piece_source(sources, specimen=specimen, branch=branch)
     curve = compose(source, rule)
+    source = used_of(source, curve)
     units = cast("UnitSystem", outcome.units)
     _show(source, curve, outcome, units)
     if out is not None and form is not None:

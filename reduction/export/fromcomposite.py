@@ -17,7 +17,7 @@ import numpy as np
 from reduction.export.product import ExportLine
 from reduction.export.table import TableColumn, ValueTable
 from reduction.lookup.composite import CompositeCurve
-from reduction.lookup.source import PieceSource
+from reduction.lookup.source import PieceSource, used_of
 from reduction.record import Bools
 
 __all__ = ["composite_table", "line_from_composite", "ranges_of"]
@@ -63,8 +63,8 @@ def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
     table : ValueTable
         For csv, json, latex, markdown and netcdf.
     """
-    numbers = ", ".join(f"{place} {name}" for place, name in enumerate(curve.piece_names, start=1))
-    piece = np.where(curve.piece >= 0, curve.piece + 1.0, np.nan)
+    source = used_of(source, curve)
+    piece = np.array([curve.piece_words[place] if place >= 0 else "" for place in curve.piece])
 
     def below(flags: Bools) -> Bools:
         return np.concatenate([[False], flags])
@@ -78,7 +78,7 @@ def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
                 "tension_standard_uncertainty", "N", "of the pieces, of what is between them, and "
                 "of what making the curve rise has moved", np.array(curve.standard_uncertainty),
             ),
-            TableColumn("piece", "1", f"with the greatest weight: {numbers}", piece),
+            TableColumn("piece", "", "with the greatest weight; none in a gap", piece),
             TableColumn(
                 "is_join", "", "from the node before: more than one piece has a say",
                 below(curve.is_join),
@@ -90,9 +90,15 @@ def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
                 "is_moved", "", "from the node before: not the mean of the pieces, which falls or "
                 "is too soft nearby", below(curve.is_moved),
             ),
+            TableColumn(
+                "monotone_change", "N", "what making the curve rise has added to the mean of the "
+                "pieces", np.array(curve.monotone_change),
+            ),
         ),
         sources=source.sources,
-        notes=(*curve.notes, *source.notes),
+        notes=(
+            *([f"DOUBTFUL: {curve.doubt}"] if curve.doubt else []), *curve.notes, *source.notes,
+        ),
         is_synthetic=source.is_synthetic,
     )  # fmt: skip
 
@@ -123,6 +129,7 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
     -----
     Tested from the first node of a piece to the last; a gap between is in the notes ([1]_).
     """
+    source = used_of(source, curve)
     given = {
         name: value
         for name, value in stated.items()
@@ -149,6 +156,7 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
             *(f"{name.replace('_', ' ')}: stated at the export" for name in given),
         ),
         notes=(
+            *([f"DOUBTFUL: {curve.doubt}"] if curve.doubt else []),
             *curve.notes,
             *([f"more than one piece has a say at strain {', '.join(joins)}"] if joins else []),
             *source.notes,

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from reduction import __version__
 from reduction.archive.whole import whole_file
@@ -28,12 +29,12 @@ __all__ = ["TableColumn", "ValueTable", "curve_table", "table_text_of", "write_n
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column: name, SI unit (empty where it has none), meaning, and values (n_rows,)."""
+    """A column: name, SI unit (empty where it has none), meaning, and values or words (n_rows,)."""
 
     name: str
     unit: str
     meaning: str
-    values: Floats | Bools
+    values: Floats | Bools | NDArray[np.str_]
 
 
 @dataclass(frozen=True)
@@ -77,12 +78,24 @@ def _shown(table: ValueTable, units: UnitSystem) -> tuple[list[str], list[list[s
     for column in table.columns:
         unit, factor = display_unit(column.unit, units) if column.unit else ("", 1.0)
         heads.append(f"{column.name} [{unit}]" if unit else column.name)
-        columns.append(
-            [("yes" if value else "no") for value in column.values]
-            if column.values.dtype == np.bool_
-            else [number(factor * value) if math.isfinite(value) else "" for value in column.values]
-        )
+        columns.append([_cell(value, factor) for value in column.values.tolist()])
     return heads, [list(row) for row in zip(*columns, strict=True)]
+
+
+def _cell(value: float | bool | str, factor: float) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return number(factor * value) if math.isfinite(value) else ""
+
+
+def _plain(value: float | bool | str, factor: float) -> float | bool | str | None:
+    if isinstance(value, str):
+        return value or None
+    if isinstance(value, bool):
+        return value
+    return factor * value if math.isfinite(value) else None
 
 
 def _said(table: ValueTable) -> list[str]:
@@ -103,7 +116,8 @@ def table_text_of(table: ValueTable, form: str, *, units: UnitSystem = "si") -> 
     table : ValueTable
         What is written.
     form : {"csv", "json", "latex", "markdown"}
-        CSV has the sources in a column, since it has no place for a remark.
+        CSV has title, sources and notes in two columns, since it has no place for a remark: in the
+        first row, and empty below, where a reader of tables has nothing.
     units : {"si", "us"}
         What is shown.
 
@@ -131,7 +145,9 @@ def _csv(table: ValueTable, units: UnitSystem) -> str:
     writer = csv.writer(text, lineterminator="\r\n")
     writer.writerow([*heads, "what", "source"])
     said = [table.title, "; ".join(_said(table))]
-    writer.writerows([*row, *said] for row in rows)
+    for row in rows:
+        writer.writerow([*row, *said])
+        said = ["", ""]
     return text.getvalue()
 
 
@@ -145,15 +161,11 @@ def _json(table: ValueTable, units: UnitSystem) -> str:
         "values": {},
     }
     shown: dict[str, str] = {}
-    values: dict[str, list[float | bool | None]] = {}
+    values: dict[str, list[float | bool | str | None]] = {}
     for column in table.columns:
         unit, factor = display_unit(column.unit, units) if column.unit else ("", 1.0)
         shown[column.name] = unit
-        values[column.name] = [
-            bool(value) if column.values.dtype == np.bool_
-            else float(factor * value) if math.isfinite(value) else None
-            for value in column.values
-        ]  # fmt: skip
+        values[column.name] = [_plain(value, factor) for value in column.values.tolist()]
     return json.dumps(document | {"units": shown, "values": values}, indent=1) + "\n"
 
 
@@ -219,7 +231,7 @@ def write_netcdf(table: ValueTable, path: Path) -> None:
         about: dict[str, object] = {"long_name": column.meaning}
         if is_flag:
             about |= {"flag_values": np.array([0, 1], np.int8), "flag_meanings": "no yes"}
-        else:
+        elif column.values.dtype.kind != "U":
             about["units"] = column.unit
         variables[column.name] = (("point",), values, about)
     dataset = xr.Dataset(
@@ -235,8 +247,9 @@ def write_netcdf(table: ValueTable, path: Path) -> None:
         },
     )
     encoding = {
-        name: {"_FillValue": None if array.dtype == np.int8 else np.nan}
+        name: {"_FillValue": np.nan if array.dtype == np.float64 else None}
         for name, array in dataset.variables.items()
+        if array.dtype.kind != "U"
     }
     try:
         with whole_file(path) as part:

@@ -79,6 +79,7 @@ def published_piece_sources() -> dict[str, PieceSource]:
                 *(one.source for one, _ in tests),
                 f"errata that touch them: {', '.join(errata)}",
             ),
+            piece_sources=tuple(one.source for one, _ in tests),
             notes=(
                 *dict.fromkeys(note for one in windows for note in one.notes),
                 "loads are printed to the pound: that is the uncertainty of a piece",

@@ -266,3 +266,13 @@ def test_a_curve_far_from_a_piece_says_so_in_the_first_line(command):
     doubt = composite(command, "rubber-tether-used")["doubt"]
     assert first.endswith(f"; DOUBTFUL: {doubt}")
     assert float(re.match(r"up to ([\d.]+) standard uncertainties", doubt)[1]) > 2
+
+
+def test_a_table_names_pieces_in_words_and_its_notes_once(command, tmp_path):
+    path = tmp_path / "u.csv"
+    assert command("composite", "rubber-tether-used", "--out", path).returncode == 0
+    with path.open(newline="", encoding="utf-8") as lines:
+        first, *others = csv.DictReader(lines)
+    assert {"T-1 cycles", "T-6 cycles"} < {row["piece"] for row in others}
+    assert "a straight line from zero" in first["source"]
+    assert {row["source"] for row in others} == {""}

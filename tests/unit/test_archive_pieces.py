@@ -6,6 +6,8 @@ import xarray as xr
 
 from reduction.archive.pieces import pieces_of_test, source_of_tests, specimens_of
 from reduction.errors import DataError, SettingsError
+from reduction.lookup.composite import CompositeRule
+from reduction.lookup.source import compose, used_of
 
 BINS = np.array([0.5, 0.6, 0.7, 0.8])
 COEFFICIENTS = {
@@ -215,3 +217,16 @@ def test_mass_a_length_is_that_of_all_its_tests():
 def test_tests_without_a_curve_are_refused():
     with pytest.raises(DataError, match="no test of 'new' gives a mean curve.*held .relaxation"):
         source_of_tests([hold()], "new", branch="mean")
+
+
+def test_only_tests_with_a_piece_in_the_curve_are_its_sources():
+    cycles = cyclic("T-2", 3)
+    found = source_of_tests([pull(), cyclic(), cycles], "new", branch="mean")
+    curve = compose(found, CompositeRule(precedence=("static",)))
+    used = used_of(found, curve)
+    assert used.sources == ("archive c/Q",)
+    assert used.notes[-1] == "of other kinds, and not used: T-1, T-2"
+    assert used.pieces == found.pieces
+    assert used_of(used, curve) is used
+    whole = compose(found, CompositeRule())
+    assert used_of(found, whole) is found

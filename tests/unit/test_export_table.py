@@ -1,3 +1,5 @@
+import csv
+import io
 import json
 
 import numpy as np
@@ -30,7 +32,8 @@ TABLE = ValueTable(
 def test_csv_has_units_sources_and_empty_cells():
     rows = table_text_of(TABLE, "csv").split("\r\n")
     assert rows[0] == "tension [N],apparent_spring_constant [N],is_tested,what,source"
-    assert rows[2].startswith("4.4482216152605,,yes,K_ap of 1/2 in line & more,")
+    assert rows[2] == "4.4482216152605,,yes,,"
+    assert rows[1].startswith("0,1,no,K_ap of 1/2 in line & more,")
     assert "Synthetic" in rows[1]
     assert "CG-D-39-80, Table 3" in rows[1]
 
@@ -87,3 +90,25 @@ def test_faults_are_named(tmp_path):
     (tmp_path / "folder.nc").mkdir()
     with pytest.raises(ArchiveError, match="cannot be written"):
         write_netcdf(TABLE, tmp_path / "folder.nc")
+
+
+def test_what_a_table_is_stands_once_in_the_first_row():
+    text = table_text_of(TABLE, "csv")
+    first, second = csv.DictReader(io.StringIO(text, newline=""))
+    assert (first["tension [N]"], second["tension [N]"]) == ("0", "4.4482216152605")
+    assert "B_7 is open" in first["source"] and (second["what"], second["source"]) == ("", "")
+    assert text.count("B_7 is open") == 1
+
+
+def test_a_column_of_words_is_words_everywhere(tmp_path):
+    words = TableColumn("piece", "", "which test", np.array(["", "T-6 cycles"]))
+    load = TableColumn("tension", "N", "tension", np.array([0.0, 1.0]))
+    table = ValueTable("t", (load, words), sources=("s",))
+    assert table_text_of(table, "csv").split("\r\n")[2] == "1,T-6 cycles,,"
+    assert json.loads(table_text_of(table, "json"))["values"]["piece"] == [None, "T-6 cycles"]
+    assert "| 1 | T-6 cycles |" in table_text_of(table, "markdown")
+    assert r"1 & T-6 cycles \\" in table_text_of(table, "latex")
+    write_netcdf(table, tmp_path / "t.nc")
+    with xr.open_dataset(tmp_path / "t.nc") as found:
+        assert found["piece"].values.tolist() == ["", "T-6 cycles"]
+        assert "units" not in found["piece"].attrs
