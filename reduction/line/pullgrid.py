@@ -49,8 +49,10 @@ def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
     --------
     >>> from reduction.line.pull import fit_pull
     >>> load = np.linspace(0, 2000.0, 400)
-    >>> print(tension_grid([fit_pull(np.arange(400.0), load / 4e4, load), None])[:3].round(3))
-    [  0.  50. 100.]
+    >>> pull = fit_pull(np.arange(400.0), load / 4e4, load)
+    >>> grid = tension_grid([pull, None])
+    >>> print(grid.size, grid[0] == pull.tension_low, grid[-1] == pull.tension_high)
+    41 True True
     """
     given = [one for one in pulls if one is not None]
     if not given:
