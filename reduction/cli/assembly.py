@@ -155,7 +155,8 @@ def _show(line: DeployedLine, outcome: Outcome, system: UnitSystem) -> None:
     equal = line.is_equal
     table = table_of(
         f"length [{length}]", f"tension [{force}]", f"standard uncertainty [{force}]",
-        f"EA [{force}]", f"a tether [{force}]" if equal else f"greatest, least [{force}]",
+        f"EA, +- 5 % [{force}]", f"EA, local [{force}]",
+        f"a tether [{force}]" if equal else f"greatest, least [{force}]",
         "its strain [%]" if equal else "strains [%]", "remark", texts=0,
     )  # fmt: skip
     tension = assembly.tension
@@ -166,10 +167,19 @@ def _show(line: DeployedLine, outcome: Outcome, system: UnitSystem) -> None:
             short(per_metre * float(assembly.total_length[place])),
             short(per_newton * float(tension[place])),
             short(per_newton * float(assembly.standard_uncertainty[place]), 3),
+            short(per_newton * float(deployed.secant_spring_constant[place]), 4),
             short(per_newton * float(deployed.apparent_spring_constant[place]), 4),
             _pair(per_newton * load, equal=equal),
             _pair(100 * strain, equal=equal),
-            "" if assembly.is_tested[place] else "not tested",
+            ", ".join(
+                word
+                for word, flag in (
+                    ("not tested", not assembly.is_tested[place]),
+                    ("join", assembly.is_join[place]),
+                    ("moved: local EA is the rule's", assembly.is_moved[place]),
+                )
+                if flag
+            ),
         )
     outcome.show(table)
     for number, state in enumerate(deployed.working, start=1):
@@ -196,10 +206,17 @@ def _show_working(number: int, state: WorkingState, outcome: Outcome, system: Un
         f"+- {per_newton * state.standard_uncertainty:.3g} at "
         f"{per_metre * float(point.total_length):.5g} {length}, strain of a tether "
         f"{100 * float(state.strain.max()):.4g} %, EA "
-        f"{per_newton * float(point.apparent_spring_constant):.4g} {force}"
+        f"{per_newton * state.secant_spring_constant:.4g} {force} over "
     )
-    if state.level.tension_amplitude:
+    if not state.level.tension_amplitude:
+        rule = " by the rule of rising, DOUBTFUL" if state.is_moved else ""
         told += (
+            f"+- 5 % of the length, locally "
+            f"{per_newton * float(point.apparent_spring_constant):.4g} {force}{rule}"
+        )
+    else:
+        told += (
+            "the cycle"
             f"; cycles {per_newton * float(point.minimum_tension):.4g} to "
             f"{per_newton * float(point.peak_tension):.4g} {force}, "
             f"{per_metre * float(point.minimum_length):.5g} to "
@@ -232,10 +249,13 @@ def _document(line: DeployedLine) -> dict[str, Any]:
         "tension_standard_uncertainty": plain(assembly.standard_uncertainty),
         "strain": plain(deployed.strain),
         "apparent_spring_constant": plain(deployed.apparent_spring_constant),
+        "secant_spring_constant": plain(deployed.secant_spring_constant),
         "tether_length": plain(assembly.tether_length),
         "tether_tension": plain(assembly.tether_tension),
         "tether_strain": plain(assembly.tether_strain),
         "is_tested": plain(assembly.is_tested),
+        "is_join": plain(assembly.is_join),
+        "is_moved": plain(assembly.is_moved),
         "units": {
             **dict.fromkeys(
                 ("free_length", "slack_length", "total_length", "tether_length", "peak_length",
@@ -243,6 +263,7 @@ def _document(line: DeployedLine) -> dict[str, Any]:
             ),
             **dict.fromkeys(
                 ("tension", "tension_standard_uncertainty", "apparent_spring_constant",
+                 "secant_spring_constant",
                  "tether_tension", "mean_tension", "peak_tension", "minimum_tension",
                  "peak_tether_tension", "minimum_tether_tension", "greatest_load", "least_load",
                  "tension_at_slack"), "N",
@@ -274,6 +295,8 @@ def _state_document(state: WorkingState) -> dict[str, Any]:
         "given": state.level.quantity,
         **{name: plain(getattr(state.point, name)) for name in names},
         "tension_standard_uncertainty": state.standard_uncertainty,
+        "secant_spring_constant": state.secant_spring_constant,
+        "is_moved": state.is_moved,
         "tether_strain": plain(state.strain),
         "sharing": sharing,
     }

@@ -50,6 +50,10 @@ def assembly_table(line: DeployedLine) -> ValueTable:
             "apparent_spring_constant", "N", "EA, tangent, over that length",
             np.array(deployed.apparent_spring_constant),
         ),
+        TableColumn(
+            "secant_spring_constant", "N", "EA over 5 % of the length there to each side",
+            np.array(deployed.secant_spring_constant),
+        ),
         TableColumn("tether_length", "m", "thimble to thimble", np.array(assembly.tether_length)),
     ]  # fmt: skip
     several = [(1, "")] if line.is_equal else [
@@ -73,6 +77,13 @@ def assembly_table(line: DeployedLine) -> ValueTable:
             np.array(assembly.is_tested),
         )
     )  # fmt: skip
+    columns += [
+        TableColumn("is_join", "", "pieces of a curve hand over", np.array(assembly.is_join)),
+        TableColumn(
+            "is_moved", "", "a curve was made to rise: the tangent is that of the rule",
+            np.array(assembly.is_moved),
+        ),
+    ]  # fmt: skip
     return ValueTable(
         title=f"{line.name}: {line.words}",
         columns=tuple(columns),

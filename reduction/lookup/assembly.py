@@ -116,6 +116,9 @@ class AssemblyCurve:
         Length of the assembly below which each tether is slack. [m]
     is_tested : ndarray of bool
         Every tether is at a strain that a piece of its curve reaches.
+    is_join, is_moved : ndarray of bool
+        A tether is where pieces of its curve hand over; where the rule of rising has moved it, so
+        that its slope is that of the rule and of no piece.
     """
 
     total_length: Floats
@@ -126,6 +129,8 @@ class AssemblyCurve:
     tether_strain: Floats
     slack_length: Floats
     is_tested: Bools
+    is_join: Bools
+    is_moved: Bools
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -284,9 +289,10 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
     load = np.stack([np.interp(nodes, length, force, left=0.0) for length, force, *_ in own])
     stretch = np.stack([np.interp(nodes, length, strain, left=0.0) for length, _, strain, _ in own])
     spread = sum(np.interp(nodes, length, doubt, left=0.0) for length, *_, doubt in own)
-    tested = np.all(
-        [_is_tested(one.curve, row) for one, row in zip(tethers, stretch, strict=True)], axis=0
-    )
+    pairs = list(zip(tethers, stretch, strict=True))
+    tested = ~np.any([_has(one.curve, one.curve.is_gap, row) for one, row in pairs], axis=0)
+    joined = np.any([_has(one.curve, one.curve.is_join, row) for one, row in pairs], axis=0)
+    moved = np.any([_has(one.curve, one.curve.is_moved, row) for one, row in pairs], axis=0)
     tension = load.sum(axis=0)
     rises = np.concatenate([[True], np.diff(tension) > 0])
     more = np.sum([part.length_at(tension) for part in parts], axis=0) if parts else 0.0
@@ -308,6 +314,8 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
         tether_strain=stretch[:, kept],
         slack_length=slack,
         is_tested=tested[kept],
+        is_join=joined[kept],
+        is_moved=moved[kept],
     )
 
 
@@ -334,7 +342,7 @@ def _lengths(tether: Tether) -> tuple[Floats, Floats, Floats, Floats]:
     return length, force, strain, of_curve * share
 
 
-def _is_tested(curve: CompositeCurve, strain: Floats) -> Bools:
-    """Whether a strain is in an interval that a piece reaches."""
+def _has(curve: CompositeCurve, flags: Bools, strain: Floats) -> Bools:
+    """Whether a strain is in an interval with a flag."""
     place = np.searchsorted(curve.strain, strain, side="left") - 1
-    return ~curve.is_gap[np.clip(place, 0, curve.is_gap.size - 1)]
+    return flags[np.clip(place, 0, flags.size - 1)]

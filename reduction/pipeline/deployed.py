@@ -26,6 +26,9 @@ from reduction.strain.model import StrainModel
 
 __all__ = ["DeployedAssembly", "DeployedLine", "WorkingLevel", "WorkingState", "deploy"]
 
+_SPAN = 0.05
+"""Share of a length to each side over which a secant is taken where no amplitude is stated."""
+
 
 @dataclass(frozen=True)
 class WorkingLevel:
@@ -44,14 +47,18 @@ class WorkingState:
     """An assembly at one working level.
 
     ``strain`` is that of the free length of each tether, shape (n_tethers,) [1];
-    ``standard_uncertainty`` that of the tension at this length [N]; ``sharing`` is there where
-    the lengths have a tolerance.
+    ``standard_uncertainty`` that of the tension at this length [N]; ``secant_spring_constant`` is
+    EA over the cycle, or over 5 % of the length to each side where it has no amplitude [N];
+    ``is_moved`` is of the tangent there; ``sharing`` is there where the lengths have a
+    tolerance.
     """
 
     level: WorkingLevel
     point: WorkingPoint
     strain: Floats
     standard_uncertainty: float
+    secant_spring_constant: float
+    is_moved: bool
     sharing: LoadSharing | None
 
     def __post_init__(self) -> None:
@@ -71,6 +78,8 @@ class DeployedAssembly:
         Of the assembly: length over that at which it goes slack, less one. [1]
     apparent_spring_constant : ndarray
         EA, tangent: slope of tension on that strain. [N]
+    secant_spring_constant : ndarray
+        EA over 5 % of the length that the assembly has there, to each side. [N]
     free_length : tuple of float
         Of each tether, relaxed; NaN where its strain model knows none. [m]
     working : tuple of WorkingState
@@ -82,6 +91,7 @@ class DeployedAssembly:
     assembly: AssemblyCurve
     strain: Floats
     apparent_spring_constant: Floats
+    secant_spring_constant: Floats
     free_length: tuple[float, ...]
     working: tuple[WorkingState, ...]
     notes: tuple[str, ...]
@@ -185,10 +195,19 @@ def deploy(
         assembly=assembly,
         strain=assembly.total_length / slack - 1,
         apparent_spring_constant=slack * np.gradient(assembly.tension, assembly.total_length),
+        secant_spring_constant=_secant(assembly, assembly.total_length),
         free_length=lengths,
         working=tuple(states),
         notes=_notes(assembly, model),
     )
+
+
+def _secant(assembly: AssemblyCurve, length: Floats) -> Floats:
+    """EA over a span about a length, cut off at the ends of the curve. [N]."""
+    low = np.maximum((1 - _SPAN) * length, assembly.total_length[0])
+    high = np.minimum((1 + _SPAN) * length, assembly.total_length[-1])
+    rise = assembly.tension_at(high) - assembly.tension_at(low)
+    return np.asarray(assembly.total_length[0] * rise / (high - low))
 
 
 def _state(
@@ -223,8 +242,20 @@ def _state(
         standard_uncertainty=float(
             np.interp(at, assembly.total_length, assembly.standard_uncertainty)
         ),
+        secant_spring_constant=(
+            float(point.apparent_spring_constant)
+            if level.tension_amplitude
+            else float(_secant(assembly, np.array(at)))
+        ),
+        is_moved=bool(assembly.is_moved[_node(assembly, at)]),
         sharing=sharing,
     )
+
+
+def _node(assembly: AssemblyCurve, length: float) -> int:
+    """The node at a length, or the next one above: flags are of the way to it."""
+    place = int(np.searchsorted(assembly.total_length, length))
+    return min(place, assembly.total_length.size - 1)
 
 
 def _tension(assembly: AssemblyCurve, level: WorkingLevel) -> float:

@@ -335,3 +335,20 @@ def test_the_deck_of_an_assembly_has_its_slack_length(command, tmp_path):
     assert f"whole assembly, {float(row):.6g} m: this is the length of the line in the deck" in (
         " ".join(text.split())
     )
+
+
+def test_stiffness_where_the_curve_was_moved_is_flagged_and_has_a_secant(command):
+    path = DOCS / "new-hampshire.toml"
+    found, said = assembly(command, path), command("assembly", path, "--units", "us").stdout
+    first = next(line for line in said.splitlines() if line.startswith("working.1"))
+    point = found["working"][0]
+    assert point["is_moved"] is True
+    length, tension = np.array(found["total_length"]), found["tension"]
+    at = point["total_length"]
+    low, high = np.interp([0.95 * at, 1.05 * at], length, tension)
+    secant = length[0] * (high - low) / (0.1 * at)
+    assert point["secant_spring_constant"] == pytest.approx(secant, rel=1e-9)
+    assert f"EA {secant / LBF:.4g} lbf over +- 5 % of the length, locally " in first
+    assert "by the rule of rising, DOUBTFUL" in first
+    rows = [line for line in said.splitlines() if "moved: local EA is the rule's" in line]
+    assert rows and any("join" in row for row in rows)

@@ -82,3 +82,15 @@ def test_splices_beyond_their_marks_are_told():
 def test_a_level_that_is_none_is_named_by_its_place(level, told):
     with pytest.raises(DataError, match=told):
         deploy(CURVE, DRIVEN, n_tethers=4, levels=[LEVEL, level])
+
+
+def test_the_secant_is_over_five_percent_of_the_length_to_each_side():
+    """2 m of it at 4 m: strains 0.9 and 1.1, 418.32 and 546.48 N, so 128.16 N in 0.4 m over 2 m."""
+    model = StrainModel("T", "gauge-length", {"reference_position": 2.0, "gauge_length": 2.0})
+    found = deploy(CURVE, model, n_tethers=1, levels=[LEVEL, WorkingLevel("strain", 1.0, 50.0)])
+    still, cycled = found.working
+    assert still.secant_spring_constant == pytest.approx(640.8, rel=2e-3)
+    at = np.interp(4.0, found.assembly.total_length, found.secant_spring_constant)
+    assert at == pytest.approx(640.8, rel=2e-3)
+    assert cycled.secant_spring_constant == float(cycled.point.apparent_spring_constant)
+    assert not found.assembly.is_moved.any() and not still.is_moved
