@@ -256,9 +256,7 @@ def identify_run(
             needed="at least one cycle after it",
         )
     names = FUNDAMENTAL_INPUTS if reading == "fundamental" else AMPLITUDE_INPUTS
-    means, deviations = relative_deviations(
-        loops, names[:-1], break_in_cycles=break_in_cycles
-    )
+    means, deviations = relative_deviations(loops, names[:-1], break_in_cycles=break_in_cycles)
     values = dict(zip(names[:-1], means, strict=True))
     stated = {"quasi_static_spring_constant": u_rest}
     if reading == "fundamental":
