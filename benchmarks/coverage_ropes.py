@@ -18,7 +18,7 @@ from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
-from coverage import Found, table
+from coverage_tethers import Found, table
 from scipy import stats
 
 from reduction.archive.dataset import to_dataset

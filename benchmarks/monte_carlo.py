@@ -2,7 +2,7 @@
 
     python benchmarks/monte_carlo.py 400
 
-First the synthetic tether of `coverage.py`, every error and all noise drawn anew: what the
+First the synthetic tether of `coverage_tethers.py`, every error and all noise drawn anew: what the
 reduction states, random and shared part together, against the standard deviation of what it finds.
 Then test T-1 of `raw/tmt-synthetic`: one log, one noise, and only what samples share is drawn, with
 the standard uncertainties of its campaign; stated is the shared part.  Everything is synthetic.
@@ -21,7 +21,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from coverage import numbers_of, one_test
+from coverage_tethers import numbers_of, one_test
 
 from reduction.batch.basis import basis_of
 from reduction.batch.models import fit_strain_models

@@ -1,6 +1,6 @@
 """What is stated against what drawing gives: a whole synthetic test, reduced eighty times.
 
-The small version of `benchmarks/monte_carlo.py`, from the pieces of `benchmarks/coverage.py`.
+The small version of `benchmarks/monte_carlo.py`, from the pieces of `benchmarks/coverage_tethers.py`.
 """
 
 import importlib.util
@@ -12,7 +12,7 @@ import pytest
 
 from reduction.uncertainty.combine import combined_standard_uncertainty
 
-BENCHMARK = Path(__file__).parents[2] / "benchmarks" / "coverage.py"
+BENCHMARK = Path(__file__).parents[2] / "benchmarks" / "coverage_tethers.py"
 N_DRAWS = 80
 AGREE = 0.05
 # three standard deviations of a standard deviation of so many draws

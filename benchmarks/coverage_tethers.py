@@ -1,6 +1,6 @@
 """Does the 95 % interval hold the truth in 95 % of cases?  Synthetic tests, every error drawn.
 
-    python benchmarks/coverage.py 1000
+    python benchmarks/coverage_tethers.py 1000
 
 Each test is a tether of a law in closed form, cycled ten times.  Its load cell, crosshead,
 clocks, diameter and tape are wrong by errors that are drawn anew for each test with the standard

@@ -1,0 +1,46 @@
+"""A small run of the coverage benchmarks: errors that are drawn over the uncertainty that is stated.
+
+Interval by interval, 1,000 tests stand in docs/uncertainty.md; here the root mean square of error
+over uncertainty tells a contribution that is off by a third, its sign, or one that is missing.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+import coverage_tethers as tethers
+
+TESTS = 40
+
+
+@pytest.fixture(scope="module")
+def found():
+    return tethers.tethers(TESTS, seed=20)
+
+
+def ratio(rows):
+    value, truth, random, shared, _ = np.array([row[1:] for row in rows]).T
+    return (value - truth) / np.hypot(random, shared)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "tangent_modulus, ascending", "tangent_modulus, descending", "apparent_spring_constant",
+        "hysteresis_energy", "storage_spring_constant", "loss_spring_constant", "mean_tension",
+    ],
+)  # fmt: skip
+def test_errors_are_of_the_size_that_is_stated(found, name):
+    # 40 tests: the rms of a right uncertainty is within 1 +- 3/sqrt(80)
+    assert np.sqrt(np.mean(ratio(found[name]) ** 2)) == pytest.approx(1, abs=0.34)
+
+
+def test_shared_errors_are_most_of_what_the_energy_may_be_off_by(found):
+    shared = np.array([row[4] for row in found["hysteresis_energy"]])
+    random = np.array([row[3] for row in found["hysteresis_energy"]])
+    # a lag of 5 ms over ramps of 0.1 1/s, by 246 N and the splices' share, and 0.5 % of gain
+    assert np.median(shared) == pytest.approx(0.27, rel=0.05)
+    assert np.median(shared / random) > 5
