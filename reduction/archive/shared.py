@@ -211,5 +211,6 @@ def _combine(values: Values, name: str, rows: Floats) -> Floats:
     if key not in values:
         return np.full(np.shape(values.get(name, np.nan)), np.nan)
     random: Floats = values[key]
-    values[key] = combined_standard_uncertainty(rows, random)
+    # where nothing is known of the shared part the random one still stands
+    values[key] = combined_standard_uncertainty(np.nan_to_num(rows), random)
     return random

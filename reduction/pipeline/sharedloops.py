@@ -111,16 +111,21 @@ def of_line(
     """K_0 of the pull, whose fit all runs of one pull share, and what follows from it."""
     at = np.asarray(summary.mean_tension[index])
     constant, spread = quasi_static_spring_constant(pull, at)
+    bend = compliance_slope(pull, at)
     field = error_field(errors, model, strain=strain_at_tension(pull, at)[0], tension=at)
-    of_pull = pull_contributions(
-        field,
-        quasi_static_spring_constant=constant,
-        compliance_slope=compliance_slope(pull, at),
+    at_tension = pull_contributions(
+        field, quasi_static_spring_constant=constant, compliance_slope=bend
     )
     fit = Component("quasi_static_fit", errors.specimen)
-    of_pull = Contributions(
-        (*of_pull.component, fit), {_K_0: np.append(of_pull.values[_K_0], spread)}
-    )
+    # K_0 is read where the load cell says that the mean tension is
+    along = -(constant**2) * bend
+    rows_of = {
+        **dict(zip(of_loop.component, along * of_loop.values["mean_tension"], strict=True)),
+        fit: spread,
+    }
+    for one, row in zip(at_tension.component, at_tension.values[_K_0], strict=True):
+        rows_of[one] = rows_of.get(one, 0.0) + row
+    of_pull = Contributions(tuple(rows_of), {_K_0: np.array(list(rows_of.values()))})
     values: Mapping[str, Floats] = {
         item.name: getattr(line, item.name)[index]
         for item in fields(line)

@@ -229,3 +229,20 @@ def test_an_experiment_waits_for_runs_that_were_not_asked_for(tmp_path):
         "not fitted: 14 of its runs not reduced yet (R02, R03, R04, R05, ..)"
     )
     assert not (part.processed / "surfaces.nc").exists()
+
+
+@pytest.mark.parametrize("source", ["tension_gain", "tension_offset"])
+def test_a_load_cell_of_runs_and_pull_scales_the_line_and_leaves_its_time(run, source):
+    # both logs a quarter of a per cent high: the cubic, the mean tension at which it is read and
+    # the loops scale together; both shifted: the same tangent of the same curve
+    expected = 0.0025 if source == "tension_gain" else 0.0
+    with open_archive(run.processed / "R11.nc") as archive:
+        (row,) = np.flatnonzero(archive["uncertainty_source"].to_numpy() == source)
+        for name, wanted in (
+            ("quasi_static_spring_constant", expected),
+            ("dissipation_spring_constant", expected),
+            ("relaxation_time", 0.0),
+        ):
+            value = float(archive[f"test_{name}"].to_numpy()[0])
+            found = archive[f"test_{name}_uncertainty_contribution"].to_numpy()[row, 0]
+            assert found / value == pytest.approx(wanted, abs=1e-5), name
