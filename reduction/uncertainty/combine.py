@@ -1,4 +1,4 @@
-r"""Shared and random parts together: combined and expanded uncertainty, and shares by source.
+r"""Shared and random parts together: combined and expanded uncertainty.
 
 References
 ----------
@@ -8,20 +8,15 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
 from reduction.record import Floats
-from reduction.uncertainty.product import Component, Contributions
 
 __all__ = [
     "combined_standard_uncertainty",
     "coverage_factor",
-    "joined",
-    "shares_of",
 ]
 
 CONFIDENCE = 0.95
@@ -106,83 +101,3 @@ def coverage_factor(
         ratio = np.where(part > 0, total / part, np.inf)
         effective = np.minimum(np.asarray(degrees_of_freedom) * ratio**4, 1e9)
     return np.asarray(stats.t.ppf((1 + confidence) / 2, effective))
-
-
-def shares_of(
-    component: Sequence[Component], contribution: ArrayLike, random: float
-) -> dict[str, float]:
-    """Share of each source in the variance of one number, largest first.
-
-    Parameters
-    ----------
-    component : sequence of Component, length n_components
-        Several of one source count together.
-    contribution : array_like, shape (n_components,)
-        To the number. [any]
-    random : float
-        Its random part. [as contribution]
-
-    Returns
-    -------
-    shares : dict of str to float
-        By source, ``random`` among them; they add up to 1. [1]
-
-    Raises
-    ------
-    ValueError
-        If the lengths do not pair up.
-
-    Examples
-    --------
-    >>> shares_of([Component("tension_gain", "cell")], [3.0], 4.0)
-    {'random': 0.64, 'tension_gain': 0.36}
-    """
-    squares: dict[str, float] = {"random": float(random) ** 2}
-    for one, value in zip(component, np.asarray(contribution, dtype=np.float64), strict=True):
-        squares[one.source] = squares.get(one.source, 0.0) + float(value) ** 2
-    total = sum(squares.values())
-    if not total > 0:
-        return dict.fromkeys(squares, 0.0)
-    ordered = sorted(squares.items(), key=lambda pair: (-pair[1], pair[0]))
-    return {name: square / total for name, square in ordered}
-
-
-def joined(parts: Iterable[Contributions], name: str) -> tuple[tuple[Component, ...], list[Floats]]:
-    """Bring the contributions of several tests to one quantity onto the same components.
-
-    Parameters
-    ----------
-    parts : iterable of Contributions
-        Each with the quantity.
-    name : str
-        Of the quantity.
-
-    Returns
-    -------
-    component : tuple of Component
-        All that occur, in order.
-    rows : list of ndarray, each of shape (n_components, ...)
-        Zero where a part does not know a component. [as the quantity]
-
-    Raises
-    ------
-    KeyError
-        If a part lacks the quantity.
-
-    Examples
-    --------
-    >>> cell, tape = Component("tension_gain", "cell"), Component("strain_calibration", "new")
-    >>> one = Contributions((cell,), {"y": np.array([1.0])})
-    >>> other = Contributions((cell, tape), {"y": np.array([2.0, 3.0])})
-    >>> print(joined([one, other], "y")[1])
-    [array([0., 1.]), array([3., 2.])]
-    """
-    known = list(parts)
-    component = tuple(sorted({one for part in known for one in part.component}))
-    rows = []
-    for part in known:
-        values = part.values[name]
-        row = np.zeros((len(component), *values.shape[1:]))
-        row[[component.index(one) for one in part.component]] = values
-        rows.append(row)
-    return component, rows
