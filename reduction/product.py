@@ -92,8 +92,8 @@ class ReducedTest:
     is what a slow pull gave, None for a specimen of which it gave nothing; ``rope_step`` is
     what the test gave as a step of a rope laboratory's programme.  Uncertainties of loops, curves,
     segments, holds and trends are random (type A); those of strain, of stress and in
-    ``line_spread`` hold the shared part too.  ``contributions`` holds what errors that samples share add to curves,
-    segments and means of the test, by name of the archive, and
+    ``line_spread`` hold the shared part too.  ``contributions`` holds what errors that samples
+    share add to curves, segments and means of the test, by name of the archive, and
     ``shared_uncertainty_of_cycles`` [unit of each] the same of each cycle, all sources together;
     ``channel_lag`` is what the turns of the wave say of one of them, and corrects nothing.
     """
