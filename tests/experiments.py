@@ -4,7 +4,7 @@ import numpy as np
 
 from reduction.experiment import ExperimentResult, RunTable
 from reduction.line.single import check_single_time
-from reduction.pipeline.sharedsurfaces import with_shared_surfaces
+from reduction.pipeline.shared.surface import with_shared_surfaces
 from reduction.provenance import Origin, Source, Step
 from reduction.surface.cautions import Caution
 from reduction.surface.designs import box_behnken, plackett_burman

@@ -22,7 +22,7 @@ from reduction.ingest.source import source_of
 from reduction.notes import by_severity
 from reduction.pipeline.experiment import fit_experiment
 from reduction.pipeline.runline import LineOfRuns
-from reduction.pipeline.sharedsurfaces import with_shared_surfaces
+from reduction.pipeline.shared.surface import with_shared_surfaces
 from reduction.provenance import Origin, Source, Step
 from reduction.record import Floats
 from reduction.surface.levels import FactorLevels

@@ -23,17 +23,20 @@ from reduction.line.product import SlowPull
 from reduction.moduli.slack import slack_strain_at_unloading
 from reduction.moduli.stepwise import reduce_stepwise
 from reduction.phases.standstill import Standstills
-from reduction.pipeline.channellag import lag_of_test
 from reduction.pipeline.cyclic import parts_of_cycles
-from reduction.pipeline.linespread import with_line_spread
 from reduction.pipeline.loading import parts_of_first_loading
 from reduction.pipeline.locate import HELD, PULLED, Located
 from reduction.pipeline.plausibility import plausibility_notes
 from reduction.pipeline.programme import rope_step
 from reduction.pipeline.rope import PullConditions, parts_of_line, pull_specimens
-from reduction.pipeline.shared import contributions_of_test, shared_uncertainty_of_cycles
-from reduction.pipeline.sharedratios import with_shared_ratios
-from reduction.pipeline.sharedsteps import with_shared_steps
+from reduction.pipeline.shared.contributions import (
+    contributions_of_test,
+    shared_uncertainty_of_cycles,
+)
+from reduction.pipeline.shared.lag import lag_of_test
+from reduction.pipeline.shared.montecarlo import with_line_spread
+from reduction.pipeline.shared.ratio import with_shared_ratios
+from reduction.pipeline.shared.weights import with_shared_steps
 from reduction.pipeline.spread import strain_spread, with_stated_channels
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step

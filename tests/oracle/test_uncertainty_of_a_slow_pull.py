@@ -11,7 +11,7 @@ from reduction.line.quasistatic import (
     strain_at_break_share,
     strain_at_tension,
 )
-from reduction.pipeline.sharedpulls import of_pull
+from reduction.pipeline.shared.pulls import of_pull
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.join import merged
 from reduction.uncertainty.product import InstrumentErrors

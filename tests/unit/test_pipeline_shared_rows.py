@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from reduction.moduli.product import Ratio
-from reduction.pipeline.sharedcycles import of_slips
-from reduction.pipeline.sharedratios import of_ratios, with_shared_ratios
-from reduction.pipeline.sharedsteps import with_shared_steps
+from reduction.pipeline.shared.cycles import of_slips
+from reduction.pipeline.shared.ratio import of_ratios, with_shared_ratios
+from reduction.pipeline.shared.weights import with_shared_steps
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 from reduction.uncertainty.ratio import with_shared_interval

@@ -5,7 +5,7 @@ import pytest
 
 from reduction.archive.lag import lag_values
 from reduction.cycles.product import Cycles
-from reduction.pipeline.channellag import lag_of_test
+from reduction.pipeline.shared.lag import lag_of_test
 from reduction.record import Record
 
 TIME = np.arange(0, 118, 0.1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from reduction.moduli.product import ModulusCurves, Segments
-from reduction.pipeline.sharedloops import speed_ratio
+from reduction.pipeline.shared.loops import speed_ratio
 from reduction.product import ReducedTest
 from reduction.record import Floats
 from reduction.settings import CycleSettings

@@ -12,7 +12,7 @@ from reduction.cycles.product import Cycles, Loops
 from reduction.line.product import LineParameters, SlowPull
 from reduction.line.quasistatic import quasi_static_spring_constant, strain_at_tension
 from reduction.moduli.product import AmplitudeSummary
-from reduction.pipeline.sharedpulls import compliance_slope
+from reduction.pipeline.shared.pulls import compliance_slope
 from reduction.record import Floats
 from reduction.settings import CycleSettings
 from reduction.strain.inverse import position_by_model

@@ -15,7 +15,7 @@ from reduction.line.programme import BeddingIn, DynamicStiffness
 from reduction.line.tensile import TensilePull
 from reduction.moduli.product import PeakTrend
 from reduction.moduli.trend import FEWEST_CYCLES, slope_per_decade
-from reduction.pipeline.sharedloops import of_loops
+from reduction.pipeline.shared.loops import of_loops
 from reduction.product import ReducedTest
 from reduction.record import Floats
 from reduction.settings import CycleSettings

@@ -12,13 +12,13 @@ import numpy as np
 
 from reduction.line.product import SlowPull
 from reduction.line.pullgrid import BREAK_SHARES, tension_grid
-from reduction.pipeline.sharedcurves import of_curves, of_segments, strain_rates
-from reduction.pipeline.sharedcycles import of_cycles, of_ends, of_slips
-from reduction.pipeline.sharedholds import of_holds, of_pairs
-from reduction.pipeline.sharedloops import of_dynamic_modulus, of_line, of_loops
-from reduction.pipeline.sharedmaterial import of_elastomers, of_material
-from reduction.pipeline.sharedpulls import of_pull
-from reduction.pipeline.sharedratios import of_ratios
+from reduction.pipeline.shared.curves import of_curves, of_segments, strain_rates
+from reduction.pipeline.shared.cycles import of_cycles, of_ends, of_slips
+from reduction.pipeline.shared.holds import of_holds, of_pairs
+from reduction.pipeline.shared.loops import of_dynamic_modulus, of_line, of_loops
+from reduction.pipeline.shared.material import of_elastomers, of_material
+from reduction.pipeline.shared.pulls import of_pull
+from reduction.pipeline.shared.ratio import of_ratios
 from reduction.product import ReducedTest
 from reduction.record import Floats, areas_of
 from reduction.settings import CycleSettings

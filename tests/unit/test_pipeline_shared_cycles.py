@@ -8,7 +8,7 @@ import pytest
 from reduction.line.programme import dynamic_stiffness, summarise_bedding_in
 from reduction.line.step import RopeStep
 from reduction.moduli.trend import fit_peak_trend
-from reduction.pipeline.sharedcycles import of_cycles
+from reduction.pipeline.shared.cycles import of_cycles
 from reduction.settings import CycleSettings
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.join import merged

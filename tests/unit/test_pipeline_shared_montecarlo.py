@@ -9,7 +9,7 @@ from scipy import stats
 from reduction.archive.line import spread_of_line_values
 from reduction.cycles.product import Loops
 from reduction.line.loops import identify_run
-from reduction.pipeline.linespread import with_line_spread
+from reduction.pipeline.shared.montecarlo import with_line_spread
 from reduction.product import ReducedTest, TestDescription
 from reduction.record import Specimen
 from reduction.settings import CycleSettings
