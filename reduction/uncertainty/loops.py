@@ -22,6 +22,7 @@ References
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -51,6 +52,7 @@ def loop_contributions(
     storage_spring_constant: Floats,
     loss_spring_constant: Floats,
     waveform: Literal["triangular", "sinusoidal", "other"],
+    control: Literal["position", "load"] = "position",
     speed_ratio: Floats | float = 1.0,
 ) -> Contributions:
     """Contributions to the quantities of loops of one specimen.
@@ -73,6 +75,8 @@ def loop_contributions(
         [J m-1]
     waveform : {"triangular", "sinusoidal", "other"}
         How the control channel moves.
+    control : {"position", "load"}
+        Which channel the machine holds to its set values.
     speed_ratio : ndarray, shape (...), or float
         Speed of a ramp over that of one without a stop at its ends; a sine has none. [1]
 
@@ -92,7 +96,9 @@ def loop_contributions(
     Notes
     -----
     First order ([1]_).  The ends of the loop are where strain and tension have their extremes,
-    taken to be the same place.  Tension that is logged late turns the complex modulus back by 2 pi
+    taken to be the same place.  A specimen that is stiffer than at the stated temperature pulls
+    harder where the machine sets the position, and stretches less where it sets the load; by as
+    much, relatively, at the mean as at the amplitude.  Tension that is logged late turns the complex modulus back by 2 pi
     f lag and narrows the loop; it has no first-order effect on extremes.
 
     Examples
@@ -110,15 +116,17 @@ def loop_contributions(
     >>> print((found.values["loss_spring_constant"] / 5e3).round(3))
     [[-0.126]]
     """
+    # what the machine holds is not moved by the temperature, and the field does not know the machine
+    still = replace(errors, stiffness=0.0)
     ends = [
         error_field(
-            errors, model, strain=mean_strain + way * strain_amplitude,
+            still, model, strain=mean_strain + way * strain_amplitude,
             tension=mean_tension + way * tension_amplitude,
         )
         for way in (1, -1)
     ]  # fmt: skip
     peak, valley = ends
-    centre = error_field(errors, model, strain=mean_strain, tension=mean_tension)
+    centre = error_field(still, model, strain=mean_strain, tension=mean_tension)
     tension_half = (peak.tension - valley.tension) / 2
     strain_half = (peak.strain - valley.strain) / 2
     stretch = strain_half / strain_amplitude
@@ -139,6 +147,30 @@ def loop_contributions(
         "loss_spring_constant": lossier * loss_spring_constant,
     }
     component = peak.component
+    if errors.stiffness:
+        moved = {
+            "apparent_spring_constant": apparent_spring_constant,
+            "storage_spring_constant": storage_spring_constant,
+            "loss_spring_constant": loss_spring_constant,
+        } | (
+            {
+                "mean_strain": -mean_strain,
+                "strain_amplitude": -strain_amplitude,
+                "hysteresis_energy": -hysteresis_energy,
+            }
+            if control == "load"
+            else {
+                "mean_tension": mean_tension,
+                "tension_amplitude": tension_amplitude,
+                "peak_tension": mean_tension + tension_amplitude,
+                "valley_tension": mean_tension - tension_amplitude,
+                "hysteresis_energy": hysteresis_energy,
+            }
+        )
+        component, values = _with(
+            component, values, Component("temperature", errors.test),
+            {name: errors.stiffness * value for name, value in moved.items()},
+        )  # fmt: skip
     if errors.lag:
         turn = 2 * np.pi * frequency * errors.lag
         work = _LAG_SHAPE[waveform] * frequency * tension_amplitude * strain_amplitude
@@ -150,15 +182,25 @@ def loop_contributions(
             "storage_spring_constant": turn * loss_spring_constant * late,
             "loss_spring_constant": -turn * storage_spring_constant * late,
         }
-        component = (*component, Component("lag", errors.tension_instrument))
-        none = np.zeros(frequency.shape)
-        values = {
-            name: np.concatenate([rows, of_lag.get(name, none)[None]])
-            for name, rows in values.items()
-        }
+        component, values = _with(
+            component, values, Component("lag", errors.tension_instrument), of_lag
+        )
     loss_factor = loss_spring_constant / storage_spring_constant
     values["loss_factor"] = loss_factor * (
         values["loss_spring_constant"] / loss_spring_constant
         - values["storage_spring_constant"] / storage_spring_constant
     )
     return Contributions(component, values)
+
+
+def _with(
+    component: tuple[Component, ...],
+    values: dict[str, Floats],
+    added: Component,
+    moved: dict[str, Floats],
+) -> tuple[tuple[Component, ...], dict[str, Floats]]:
+    """Add the row of one more error; it leaves alone what it does not name."""
+    return (*component, added), {
+        name: np.concatenate([rows, moved.get(name, np.zeros(rows.shape[1:]))[None]])
+        for name, rows in values.items()
+    }

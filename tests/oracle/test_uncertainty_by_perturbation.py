@@ -239,3 +239,49 @@ def test_contributions_to_a_slow_pull_are_what_its_log_gives(source):
         field, quasi_static_spring_constant=stiffness, compliance_slope=bend
     ).values["quasi_static_spring_constant"]
     assert float(found.sum()) == pytest.approx(change, abs=0.02 * abs(change) + 1e-6 * stiffness)
+
+
+def elastic(stiffer, *, control):
+    """A loop of a material that is stiffer by a share, T = K strain + loss, under one machine."""
+    turn = np.linspace(0, 2 * np.pi, 100_001)
+    held = 100.0 + 20.0 * np.sin(turn) if control == "load" else 0.5 + 0.1 * np.sin(turn)
+    lag = 0.08  # of the strain behind the tension, in radians
+    if control == "load":
+        strain = (0.5 + 0.1 * np.sin(turn - lag)) / (1 + stiffer)
+        return strain, held
+    return held, (1 + stiffer) * (100.0 + 20.0 * np.sin(turn + lag))
+
+
+@pytest.mark.parametrize("control", ["position", "load"])
+def test_a_warmer_specimen_moves_what_the_machine_does_not_set(control):
+    share = 1e-3
+
+    def seen(stiffer):
+        strain, tension = elastic(stiffer, control=control)
+        half, force = np.ptp(strain) / 2, np.ptp(tension) / 2
+        energy = -float(np.trapezoid(strain, tension))
+        return {
+            "mean_tension": (tension.max() + tension.min()) / 2,
+            "tension_amplitude": force,
+            "peak_tension": tension.max(),
+            "valley_tension": tension.min(),
+            "mean_strain": (strain.max() + strain.min()) / 2,
+            "strain_amplitude": half,
+            "apparent_spring_constant": force / half,
+            "hysteresis_energy": abs(energy),
+            "loss_spring_constant": abs(energy) / (np.pi * half**2),
+        }
+
+    above, below, exact = seen(share), seen(-share), seen(0.0)
+    rows = loop_contributions(
+        InstrumentErrors("new", stiffness=share, test="T"), MODELS["gauge-length"],
+        frequency=np.array(FREQUENCY), waveform="sinusoidal", control=control,
+        storage_spring_constant=np.array(exact["apparent_spring_constant"]),
+        **{
+            name: np.array(exact[name])
+            for name in exact if name not in ("peak_tension", "valley_tension")
+        },
+    )  # fmt: skip
+    for name, value in exact.items():
+        wanted = (above[name] - below[name]) / 2
+        assert rows.values[name].sum(axis=0) == pytest.approx(wanted, abs=1e-5 * abs(value)), name

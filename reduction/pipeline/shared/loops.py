@@ -78,6 +78,7 @@ def of_loops(
         errors, model,
         **{name: np.asarray(getattr(loops, name)[index]) for name in _LOOP},
         waveform=settings.waveform,
+        control=settings.control,
         speed_ratio=speed_ratio(loops, index, model, cycles, settings),
     )  # fmt: skip
 
