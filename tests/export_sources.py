@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from reduction.lookup.product import LineCurve, LineSource, LineSurface
+from reduction.lookup.linesurface import LineSurface
+from reduction.lookup.product import LineCurve, LineSource
 from reduction.surface.designs import box_behnken
 from reduction.surface.terms import model_matrix, quadratic_exponents
 

@@ -9,13 +9,16 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.linecurves import curves_of_specimen
+from reduction.archive.shared import components_of
 from reduction.archive.surface_read import surface_names, surfaces_of
 from reduction.errors import ArchiveError
-from reduction.lookup.product import LineSource, LineSurface
+from reduction.lookup.linesurface import LineSurface
+from reduction.lookup.product import LineSource
 from reduction.record import Floats
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.terms import model_matrix
 from reduction.surface.variance import variance_factor
+from reduction.uncertainty.product import Component
 from reduction.vocabulary import RESPONSES, quantity
 
 __all__ = [
@@ -137,13 +140,17 @@ def _agreed(facts: Sequence[Facts]) -> dict[str, Any]:
     return agreed
 
 
-def _shared(dataset: xr.Dataset, row: int, name: str, n_terms: int) -> Floats:
-    """What each error that the runs share adds to the coefficients of a surface."""
+def _shared(
+    dataset: xr.Dataset, row: int, name: str, n_terms: int
+) -> tuple[tuple[Component, ...], Floats]:
+    """Errors that the runs share, and what each of them adds to the coefficients of a surface."""
     rows = dataset.get(f"{name}_coefficient_uncertainty_contribution")
     if rows is None:
-        return np.empty((0, n_terms))
+        return (), np.empty((0, n_terms))
     own = rows.to_numpy()[row, :, :n_terms]
-    return np.asarray(own[np.isfinite(own).all(axis=1) & own.any(axis=1)])
+    known = np.flatnonzero(np.isfinite(own).all(axis=1) & own.any(axis=1))
+    component = components_of(dataset, row)
+    return tuple(component[place] for place in known), own[known]
 
 
 def _surface(
@@ -152,7 +159,7 @@ def _surface(
     response: str,
     name: str,
     scale: Floats,
-    shared: Floats,
+    shared: tuple[tuple[Component, ...], Floats],
     plan: Floats,
 ) -> LineSurface:
     covariance = fitted.covariance_factor[fitted.pattern[index]]
@@ -161,7 +168,8 @@ def _surface(
     runs = model_matrix(_tested(reached, plan[: len(used)][used]), fitted.exponents)
     n_terms = len(fitted.exponents)
     notes = [] if name == response else [f"from the surface of {name}, brought back"]
-    if not shared.size:
+    component, rows = shared
+    if not rows.size:
         notes.append(
             "the intervals are of the scatter of the runs: of what all runs share, as the load "
             "cell, nothing is stated"
@@ -181,7 +189,8 @@ def _surface(
             np.max(variance_factor(runs, covariance[:n_terms, :n_terms]), initial=0.0)
         ),
         exponent=float(fitted.transform_exponent[index]),
-        contribution=shared,
+        component=component,
+        contribution=rows,
         notes=tuple(notes),
     )
 

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from reduction.errors import SettingsError
 from reduction.lookup.overcurve import values_of_curve
 from reduction.lookup.oversurface import values_of_surface
+from reduction.lookup.parts import End, own_half_width, shared_half_width, shared_of
 from reduction.lookup.product import DesignValues, LineCurve, LineSource
 from reduction.record import Floats
 from reduction.vocabulary import quantity as quantity_of
@@ -152,25 +153,26 @@ def _dashpot(
     extrapolate: Literal["refuse", "flag"],
     levels: Mapping[str, ArrayLike],
 ) -> DesignValues:
-    """N = K_1 tau, whose two surfaces are of the same runs and taken as independent."""
+    """N = K_1 tau: what both share by its sign, what is of each alone as independent."""
     spring, time = (
         look_up(line, name, branch=None, extrapolate=extrapolate, **levels)
         for name in ("dissipation_spring_constant", "relaxation_time")
     )
     value = spring.value * time.value
+    shared = shared_of({"spring": spring, "time": time})
+    rows = shared.values["spring"] * time.value + shared.values["time"] * spring.value
 
-    def half(end: str) -> Floats:
-        parts = (
-            (getattr(one, end) - one.value) * other.value
-            for one, other in ((spring, time), (time, spring))
-        )
-        return np.asarray(np.hypot(*parts))
+    def half(end: End) -> Floats:
+        own = (own_half_width(spring, end) * time.value, own_half_width(time, end) * spring.value)
+        return np.asarray(np.sqrt(np.square(own).sum(axis=0) + shared_half_width(rows) ** 2))
 
     return replace(
         spring,
         quantity=_DASHPOT,
         unit=quantity_of(_DASHPOT).unit,
         value=value,
+        component=shared.component,
+        contribution=rows,
         low=value - half("low"),
         high=value + half("high"),
         surface_low=value - half("surface_low"),
@@ -179,7 +181,8 @@ def _dashpot(
         notes=tuple(
             dict.fromkeys(
                 (
-                    "N = K_1 tau; the intervals take the scatter of the two as independent",
+                    "N = K_1 tau; the intervals take the scatter of the two as independent, and "
+                    "what the runs share as it is",
                     *spring.notes,
                     *time.notes,
                 )

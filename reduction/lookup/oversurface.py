@@ -14,8 +14,9 @@ from dataclasses import replace
 import numpy as np
 
 from reduction.errors import DataError, SettingsError
+from reduction.lookup.linesurface import LineSurface
 from reduction.lookup.loads import loads_of_line
-from reduction.lookup.product import DesignValues, LineSource, LineSurface
+from reduction.lookup.product import DesignValues, LineSource
 from reduction.lookup.scatter import interval_between_lines
 from reduction.lookup.surface import evaluate_surface
 from reduction.lookup.told import design_values
@@ -127,6 +128,8 @@ def values_of_surface(
         inside=inside,
         untested=inside & untested,
         words=(_RUN, _SURFACE) if has_interval else ("", ""),
+        component=surface.component,
+        contribution=points.contribution.reshape(len(surface.component), *shape),
         value=value,
         low=low,
         high=high,

@@ -16,10 +16,11 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.errors import DataError
-from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.lookup.linesurface import LineSurface
+from reduction.record import Bools, Floats, freeze_arrays
+from reduction.uncertainty.product import Component
 
-__all__ = ["DesignValues", "LineCurve", "LineSource", "LineSurface"]
+__all__ = ["DesignValues", "LineCurve", "LineSource"]
 
 _ROPE_RULE = (
     "peak at most 60 % of the break strength where the minimum stays at 3 % or above, 30 % where "
@@ -27,89 +28,6 @@ _ROPE_RULE = (
 )
 _OF_ROPE = " (CG-D-39-80, sec. 3.4, 5.0)"
 _TETHER_RULE = "a rubber tether must not go slack (WHOI-2005-10, sec. 2.3.2)"
-
-
-@dataclass(frozen=True)
-class LineSurface:
-    """A quadratic surface of one quantity over coded factors.
-
-    Parameters
-    ----------
-    quantity : str
-        Of the vocabulary.
-    coefficient : ndarray, shape (n_terms,)
-        Coded units, on the scale of ``exponent``. [unit of the quantity]
-    exponents : ndarray of int, shape (n_terms, n_factors)
-        Power of each factor in each term.
-    low, high : ndarray, shape (n_factors,)
-        Levels that are -1 and +1. [SI unit of each factor]
-    covariance_factor : ndarray, shape (n_terms, n_terms)
-        Covariance of the coefficients over sigma squared. [1]
-    sigma : float
-        Standard deviation of a run about the surface; NaN where not known. [as coefficient]
-    degrees_of_freedom : float
-        Of sigma. [1]
-    greatest_leverage : float
-        Of any run: where a point has more, nothing was tested. [1]
-    exponent : float
-        Of Box and Cox; 1 where the quantity was fitted as it is, 0 for its logarithm. [1]
-    contribution : ndarray, shape (n_components, n_terms)
-        What each error that the runs share adds to the coefficients, signed; none where nothing
-        is known of any. [as coefficient]
-    alternatives : ndarray, shape (n_alternatives, n_terms)
-        Other coefficients that may be the right ones, where that is open: an interval spans
-        them all. [as coefficient]
-    alternative_boxes : tuple of (low, high)
-        Other levels that may be the right ones, as ``low`` and ``high``: an interval spans those
-        too. [SI unit of each factor]
-    rounding : ndarray, shape (n_factors,)
-        Half the last digit of the levels as printed, within which a point is inside; empty where
-        they are exact. [SI unit of each factor]
-    line_scatter : float
-        Standard deviation between lines of the kind over their mean; NaN where not known. [1]
-    n_lines : float
-        That the surface is of; NaN where not known. [1]
-    errata : tuple of str
-        Ids that touch it.
-    notes : tuple of str
-        What is open, what fails, what else to know.
-    """
-
-    quantity: str
-    coefficient: Floats
-    exponents: Integers
-    low: Floats
-    high: Floats
-    covariance_factor: Floats
-    sigma: float
-    degrees_of_freedom: float
-    greatest_leverage: float
-    exponent: float = 1.0
-    contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
-    alternatives: Floats = field(default_factory=lambda: np.empty((0, 0)))
-    alternative_boxes: tuple[tuple[Floats, Floats], ...] = ()
-    rounding: Floats = field(default_factory=lambda: np.empty(0))
-    line_scatter: float = float("nan")
-    n_lines: float = float("nan")
-    errata: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Check that terms and factors pair up, and make the arrays read-only."""
-        freeze_arrays(self)
-        n_terms, n_factors = self.exponents.shape
-        shapes = {
-            "coefficient": (n_terms,),
-            "low": (n_factors,),
-            "high": (n_factors,),
-            "covariance_factor": (n_terms, n_terms),
-        } | ({"rounding": (n_factors,)} if self.rounding.size else {})
-        for name, shape in shapes.items():
-            found = getattr(self, name).shape
-            if found != shape:
-                raise DataError(
-                    f"{name} does not fit the surface", found=str(found), needed=str(shape)
-                )
 
 
 @dataclass(frozen=True)
@@ -133,6 +51,10 @@ class LineCurve:
         Of the uncertainty; empty where they are many, or not known. [1]
     spread_of : str
         What the uncertainty is of, in words: there is none between tests in it.
+    component : tuple of Component, length n_components
+        Errors that the curve shares with others; none where nothing is known of any.
+    contribution : ndarray, shape (n_components, n_points)
+        What each of them adds to the value at the points, signed; in the uncertainty too. [SI]
     gaps : ndarray, shape (n_gaps, 2)
         Ends between which nothing was measured; they are inside, what is between is not. [SI]
     range_note : str
@@ -155,6 +77,8 @@ class LineCurve:
     standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     degrees_of_freedom: Floats = field(default_factory=lambda: np.empty(0))
     spread_of: str = ""
+    component: tuple[Component, ...] = ()
+    contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
     gaps: Floats = field(default_factory=lambda: np.empty((0, 2)))
     range_note: str = ""
     branch: Literal["", "ascending", "descending"] = ""
@@ -296,6 +220,10 @@ class DesignValues:
         What is known against them.
     branch : {"", "ascending", "descending"}
         Of a cycle, where the quantity differs.
+    component : tuple of Component, length n_components
+        Errors that the values share with others; none where nothing is known of any.
+    contribution : ndarray, shape (n_components, ...)
+        What each of them adds to the value, signed; in the intervals too. [unit]
     interval_of, surface_interval_of : str
         What ``low`` and ``high``, and ``surface_low`` and ``surface_high``, are of, in words;
         empty where there is no such interval.
@@ -327,6 +255,8 @@ class DesignValues:
     errata: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     branch: Literal["", "ascending", "descending"] = ""
+    component: tuple[Component, ...] = ()
+    contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
     interval_of: str = ""
     surface_interval_of: str = ""
 

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
 from reduction.errors import DataError
-from reduction.lookup.product import LineSurface
+from reduction.lookup.linesurface import LineSurface
 from reduction.record import Bools, Floats, freeze_arrays
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import box_behnken
@@ -45,6 +45,8 @@ class SurfacePoints:
 
     ``low`` and ``high`` hold one more run there with 95 %, ``surface_low`` and
     ``surface_high`` the surface itself; NaN where sigma is not known. [unit of the quantity]
+    ``contribution``, of shape (n_components, n_points), is what each error that the runs share adds
+    to the value. [unit of the quantity]
     """
 
     value: Floats
@@ -53,6 +55,7 @@ class SurfacePoints:
     surface_low: Floats
     surface_high: Floats
     leverage: Floats
+    contribution: Floats
     is_inside: Bools
 
     def __post_init__(self) -> None:
@@ -106,6 +109,7 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
     size = given.shape[0]
     names = ("value", "low", "high", "surface_low", "surface_high", "leverage")
     out = {name: np.empty(size) for name in names}
+    moved = np.empty((surface.contribution.shape[0], size))
     inside = np.empty(size, dtype=bool)
     factor = _t_factor(surface)
     # a level in round shares of a strength may lie beyond the one that is printed in whole units
@@ -120,7 +124,9 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
         half, own = factor * np.sqrt(1 + leverage), factor * np.sqrt(leverage)
         if surface.contribution.size:
             # one error of all runs moves the whole surface, and the next run with it
-            shared = _NORMAL * np.sqrt(np.sum((terms @ surface.contribution.T) ** 2, axis=1))
+            rows = surface.contribution @ terms.T
+            shared = _NORMAL * np.sqrt(np.sum(rows**2, axis=0))
+            moved[:, block] = rows
             half, own = np.hypot(half, shared), np.hypot(own, shared)
         for name, values in (
             ("value", centre),
@@ -135,9 +141,12 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
 
     run_blocks(fill, [slice(start, start + _BLOCK) for start in range(0, size, _BLOCK)])
     if surface.exponent != 1:
+        # of one standard uncertainty to either side: the slope there, to the second order
+        ends = [back_transform(out["value"] + side * moved, surface.exponent) for side in (1, -1)]
+        moved = (ends[0] - ends[1]) / 2
         for name in ("value", "low", "high", "surface_low", "surface_high"):
             out[name] = back_transform(out[name], surface.exponent)
-    return SurfacePoints(**out, is_inside=inside)
+    return SurfacePoints(**out, contribution=moved, is_inside=inside)
 
 
 def _t_factor(surface: LineSurface) -> float:

@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from reduction.lookup.linesurface import LineSurface
 from reduction.lookup.loads import CycleLoads
-from reduction.lookup.product import DesignValues, LineCurve, LineSource, LineSurface
+from reduction.lookup.product import DesignValues, LineCurve, LineSource
 from reduction.record import Bools, Floats
+from reduction.uncertainty.product import Component
 from reduction.vocabulary import quantity as quantity_of
 
 __all__ = ["design_values"]
@@ -27,6 +29,7 @@ def design_values(
     untested: Bools,
     words: tuple[str, str],
     more: tuple[str, ...] = (),
+    component: tuple[Component, ...] = (),
     **numbers: Floats,
 ) -> DesignValues:
     """Put a look-up together.
@@ -45,8 +48,10 @@ def design_values(
         What ``low`` and ``high``, and what ``surface_low`` and ``surface_high`` are of.
     more : tuple of str, optional
         Notes beside those of line, surface and curve.
+    component : tuple of Component, optional
+        Errors that ``contribution`` is of.
     **numbers : ndarray, shape (...)
-        Value and limits, by name. [SI]
+        Value, limits and contribution, by name. [SI]
 
     Returns
     -------
@@ -82,6 +87,7 @@ def design_values(
     return DesignValues(
         quantity=of.quantity,
         unit=quantity_of(of.quantity).unit,
+        component=component,
         **numbers,
         is_inside=inside,
         is_untested=untested,

@@ -16,7 +16,8 @@ from itertools import product
 
 import numpy as np
 
-from reduction.lookup.product import LineCurve, LineSource, LineSurface
+from reduction.lookup.linesurface import LineSurface
+from reduction.lookup.product import LineCurve, LineSource
 from reduction.lookup.surface import sigma_from_r2
 from reduction.published.linecells import POUND
 from reduction.published.linecurves import curves_of_line

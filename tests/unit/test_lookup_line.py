@@ -5,8 +5,9 @@ import pytest
 
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.line import look_up
+from reduction.lookup.linesurface import LineSurface
 from reduction.lookup.loads import cycle_loads
-from reduction.lookup.product import LineCurve, LineSource, LineSurface
+from reduction.lookup.product import LineCurve, LineSource
 from reduction.lookup.surface import evaluate_surface, sigma_from_r2
 from reduction.surface.designs import box_behnken
 from reduction.surface.terms import model_matrix, quadratic_exponents

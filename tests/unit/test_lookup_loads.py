@@ -7,8 +7,9 @@ import pytest
 
 from reduction.errors import DataError
 from reduction.lookup.line import look_up
+from reduction.lookup.linesurface import LineSurface
 from reduction.lookup.loads import loads_of_line
-from reduction.lookup.product import LineCurve, LineSource, LineSurface
+from reduction.lookup.product import LineCurve, LineSource
 from reduction.published.linesource import published_sources
 
 LBF = 4.4482216152605
