@@ -1,0 +1,42 @@
+"""Ends of a run: a wait is told from the turns of the run, whatever is missing in it."""
+
+import numpy as np
+import pytest
+
+from reduction.cycles.ends import without_stands
+
+STROKES = [2.0, 4, 2, 4, 2]
+
+
+def moved(values, nodes):
+    return without_stands(
+        np.array(values), np.array(nodes), first=0, last=len(values) - 1, tolerance=0.1
+    ).tolist()
+
+
+@pytest.mark.parametrize(
+    ("wait", "first"), [([2, 2, 2], 3), ([2, np.nan, 2], 3), ([2, 2, np.nan], 3)]
+)
+def test_missing_samples_of_a_wait_do_not_end_it(wait, first):
+    nodes = [0, *range(first + 1, first + 5)]
+    assert moved([*wait, *STROKES], nodes) == [first, *nodes[1:]]
+
+
+def test_an_end_is_moved_to_a_sample_that_is_there():
+    # as far before the end of the stand as the turns of the run lie, where nothing was read
+    values = [2.0, 2, 2, 2, np.nan, 2, 4, 2, 2, 4, 2, 2, 4, 2, 2]
+    assert moved(values, [0, 6, 7, 9, 10, 12, 13])[0] == 3
+
+
+def test_a_wait_after_the_last_stroke_is_left_out_likewise():
+    assert moved([*STROKES, 2, 2, 2], [0, 1, 2, 3, 7]) == [0, 1, 2, 3, 4]
+
+
+def test_a_hold_of_every_valley_is_no_wait():
+    values = [2.0, 2, 2, 2, 4] * 3 + [2, 2, 2, 2]
+    nodes = [0, 4, 5, 9, 10, 14, 15]
+    assert moved(values, nodes) == nodes
+
+
+def test_two_extremes_have_no_turn_to_be_held_against():
+    assert moved([2.0, 2, 2, 2, 4], [0, 4]) == [0, 4]
