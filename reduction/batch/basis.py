@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from reduction.batch.describe import settings_json
 from reduction.batch.history import history_of, history_remarks
-from reduction.batch.pulls import pulls_of
+from reduction.batch.pulls import origins_of, pulls_of
 from reduction.batch.standing import failed_beside
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.line.product import SlowPull
+from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.product import History
 from reduction.strain.model import StrainModel
 
@@ -29,6 +30,7 @@ class Basis:
     history: History | None
     models: tuple[StrainModel, ...]
     pulls: list[SlowPull | None] | None
+    pull_origins: tuple[PullOrigin | None, ...]
     settings: str
     remarks: tuple[str, ...]
     failed: tuple[Survey, ...]
@@ -67,13 +69,15 @@ def basis_of(
     """
     history = history_of(survey, surveys, models, campaign)
     of_run = pulls_of(campaign, survey, pulls)
+    origins = () if of_run is None else origins_of(campaign, survey, surveys, models)
     names = [(survey.plan.id, specimen) for specimen in survey.plan.specimens]
     of_test = tuple(models[name] for name in names if name in models)
     return Basis(
         history=history,
         models=of_test,
         pulls=of_run,
-        settings=settings_json(campaign, survey, of_test, history, of_run),
+        pull_origins=origins,
+        settings=settings_json(campaign, survey, of_test, history, of_run, origins),
         remarks=tuple(history_remarks(survey, surveys, models, campaign)),
         failed=failed_beside(survey, surveys, failed),
     )

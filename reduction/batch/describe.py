@@ -12,6 +12,7 @@ from reduction.batch.pulls import pull_tests
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.line.product import SlowPull
+from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.product import History, TestDescription
 from reduction.record import Floats
 from reduction.strain.model import StrainModel
@@ -52,6 +53,7 @@ def settings_json(
     models: Sequence[StrainModel],
     history: History | None,
     pulls: Sequence[SlowPull | None] | None = None,
+    pull_origins: Sequence[PullOrigin | None] = (),
 ) -> str:
     """Every setting that was in force, so that a product says how it can be made again."""
     plan = survey.plan
@@ -99,6 +101,7 @@ def settings_json(
     }
     if pulls is not None:
         test_of = pull_tests(campaign, plan.id)
+        read_with = pull_origins or (None,) * len(pulls)
         document["quasi_static"] = {
             name: None
             if pull is None
@@ -107,7 +110,8 @@ def settings_json(
                 "strain_coefficient": pull.strain_coefficient.tolist(),
                 "tension_low": pull.tension_low,
                 "tension_high": pull.tension_high,
+                "instruments": None if origin is None else asdict(origin.errors),
             }
-            for name, pull in zip(plan.specimens, pulls, strict=True)
+            for name, pull, origin in zip(plan.specimens, pulls, read_with, strict=True)
         }
     return json.dumps(document, sort_keys=True, ensure_ascii=False, allow_nan=False)

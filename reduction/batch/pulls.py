@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from reduction.batch.instruments import instruments_of
 from reduction.batch.survey import Survey, as_reduction_error, located_again
 from reduction.campaign.plan import Campaign
 from reduction.errors import ReductionError
 from reduction.line.product import SlowPull
 from reduction.pipeline.reduce import strain_of_record
 from reduction.pipeline.rope import PullConditions, pull_specimens
+from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.strain.model import StrainModel
 from reduction.units import parse_quantity
 
-__all__ = ["fit_pulls", "pull_conditions", "pull_tests", "pulls_of"]
+__all__ = ["fit_pulls", "origins_of", "pull_conditions", "pull_tests", "pulls_of"]
 
 Pulls = Mapping[tuple[str, str], SlowPull]
 
@@ -116,3 +118,29 @@ def pulls_of(campaign: Campaign, survey: Survey, pulls: Pulls) -> list[SlowPull 
         return None
     test_of = pull_tests(campaign, survey.plan.id)
     return [pulls.get((test_of.get(name, ""), name)) for name in survey.plan.specimens]
+
+
+def origins_of(
+    campaign: Campaign,
+    survey: Survey,
+    surveys: Sequence[Survey],
+    models: Mapping[tuple[str, str], StrainModel],
+) -> tuple[PullOrigin | None, ...]:
+    """With what the slow pull of each specimen of a run was read; None where it has none."""
+    test_of = pull_tests(campaign, survey.plan.id)
+    by_test = {entry.plan.id: entry for entry in surveys}
+    found: list[PullOrigin | None] = []
+    for name in survey.plan.specimens:
+        pulled = by_test.get(test_of.get(name, ""))
+        of_pull = (
+            []
+            if pulled is None
+            else [models.get((pulled.plan.id, one)) for one in pulled.plan.specimens]
+        )
+        known = [model for model in of_pull if model is not None]
+        if pulled is None or not known or len(known) < len(of_pull):
+            found.append(None)
+            continue
+        place = pulled.plan.specimens.index(name)
+        found.append(PullOrigin(instruments_of(campaign, pulled, known)[place], known[place]))
+    return tuple(found)

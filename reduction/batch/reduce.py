@@ -20,6 +20,7 @@ from reduction.batch.survey import Survey, located_again
 from reduction.campaign.plan import Campaign
 from reduction.line.product import SlowPull
 from reduction.pipeline.reduce import reduce_stepwise_test, reduce_test
+from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.product import History, ReducedTest
 from reduction.strain.model import StrainModel
 
@@ -33,6 +34,7 @@ def reduce_survey(
     history: History | None,
     settings: str,
     pulls: Sequence[SlowPull | None] | None = None,
+    pull_origins: Sequence[PullOrigin | None] = (),
 ) -> ReducedTest:
     """Reduce one surveyed test.
 
@@ -50,6 +52,8 @@ def reduce_survey(
         Every setting in force, as JSON, for the product.
     pulls : sequence of SlowPull or None, optional
         Slow pull of each specimen, where the test is a run of an experiment.
+    pull_origins : sequence of PullOrigin or None, optional
+        With what each pull was read.
 
     Returns
     -------
@@ -84,6 +88,7 @@ def reduce_survey(
         settings=survey.plan.settings,
         settings_json=settings,
         pulls=pulls,
+        pull_origins=pull_origins,
         pull_conditions=pull_conditions(campaign, survey),
         instruments=instruments_of(campaign, survey, models),
     )
@@ -129,8 +134,9 @@ def bring_up_to_date(
             said = filter(None, [standing.remark, note_message(standing.notes)])
             return "unchanged", "; ".join(said)
     product = reduce_survey(
-        campaign, survey, basis.models, basis.history, basis.settings, basis.pulls
-    )
+        campaign, survey, basis.models, basis.history, basis.settings, basis.pulls,
+        basis.pull_origins,
+    )  # fmt: skip
     product = replace(product, notes=(*product.notes, *basis.remarks))
     write_archive(to_dataset(product, version=__version__, command=command), path)
     notes = product.all_notes()

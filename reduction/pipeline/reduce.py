@@ -35,6 +35,7 @@ from reduction.pipeline.shared.contributions import (
 )
 from reduction.pipeline.shared.lag import lag_of_test
 from reduction.pipeline.shared.montecarlo import with_line_spread
+from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.pipeline.shared.ratio import with_shared_ratios
 from reduction.pipeline.shared.weights import with_shared_steps
 from reduction.pipeline.spread import strain_spread, with_stated_channels
@@ -64,6 +65,7 @@ def reduce_test(
     settings: ReductionSettings,
     settings_json: str,
     pulls: Sequence[SlowPull | None] | None = None,
+    pull_origins: Sequence[PullOrigin | None] = (),
     pull_conditions: PullConditions | None = None,
     instruments: Sequence[InstrumentErrors] = (),
 ) -> ReducedTest:
@@ -89,6 +91,8 @@ def reduce_test(
         The same with everything else that was in force, for the product.
     pulls : sequence of SlowPull or None, length n_specimens, optional
         Slow pull of each specimen; with it the loops give a three-parameter line.
+    pull_origins : sequence of PullOrigin or None, length n_specimens, optional
+        With what each pull was read, where that was not the instruments of this test.
     pull_conditions : PullConditions, optional
         What a slow pull cannot tell of itself.
     instruments : sequence of InstrumentErrors, length n_specimens, optional
@@ -194,7 +198,11 @@ def reduce_test(
         test = replace(
             test,
             contributions=contributions_of_test(
-                test, instruments, cycles=settings.cycles, pulls=pulls
+                test,
+                instruments,
+                cycles=settings.cycles,
+                pulls=pulls,
+                pull_origins=pull_origins,
             ),
             shared_uncertainty_of_cycles=shared_uncertainty_of_cycles(
                 test, instruments, cycles=settings.cycles

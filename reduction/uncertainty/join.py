@@ -12,9 +12,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from reduction.record import Floats
 from reduction.uncertainty.product import Contributions
 
-__all__ = ["merged", "renamed", "stacked"]
+__all__ = ["added", "merged", "renamed", "stacked"]
 
 
 def merged(parts: Sequence[Contributions]) -> Contributions:
@@ -56,6 +57,46 @@ def merged(parts: Sequence[Contributions]) -> Contributions:
             table = np.zeros((len(component), *array.shape[1:]))
             table[rows] = array
             values[name] = table
+    return Contributions(component, values)
+
+
+def added(parts: Sequence[Contributions]) -> Contributions:
+    """Contributions to a sum, of which each part adds some.
+
+    Parameters
+    ----------
+    parts : sequence of Contributions
+        To the same quantities, in the same shapes. [as quantity]
+
+    Returns
+    -------
+    contributions : Contributions
+        What the parts say of one component, added with their signs. [as quantity]
+
+    Raises
+    ------
+    SettingsError
+        If a component stands twice in a part.
+
+    Notes
+    -----
+    Components that are equal are one error ([1]_).
+
+    Examples
+    --------
+    >>> from reduction.uncertainty.product import Component
+    >>> gain = (Component("tension_gain", "cell"),)
+    >>> both = added([Contributions(gain, {"force": np.array([row])}) for row in (2.0, -0.5)])
+    >>> print(both.values["force"])
+    [1.5]
+    """
+    component = tuple(sorted({one for part in parts for one in part.component}))
+    values: dict[str, Floats] = {}
+    for part in parts:
+        rows = [component.index(one) for one in part.component]
+        for name, array in part.values.items():
+            table = values.setdefault(name, np.zeros((len(component), *array.shape[1:])))
+            table[rows] += array
     return Contributions(component, values)
 
 

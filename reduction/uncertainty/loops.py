@@ -98,8 +98,9 @@ def loop_contributions(
     First order ([1]_).  The ends of the loop are where strain and tension have their extremes,
     taken to be the same place.  A specimen that is stiffer than at the stated temperature pulls
     harder where the machine sets the position, and stretches less where it sets the load; by as
-    much, relatively, at the mean as at the amplitude.  Tension that is logged late turns the complex modulus back by 2 pi
-    f lag and narrows the loop; it has no first-order effect on extremes.
+    much, relatively, at the mean as at the amplitude.  Tension that is logged late turns the
+    complex modulus back by 2 pi f lag and narrows the loop; it has no first-order effect on
+    extremes.
 
     Examples
     --------
@@ -116,7 +117,7 @@ def loop_contributions(
     >>> print((found.values["loss_spring_constant"] / 5e3).round(3))
     [[-0.126]]
     """
-    # what the machine holds is not moved by the temperature, and the field does not know the machine
+    # what the machine holds the temperature does not move, and the field knows no machine
     still = replace(errors, stiffness=0.0)
     ends = [
         error_field(

@@ -71,9 +71,9 @@ def own_uncertainty(run, test, quantity):
     with open_archive(run.processed / f"{test}.nc") as archive:
         name = f"test_{quantity}"
         random = archive[f"{name}_random_standard_uncertainty"].to_numpy()[0]
-        (fit,) = np.flatnonzero(archive["uncertainty_source"].to_numpy() == "quasi_static_fit")
+        fit = np.flatnonzero(archive["uncertainty_source"].to_numpy() == "quasi_static_fit")
         shared = archive[f"{name}_uncertainty_contribution"].to_numpy()[fit, 0]
-    return np.hypot(random, shared)
+    return np.hypot(random, np.linalg.norm(shared))
 
 
 def test_stated_uncertainties_cover_the_errors(run, truth):

@@ -17,7 +17,7 @@ from reduction.pipeline.shared.cycles import of_cycles, of_ends, of_slips
 from reduction.pipeline.shared.holds import of_holds, of_pairs
 from reduction.pipeline.shared.loops import of_dynamic_modulus, of_line, of_loops
 from reduction.pipeline.shared.material import of_elastomers, of_material
-from reduction.pipeline.shared.pulls import of_pull
+from reduction.pipeline.shared.pulls import PullOrigin, of_pull
 from reduction.pipeline.shared.ratio import of_ratios
 from reduction.product import ReducedTest
 from reduction.record import Floats, areas_of
@@ -34,6 +34,7 @@ def contributions_of_test(
     *,
     cycles: CycleSettings,
     pulls: Sequence[SlowPull | None] | None = None,
+    pull_origins: Sequence[PullOrigin | None] = (),
 ) -> Contributions | None:
     """What each shared error adds to the curves, segments and means of a test.
 
@@ -47,18 +48,19 @@ def contributions_of_test(
         Control and waveform.
     pulls : sequence of SlowPull or None, length n_specimens, optional
         From which the test has its K_0.
+    pull_origins : sequence of PullOrigin or None, length n_specimens, optional
+        With what each pull was read; the instruments of the test itself where it is not said.
 
     Returns
     -------
     contributions : Contributions or None
         Shape (n_components, n_specimens, ...); None where no error is shared.
     """
-    own = [
-        merged(
-            list(_of_specimen(test, index, one, cycles, None if pulls is None else pulls[index]))
-        )
-        for index, one in enumerate(errors)
-    ]
+    own = []
+    for index, one in enumerate(errors):
+        pull = None if pulls is None else pulls[index]
+        origin = pull_origins[index] if pull_origins else None
+        own.append(merged(list(_of_specimen(test, index, one, cycles, pull, origin))))
     found = stacked(own)
     parts = [
         found,
@@ -118,6 +120,7 @@ def _of_specimen(
     errors: InstrumentErrors,
     cycles: CycleSettings,
     pull: SlowPull | None,
+    origin: PullOrigin | None,
 ) -> Iterator[Contributions]:
     model = test.strain_models[index]
     area = float(areas_of(test.specimens)[index])
@@ -146,8 +149,9 @@ def _of_specimen(
         if np.isfinite(area):
             yield _named(of_dynamic_modulus(of_loop, summary, index, errors, area), "test_")
         if test.line_of_test is not None and pull is not None:
+            read_with = origin or PullOrigin(errors, model)
             yield _named(
-                of_line(test.line_of_test, summary, index, errors, model, of_loop, pull), "test_"
+                of_line(test.line_of_test, summary, index, of_loop, pull, read_with), "test_"
             )
 
 

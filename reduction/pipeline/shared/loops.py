@@ -10,16 +10,14 @@ import numpy as np
 
 from reduction.cycles.product import Cycles, Loops
 from reduction.line.product import LineParameters, SlowPull
-from reduction.line.quasistatic import quasi_static_spring_constant, strain_at_tension
 from reduction.moduli.product import AmplitudeSummary
-from reduction.pipeline.shared.pulls import compliance_slope
+from reduction.pipeline.shared.pulls import PullOrigin, of_rest
 from reduction.record import Floats
 from reduction.settings import CycleSettings
 from reduction.strain.inverse import position_by_model
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.curves import by_diameter
-from reduction.uncertainty.field import error_field
-from reduction.uncertainty.line import line_contributions, pull_contributions
+from reduction.uncertainty.line import line_contributions
 from reduction.uncertainty.loops import loop_contributions
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
@@ -104,29 +102,12 @@ def of_line(
     line: LineParameters,
     summary: AmplitudeSummary,
     index: int,
-    errors: InstrumentErrors,
-    model: StrainModel,
     of_loop: Contributions,
     pull: SlowPull,
+    origin: PullOrigin,
 ) -> Contributions:
-    """K_0 of the pull, whose fit all runs of one pull share, and what follows from it."""
-    at = np.asarray(summary.mean_tension[index])
-    constant, spread = quasi_static_spring_constant(pull, at)
-    bend = compliance_slope(pull, at)
-    field = error_field(errors, model, strain=strain_at_tension(pull, at)[0], tension=at)
-    at_tension = pull_contributions(
-        field, quasi_static_spring_constant=constant, compliance_slope=bend
-    )
-    fit = Component("quasi_static_fit", errors.specimen)
-    # K_0 is read where the load cell says that the mean tension is
-    along = -(constant**2) * bend
-    rows_of = {
-        **dict(zip(of_loop.component, along * of_loop.values["mean_tension"], strict=True)),
-        fit: spread,
-    }
-    for one, row in zip(at_tension.component, at_tension.values[_K_0], strict=True):
-        rows_of[one] = rows_of.get(one, 0.0) + row
-    of_pull = Contributions(tuple(rows_of), {_K_0: np.array(list(rows_of.values()))})
+    """K_0 of the pull, whose errors all runs on it share, and what follows from it."""
+    of_pull = of_rest(pull, origin, np.asarray(summary.mean_tension[index]), of_loop)
     values: Mapping[str, Floats] = {
         item.name: getattr(line, item.name)[index]
         for item in fields(line)

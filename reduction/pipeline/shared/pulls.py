@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,13 +12,26 @@ from reduction.line.quasistatic import quasi_static_spring_constant, strain_at_t
 from reduction.record import Floats
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import ErrorField, error_field
+from reduction.uncertainty.join import added
 from reduction.uncertainty.line import pull_contributions
-from reduction.uncertainty.product import Contributions, InstrumentErrors
+from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
+from reduction.uncertainty.pullfit import fit_contributions
 from reduction.uncertainty.strength import over_strength
 
-__all__ = ["compliance_slope", "of_pull"]
+__all__ = ["PullOrigin", "compliance_slope", "of_pull", "of_rest"]
 
 _STEP = 1e-3  # of the range of a pull, for the slope of its compliance
+
+
+_K_0 = "quasi_static_spring_constant"
+
+
+@dataclass(frozen=True)
+class PullOrigin:
+    """With what a slow pull was read: its instruments, and how its position became strain."""
+
+    errors: InstrumentErrors
+    model: StrainModel
 
 
 def compliance_slope(pull: SlowPull, tension: Floats) -> Floats:
@@ -27,6 +40,25 @@ def compliance_slope(pull: SlowPull, tension: Floats) -> Floats:
     beside = [1 / quasi_static_spring_constant(pull, tension + way * step)[0] for way in (1, -1)]
     bend = (beside[0] - beside[1]) / (2 * step)
     return np.asarray(np.where(np.isfinite(bend), bend, 0.0))
+
+
+def of_rest(
+    pull: SlowPull, origin: PullOrigin, tension: Floats, of_mean_tension: Contributions
+) -> Contributions:
+    """K_0 at the mean tension of a run, which has its own errors, on a pull that has others."""
+    field, constant = _at(pull, origin.errors, origin.model, tension)
+    bend = compliance_slope(pull, tension)
+    at_tension = pull_contributions(
+        field, quasi_static_spring_constant=constant, compliance_slope=bend
+    )
+    # K_0 is read where the load cell of the run says that the mean tension is
+    along = Contributions(
+        of_mean_tension.component,
+        {_K_0: -(constant**2) * bend * of_mean_tension.values["mean_tension"]},
+    )
+    errors = origin.errors
+    name = f"{errors.specimen}, {errors.test}" if errors.test else errors.specimen
+    return added([at_tension, along, fit_contributions(pull, tension, of=name)])
 
 
 def of_pull(
@@ -69,7 +101,25 @@ def _at(
     pull: SlowPull, errors: InstrumentErrors, model: StrainModel, tension: Floats
 ) -> tuple[ErrorField, Floats]:
     strain = strain_at_tension(pull, tension)[0]
-    field = error_field(errors, model, strain=strain, tension=tension)
+    field = error_field(replace(errors, stiffness=0.0), model, strain=strain, tension=tension)
+    if errors.stiffness:
+        # a pull is read at a tension: one that is stiffer has stretched less there
+        none = np.zeros((1, *strain.shape))
+        added_rows = {
+            "tension": none,
+            "strain": -errors.stiffness * strain[None],
+            "tension_slope": none,
+            "strain_slope": none - errors.stiffness,
+            "strain_slope_over_tension": none,
+        }
+        field = replace(
+            field,
+            component=(*field.component, Component("temperature", errors.test)),
+            **{
+                name: np.concatenate([getattr(field, name), rows])
+                for name, rows in added_rows.items()
+            },
+        )
     return field, quasi_static_spring_constant(pull, tension)[0]
 
 
