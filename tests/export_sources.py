@@ -13,6 +13,18 @@ DESIGN = box_behnken(3).coded
 INVERSE = np.linalg.inv(model_matrix(DESIGN, EXPONENTS).T @ model_matrix(DESIGN, EXPONENTS))
 LEVELS = {"frequency": 0.3, "mean_tension": 2000.0, "tension_amplitude": 700.0}
 
+REST, SPRING, TIME = 2e4, 3e4, 0.8
+
+
+def loop(rest=REST, spring=SPRING, time=TIME):
+    """K_ap and H of eqs. 1-4 of CG-D-39-80, written out as complex numbers."""
+    turned = 2j * np.pi * LEVELS["frequency"] * time
+    stiffness = rest + spring * turned / (1 + turned)
+    amplitude = LEVELS["tension_amplitude"]
+    # a strain of amplitude dT/|K| against a tension with the part K'' a quarter cycle ahead
+    energy = np.pi * (amplitude / abs(stiffness)) ** 2 * stiffness.imag
+    return abs(stiffness), energy
+
 
 def surface(quantity, centre, *, per_mean=0.0, errata=(), sigma=10.0):
     coefficient = np.zeros(10)

@@ -16,15 +16,32 @@ __all__ = [
 ]  # fmt: skip
 
 
-def said_identified(part: Viscoelasticity, amplitude: float) -> str:
-    """K_1 and tau, and what they give back."""
+def said_identified(
+    part: Viscoelasticity, amplitude: float, half: Mapping[str, Floats], *, is_exact: bool
+) -> str:
+    """K_1 and tau, what they give back, and how well they are known.
+
+    ``half`` are half widths of 95 % by name; ``is_exact`` where no interval of K_0 is known.
+    """
     spring = part.fast_stiffness - part.static_stiffness
     return (
         f"K_1 {spring:.5g} N and tau {part.relaxation_time:.4g} s are identified from the surfaces "
         f"of K_ap and H and from K_0 at these levels: the exported line gives back K_ap "
         f"{part.apparent_stiffness:.5g} N and H "
         f"{part.hysteresis_energy_at(part.frequency, amplitude):.4g} J/m there"
+        + _said_known(half, is_exact=is_exact)
     )
+
+
+def _said_known(half: Mapping[str, Floats], *, is_exact: bool) -> str:
+    """How well K_1 and tau are known; what K_ap, H and K_0 share, they share here."""
+    spring, time = (
+        float(half[name]) for name in ("dissipation_spring_constant", "relaxation_time")
+    )
+    if not (math.isfinite(spring) and math.isfinite(time)):
+        return "; K_ap or H has no interval, and so have K_1 and tau none"
+    without = ", K_0 taken as exact: it has no interval" if is_exact else ""
+    return f"; 95 percent of K_1 +-{spring:.3g} N, of tau +-{time:.3g} s{without}"
 
 
 def said_printed(
@@ -69,11 +86,10 @@ def _against(part: Viscoelasticity, measured: Mapping[str, DesignValues], amplit
     return "; ".join(parts)
 
 
-def doubts_of_identified(line: LineParameters, energy: DesignValues) -> list[str]:
-    """Intervals in which there is no damping at all, or that are not known.
-
-    The uncertainties of ``line`` are half widths of 95 % here, as the intervals that went in.
-    """
+def doubts_of_identified(
+    line: LineParameters, half_widths: Mapping[str, Floats], energy: DesignValues
+) -> list[str]:
+    """Intervals in which there is no damping at all, or that are not known."""
     said = []
     if not math.isfinite(float(energy.surface_low)):
         said.append("DOUBTFUL: how well the damping is known is not known: H has no interval")
@@ -82,12 +98,12 @@ def doubts_of_identified(line: LineParameters, energy: DesignValues) -> list[str
             "DOUBTFUL: the damping may be none: the 95 percent interval of H, "
             f"{interval_of(energy)}, holds zero"
         )
-    half = float(line.random_uncertainty["relaxation_time"])
+    half = float(half_widths["relaxation_time"])
     time = float(line.relaxation_time)
     if half >= time:
         said.append(
             f"DOUBTFUL: the dashpot is hardly known: tau {time:.4g} s with a 95 percent interval "
-            f"of +-{half:.3g} s, from those of K_ap and H"
+            f"of +-{half:.3g} s, from those of K_ap, H and K_0"
         )
     return said
 

@@ -32,6 +32,7 @@ from reduction.export.dynamicswords import (
     said_over_frequency,
     said_printed,
 )
+from reduction.export.linespread import half_widths
 from reduction.line.identify import identify_by_amplitude
 from reduction.line.product import REASONS, LineParameters
 from reduction.lookup.line import look_up
@@ -91,7 +92,8 @@ def line_dynamics(
     `reduction.line.identify.identify_by_amplitude` does for a run; so the exported line gives back
     K_ap and H at that point.  Where there is no such line (E' not above K_0, or H not above zero),
     the printed K_1 and tau take their place as long as K_ap of them is in the 95 % interval of
-    the surface of K_ap.  The growth with the mean tension is that of the straight line of least
+    the surface of K_ap.  How well they are known is by `reduction.export.linespread`: one load cell
+    is in K_ap, H and K_0.  The growth with the mean tension is that of the straight line of least
     squares through K_0 + K_1, found in the same way at nine means over the tested ones.
     """
     if "mean_tension" not in levels:
@@ -116,11 +118,12 @@ def line_dynamics(
         is_identified = reason == 0
         if is_identified:
             spring = float(line.dissipation_spring_constant)
+            half = half_widths(line, rest, measured[_APPARENT], measured[_ENERGY])
             part = _part(rest, spring, float(line.relaxation_time), levels)
             notes = [
-                said_identified(part, amplitude),
+                said_identified(part, amplitude, half, is_exact=not np.isfinite(rest.surface_high)),
                 said_printed(float(rest.value), printed, measured, frequency, amplitude),
-                *doubts_of_identified(line, measured[_ENERGY]),
+                *doubts_of_identified(line, half, measured[_ENERGY]),
             ]
         else:
             part = _instead(source, rest, measured, printed, levels, reason)
@@ -184,19 +187,13 @@ def _value(
 def _identified(
     rest: DesignValues, measured: Mapping[str, DesignValues], levels: Mapping[str, Any]
 ) -> LineParameters:
-    """K_1 and tau of K_ap, H and K_0; the half width of an interval goes in, and comes out."""
+    """K_1 and tau of K_ap, H and K_0."""
     return identify_by_amplitude(
         apparent_spring_constant=measured[_APPARENT].value,
         hysteresis_energy=measured[_ENERGY].value,
         tension_amplitude=levels["tension_amplitude"],
         frequency=levels["frequency"],
         quasi_static_spring_constant=rest.value,
-        standard_uncertainty={
-            "tension_amplitude": 0.0,
-            "frequency": 0.0,
-            _APPARENT: measured[_APPARENT].surface_high - measured[_APPARENT].value,
-            _ENERGY: measured[_ENERGY].surface_high - measured[_ENERGY].value,
-        },
     )
 
 

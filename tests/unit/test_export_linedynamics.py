@@ -4,24 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from export_sources import LEVELS, source, surface
+from export_sources import LEVELS, REST, SPRING, TIME, loop, source, surface
 
 from reduction.errors import DataError, SettingsError
 from reduction.export.fromlookup import line_from_lookup
 from reduction.export.linedynamics import line_dynamics
 from reduction.lookup.product import LineCurve
-
-REST, SPRING, TIME = 2e4, 3e4, 0.8
-
-
-def loop(rest=REST, spring=SPRING, time=TIME):
-    """K_ap and H of eqs. 1-4 of CG-D-39-80, written out as complex numbers."""
-    turned = 2j * np.pi * LEVELS["frequency"] * time
-    stiffness = rest + spring * turned / (1 + turned)
-    amplitude = LEVELS["tension_amplitude"]
-    # a strain of amplitude dT/|K| against a tension with the part K'' a quarter cycle ahead
-    energy = np.pi * (amplitude / abs(stiffness)) ** 2 * stiffness.imag
-    return abs(stiffness), energy
 
 
 def measured(apparent, energy, **changed):
