@@ -1,9 +1,10 @@
 """Coefficients of the strain methods from tape readings, each with its covariance.
 
 A row of marks is three tape readings (near toe, far toe, far thimble) of one
-standard uncertainty.  The relaxed lengths come from the slack rows alone, so that
-strain is zero at slack by construction; the stretched rows give the rest.  Where
-the rows scatter more than the tape explains, the scatter is used instead.
+standard uncertainty.  The relaxed lengths come from the slack rows alone
+(`reduction.strain.relaxed`), so that strain is zero at slack by construction; the
+stretched rows give the rest.  Where the rows scatter more than the tape explains,
+the covariance is widened (`reduction.strain.scatter`).
 
 References
 ----------
@@ -22,14 +23,13 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_finite, as_positive, as_same_shape
 from reduction.errors import DataError
 from reduction.record import Floats, freeze_arrays
+from reduction.strain.scatter import row_scatter
 
 __all__ = [
     "Calibration",
     "fit_free_length_line",
     "fit_splice_ratio",
-    "larger_variance",
     "line_slope",
-    "relaxed_lengths",
 ]
 
 
@@ -47,47 +47,19 @@ class Calibration:
         Change of each value with the relaxed free and splice length. [SI m-1]
     residual : ndarray, shape (n_marks,)
         Of the fitted length or strain. [m] or [1]
+    note : str
+        What the marks do that the tape does not explain; empty where it does.
     """
 
     values: Floats
     covariance: Floats
     relaxed_sensitivity: Floats
     residual: Floats
+    note: str = ""
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze_arrays(self)
-
-
-def larger_variance(stated: float, residual: Floats, n_values: int) -> float:
-    """Variance that readings imply, or that of the residuals where it is larger.
-
-    Parameters
-    ----------
-    stated : float
-        From the tape. [SI]
-    residual : ndarray, shape (n_marks,)
-        Of a fit. [SI]
-    n_values : int
-        Coefficients the fit used up.
-
-    Returns
-    -------
-    variance : float
-        ``stated`` alone where no mark is left over. [SI]
-
-    Raises
-    ------
-    DataError
-        Never.
-
-    Examples
-    --------
-    >>> print(larger_variance(1.0, np.array([2.0, -2.0, 0.0]), 1))
-    4.0
-    """
-    spare = residual.size - n_values
-    return max(stated, float(residual @ residual) / spare) if spare > 0 else stated
 
 
 def line_slope(position: ArrayLike, values: ArrayLike) -> float:
@@ -118,63 +90,6 @@ def line_slope(position: ArrayLike, values: ArrayLike) -> float:
     at, series = as_same_shape(position=position, values=values)
     centred = at - at.mean()
     return float(centred @ series) / float(centred @ centred)
-
-
-def relaxed_lengths(
-    free_length: ArrayLike, splice_length: ArrayLike, *, reading_uncertainty: float
-) -> tuple[Floats, Floats]:
-    """Mean free and splice length of the slack rows.
-
-    Parameters
-    ----------
-    free_length : array_like, shape (n_slack,)
-        Splice toe to splice toe, slack. [m]
-    splice_length : array_like, shape (n_slack,)
-        Both splices together, slack. [m]
-    reading_uncertainty : float
-        Standard uncertainty of one tape reading. [m]
-
-    Returns
-    -------
-    lengths : ndarray, shape (2,)
-        Free and splice length. [m]
-    covariance : ndarray, shape (2, 2)
-        Of their means; the two share both toe readings. [m2]
-
-    Raises
-    ------
-    DataError
-        If there is no slack row, or a length is not positive.
-
-    Notes
-    -----
-    The mean over tests, and not each test's own row: a reading is good to 0.01 ft
-    ([1]_, Table 3), which is 0.12 % of the free length, and that would enter every
-    strain and modulus of the test.
-
-    Examples
-    --------
-    Two slack rows read to 1 mm:
-
-    >>> lengths, covariance = relaxed_lengths([2.55, 2.56], [1.18, 1.18], reading_uncertainty=1e-3)
-    >>> print(lengths.round(3), (1e3 * np.sqrt(np.diag(covariance))).round(2))
-    [2.555 1.18 ] [5.   1.22]
-    """
-    rows = np.array(as_same_shape(free_length=free_length, splice_length=splice_length))
-    if rows.shape[-1] == 0:
-        raise DataError(
-            "the marks have no slack row",
-            needed="at least one row with hold = slack, read before the specimen is stretched",
-        )
-    as_positive("relaxed length", rows)
-    n_slack = rows.shape[1]
-    # free = far toe - near toe; splices = far thimble - far toe + near toe
-    covariance = reading_uncertainty**2 / n_slack * np.array([[2.0, -2.0], [-2.0, 3.0]])
-    if n_slack > 1:
-        scatter = np.cov(rows) / n_slack
-        for i in range(2):
-            covariance[i, i] = max(covariance[i, i], scatter[i, i])
-    return rows.mean(axis=1), covariance
 
 
 def fit_free_length_line(
@@ -230,14 +145,18 @@ def fit_free_length_line(
     slope = line_slope(length, free)
     intercept = float(free.mean()) - slope * centre
     residual = intercept + slope * length - free
-    variance = larger_variance(reading_uncertainty**2 * (2 + slope**2), residual, 2)
-    covariance = variance * np.array(
+    scatter = row_scatter(
+        reading_uncertainty**2 * (2 + slope**2), residual, np.stack([np.ones_like(length), length])
+    )
+    covariance = scatter.variance * np.array(
         [
             [1 / free.size + centre**2 / spread, -centre / spread],
             [-centre / spread, 1 / spread],
         ]
     )
-    return Calibration(np.array([intercept, slope]), covariance, np.zeros((2, 2)), residual)
+    return Calibration(
+        np.array([intercept, slope]), covariance, np.zeros((2, 2)), residual, scatter.note
+    )
 
 
 def fit_splice_ratio(
@@ -247,6 +166,7 @@ def fit_splice_ratio(
     relaxed_free_length: float,
     relaxed_splice_length: float,
     reading_uncertainty: float,
+    relaxed_covariance: ArrayLike = ((0.0, 0.0), (0.0, 0.0)),
 ) -> Calibration:
     r"""Ratio of splice strain to free strain, least squares through the slack point.
 
@@ -266,6 +186,9 @@ def fit_splice_ratio(
         From `relaxed_lengths`. [m]
     reading_uncertainty : float
         Standard uncertainty of one tape reading. [m]
+    relaxed_covariance : array_like, shape (2, 2)
+        Of the two relaxed lengths, by which residuals are judged; it is not in the covariance
+        returned. [m2]
 
     Returns
     -------
@@ -310,7 +233,16 @@ def fit_splice_ratio(
     variance = reading_uncertainty**2 * float(
         np.sum(2 * by_toe**2 + (by_y / relaxed_splice_length) ** 2)
     )
-    variance = max(variance, larger_variance(0.0, residual, 1) / total)
+    of_toe = ratio / relaxed_free_length + 1 / relaxed_splice_length
+    slope = np.stack([-ratio * free_stretch / relaxed_free_length,
+                      splice_stretch / relaxed_splice_length])  # fmt: skip
+    scatter = row_scatter(
+        reading_uncertainty**2 * (2 * of_toe**2 + relaxed_splice_length**-2),
+        residual,
+        x[None],
+        _root(np.asarray(relaxed_covariance, dtype=np.float64)).T @ slope,
+    )
+    variance = variance * scatter.widening**2 if variance > 0 else scatter.variance / total
     sensitivity = np.array(
         [
             [
@@ -319,4 +251,12 @@ def fit_splice_ratio(
             ]
         ]
     )
-    return Calibration(np.array([ratio]), np.array([[variance]]), sensitivity, residual)
+    return Calibration(
+        np.array([ratio]), np.array([[variance]]), sensitivity, residual, scatter.note
+    )
+
+
+def _root(covariance: Floats) -> Floats:
+    """Matrix whose product with its own transpose is a covariance, which may be singular."""
+    variance, direction = np.linalg.eigh(covariance)
+    return np.asarray(direction * np.sqrt(np.maximum(variance, 0)))

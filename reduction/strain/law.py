@@ -16,7 +16,8 @@ from scipy.optimize import minimize_scalar
 from reduction.checks import as_positive, as_same_shape
 from reduction.errors import DataError, FitError
 from reduction.record import Floats
-from reduction.strain.calibration import Calibration, larger_variance
+from reduction.strain.calibration import Calibration
+from reduction.strain.scatter import row_scatter
 
 __all__ = ["EXPONENT_BOUNDS", "fit_splice_law"]
 
@@ -32,6 +33,7 @@ def fit_splice_law(
     relaxed_splice_length: float,
     reading_uncertainty: float,
     exponent: float | None = None,
+    relaxed_standard_uncertainty: float = 0.0,
 ) -> Calibration:
     r"""Power law of splice strain on tension.
 
@@ -49,6 +51,9 @@ def fit_splice_law(
         Standard uncertainty of one tape reading. [m]
     exponent : float, optional
         Held at this value; None: fitted, within `EXPONENT_BOUNDS`. [1]
+    relaxed_standard_uncertainty : float
+        Of ``relaxed_splice_length``, by which residuals are judged; it is not in the covariance
+        returned. [m]
 
     Returns
     -------
@@ -64,7 +69,8 @@ def fit_splice_law(
 
     Notes
     -----
-    Rows have equal weight: each splice length is three readings of one tape.  The
+    Rows have equal weight: each splice length is three readings of one tape, and its stated
+    error is taken unless the residuals refute it (`reduction.strain.scatter.row_scatter`).  The
     compliance is linear and solved for; the exponent is found by a bounded search
     in one dimension, so that there is no starting value to depend on.
 
@@ -129,11 +135,14 @@ def fit_splice_law(
     design = design[:n_values]
     inverse = np.linalg.inv(design @ design.T)
     residual = relaxed_splice_length * strain_residual
-    variance = larger_variance(3 * reading_uncertainty**2, residual, n_values)
+    stretch = 1 + at_reference * power
+    scatter = row_scatter(
+        3 * reading_uncertainty**2, residual, design, relaxed_standard_uncertainty * stretch
+    )
     covariance, sensitivity = np.zeros((2, 2)), np.zeros(2)
-    covariance[:n_values, :n_values] = variance * inverse
+    covariance[:n_values, :n_values] = scatter.variance * inverse
     # d(splice length)/d(relaxed splice length) is the stretch of the splice
-    sensitivity[:n_values] = -inverse @ design @ (1 + at_reference * power)
+    sensitivity[:n_values] = -inverse @ design @ stretch
     # from the compliance at the reference tension to that at 1 N
     scale = reference**-exponent
     to_si = np.array([[scale, -at_reference * scale * np.log(reference)], [0.0, 1.0]])
@@ -143,4 +152,5 @@ def fit_splice_law(
         to_si @ covariance @ to_si.T,
         np.stack([np.zeros(2), sensitivity], axis=1),
         residual,
+        scatter.note,
     )

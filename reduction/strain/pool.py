@@ -22,11 +22,11 @@ from reduction.strain.calibration import (
     fit_free_length_line,
     fit_splice_ratio,
     line_slope,
-    relaxed_lengths,
 )
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.law import fit_splice_law
 from reduction.strain.model import StrainModel
+from reduction.strain.relaxed import RelaxedLengths, relaxed_lengths
 from reduction.strain.splice import free_length_fraction
 
 __all__ = ["TENSION_SPAN", "PooledMarks", "fit_to_marks"]
@@ -77,7 +77,7 @@ class PooledMarks:
         force = self.tension[self.stretched_rows("tension-driven")]
         return float(force.max() / force.min()) if force.size else 1.0
 
-    def relaxed(self) -> tuple[Floats, Floats]:
+    def relaxed(self) -> RelaxedLengths:
         """Relaxed free and splice length and their covariance. [m], [m2]."""
         slack = self.marks.is_slack
         return relaxed_lengths(
@@ -88,18 +88,25 @@ class PooledMarks:
 
 
 def _with_relaxed(
-    names: tuple[str, ...], relaxed: tuple[Floats, Floats], fit: Calibration
+    names: tuple[str, ...], relaxed: RelaxedLengths, fit: Calibration
 ) -> tuple[dict[str, float], Floats]:
     """Coefficients and joint covariance of relaxed lengths and fitted values."""
-    lengths, covariance = relaxed
     both = np.zeros((2 + fit.values.size,) * 2)
-    both[:2, :2] = covariance
+    both[:2, :2] = relaxed.covariance
     both[2:, 2:] = fit.covariance
     spread = np.eye(both.shape[0])
     spread[2:, :2] = fit.relaxed_sensitivity
-    values = [*lengths.tolist(), *fit.values.tolist()]
+    values = [*relaxed.values.tolist(), *fit.values.tolist()]
     keys = ("relaxed_free_length", "relaxed_splice_length", *names)
     return dict(zip(keys, values, strict=True)), spread @ both @ spread.T
+
+
+def _scatter_notes(
+    marks: SpliceMarks, relaxed: RelaxedLengths, fit: Calibration
+) -> tuple[str, ...]:
+    """What the marks do that the tape does not explain."""
+    told = {"slack rows": relaxed.note, "stretched marks": fit.note}
+    return tuple(f"{marks.specimen}: the {rows} {note}" for rows, note in told.items() if note)
 
 
 def _fit_marks(readings: PooledMarks) -> StrainModel:
@@ -109,13 +116,17 @@ def _fit_marks(readings: PooledMarks) -> StrainModel:
         marks.far_thimble[rows],
         reading_uncertainty=marks.reading_uncertainty,
     )
+    relaxed = readings.relaxed()
     coefficients, covariance = _with_relaxed(
-        ("free_length_intercept", "free_length_slope"), readings.relaxed(), line
+        ("free_length_intercept", "free_length_slope"), relaxed, line
     )
     # the line knows no splice length
     del coefficients["relaxed_splice_length"]
     keep = [0, 2, 3]
-    return StrainModel(marks.specimen, "marks", coefficients, covariance[np.ix_(keep, keep)])
+    return StrainModel(
+        marks.specimen, "marks", coefficients, covariance[np.ix_(keep, keep)],
+        notes=_scatter_notes(marks, relaxed, line),
+    )  # fmt: skip
 
 
 def _fit_strain_ratio(readings: PooledMarks) -> StrainModel:
@@ -124,12 +135,16 @@ def _fit_strain_ratio(readings: PooledMarks) -> StrainModel:
     ratio = fit_splice_ratio(
         marks.free_length[rows],
         marks.splice_length[rows],
-        relaxed_free_length=float(relaxed[0][0]),
-        relaxed_splice_length=float(relaxed[0][1]),
+        relaxed_free_length=float(relaxed.values[0]),
+        relaxed_splice_length=float(relaxed.values[1]),
         reading_uncertainty=marks.reading_uncertainty,
+        relaxed_covariance=relaxed.covariance,
     )
     return StrainModel(
-        marks.specimen, "strain-ratio", *_with_relaxed(("splice_strain_ratio",), relaxed, ratio)
+        marks.specimen,
+        "strain-ratio",
+        *_with_relaxed(("splice_strain_ratio",), relaxed, ratio),
+        notes=_scatter_notes(marks, relaxed, ratio),
     )
 
 
@@ -137,7 +152,9 @@ def _fit_constant_fraction(readings: PooledMarks) -> StrainModel:
     """As the report: the test's own slack row, the mean share of its stretched rows."""
     marks, rows = readings.marks, readings.stretched_rows("constant-fraction")
     slack = marks.is_slack & readings.is_own
-    relaxed = marks.free_length[slack].mean() if slack.any() else float(readings.relaxed()[0][0])
+    relaxed = (
+        marks.free_length[slack].mean() if slack.any() else float(readings.relaxed().values[0])
+    )
     n_slack = max(int(slack.sum()), 1)
     length = marks.far_thimble[rows]
     share = marks.free_length[rows] / length
@@ -160,9 +177,10 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
         return fit_splice_law(
             marks.splice_length[rows],
             readings.tension[rows],
-            relaxed_splice_length=float(relaxed[0][1]),
+            relaxed_splice_length=float(relaxed.values[1]),
             reading_uncertainty=marks.reading_uncertainty,
             exponent=exponent,
+            relaxed_standard_uncertainty=float(np.sqrt(relaxed.covariance[1, 1])),
         )
 
     notes: tuple[str, ...] = ()
@@ -180,6 +198,7 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
         )
         fit = law(1.0)
     coefficients, covariance = _with_relaxed(("splice_compliance", "splice_exponent"), relaxed, fit)
+    notes += _scatter_notes(marks, relaxed, fit)
     return StrainModel(marks.specimen, "tension-driven", coefficients, covariance, notes=notes)
 
 

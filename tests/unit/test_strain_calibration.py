@@ -11,9 +11,7 @@ from reduction.errors import DataError
 from reduction.strain.calibration import (
     fit_free_length_line,
     fit_splice_ratio,
-    larger_variance,
     line_slope,
-    relaxed_lengths,
 )
 
 READING = 0.00124
@@ -25,30 +23,6 @@ def drawn_rows(free, splice, seed):
     rng = np.random.default_rng(seed)
     near, far, thimble = rng.normal(0, READING, (3, DRAWS, np.size(free)))
     return free + far - near, splice + thimble - far + near
-
-
-def test_relaxed_lengths_share_their_toe_readings():
-    free, splice = drawn_rows(np.full(6, 2.55), np.full(6, 1.18), 1)
-    means = np.stack([free.mean(axis=1), splice.mean(axis=1)])
-    _, covariance = relaxed_lengths([2.55], [1.18], reading_uncertainty=READING)
-    # one row is all the tape says; six rows are a sixth of it
-    np.testing.assert_allclose(np.cov(means), covariance / 6, rtol=0.1)
-
-
-def test_relaxed_lengths_take_the_scatter_where_it_is_larger():
-    lengths, covariance = relaxed_lengths([2.50, 2.60], [1.18, 1.18], reading_uncertainty=READING)
-    assert lengths.tolist() == pytest.approx([2.55, 1.18])
-    assert covariance[0, 0] == pytest.approx(0.05**2)  # (0.1 / sqrt 2)**2 / 2
-
-
-def test_no_slack_row_is_refused():
-    with pytest.raises(DataError, match="the marks have no slack row"):
-        relaxed_lengths([], [], reading_uncertainty=READING)
-
-
-def test_relaxed_lengths_are_positive():
-    with pytest.raises(DataError, match="relaxed length are not positive"):
-        relaxed_lengths([0.0], [1.18], reading_uncertainty=READING)
 
 
 def test_two_marks_give_the_line_through_them():
@@ -129,11 +103,40 @@ def test_a_ratio_without_stretch_is_refused():
         )
 
 
-def test_variance_is_the_larger_of_tape_and_scatter():
-    residual = np.array([1.0, -1.0, 2.0])
-    assert larger_variance(10.0, residual, 1) == 10.0
-    assert larger_variance(0.1, residual, 1) == 3.0
-    assert larger_variance(0.1, residual, 3) == 0.1  # nothing is left over to judge by
+def test_marks_that_contradict_the_tape_widen_line_and_ratio_and_say_so():
+    free = np.array([4.5, 5.2, 5.8])
+    splice = 1.18 * (1 + 0.23 * (free / 2.55 - 1))
+    off = 30 * READING * np.array([0.0, 1.0, 0.0])
+    relaxed = {"relaxed_free_length": 2.55, "relaxed_splice_length": 1.18}
+    sound = (
+        fit_free_length_line(free, free + splice, reading_uncertainty=READING),
+        fit_splice_ratio(free, splice, reading_uncertainty=READING, **relaxed),
+    )
+    wide = (
+        fit_free_length_line(free + off, free + splice, reading_uncertainty=READING),
+        fit_splice_ratio(free + off, splice - off, reading_uncertainty=READING, **relaxed),
+    )
+    for before, after in zip(sound, wide, strict=True):
+        assert before.note == ""
+        assert "times as much as the tape explains" in after.note
+    # the variance is then that of the residuals: one degree of freedom of the line, two of the ratio
+    at = free + splice
+    assert wide[0].covariance[1, 1] == pytest.approx(
+        np.sum(wide[0].residual ** 2) / np.sum((at - at.mean()) ** 2)
+    )
+    ratio = np.sqrt(wide[1].covariance[0, 0] / sound[1].covariance[0, 0])
+    assert ratio > 5
+
+
+def test_a_ratio_without_a_stated_error_takes_its_scatter():
+    free, splice = np.array([4.5, 5.2, 5.8]), np.array([1.40, 1.46, 1.55])
+    found = fit_splice_ratio(
+        free, splice, relaxed_free_length=2.55, relaxed_splice_length=1.18, reading_uncertainty=0.0
+    )
+    x = free / 2.55 - 1
+    expected = found.residual @ found.residual / 2 / (x @ x) * (4.302653 / 1.959964) ** 2
+    assert found.covariance[0, 0] == pytest.approx(expected, rel=1e-5)
+    assert found.note.endswith("their scatter is taken, with 2 degrees of freedom")
 
 
 def test_line_slope_is_that_of_numpy():

@@ -45,14 +45,37 @@ def test_coefficients_and_covariance_agree_with_levenberg_and_marquardt():
     assert found.values == pytest.approx(expected, rel=1e-5)
     spare = FORCE.size - 2
     scatter = found.residual @ found.residual / spare
-    stated = 3 * READING**2
-    np.testing.assert_allclose(found.covariance, covariance * max(1.0, stated / scatter), rtol=1e-3)
+    # the marks scatter as the tape says: the stated error stands
+    np.testing.assert_allclose(found.covariance, covariance * 3 * READING**2 / scatter, rtol=1e-3)
+    assert found.note == ""
 
 
 def test_the_covariance_is_that_of_many_sets_of_marks():
     drawn = np.array([law(noisy(seed)).values for seed in range(300)])
     expected = np.sqrt(np.diag(law(splice()).covariance))
     np.testing.assert_allclose(drawn.std(axis=0), expected, rtol=0.15)
+
+
+def test_the_variance_of_three_marks_is_not_the_larger_of_tape_and_scatter():
+    """That would be 1.22 times the standard uncertainty too large: one mark is to spare."""
+    three = FORCE[[0, 3, 9]]
+    rng = np.random.default_rng(8)
+    lengths = splice(three) + rng.normal(0, np.sqrt(3) * READING, (600, 3))
+    found = [law(row, three) for row in lengths]
+    stated = np.sqrt(np.mean([one.covariance[1, 1] for one in found]))
+    drawn = np.std([one.values[1] for one in found])
+    assert stated / drawn == pytest.approx(1.02, abs=0.09)  # three times 1 / sqrt(2 * 600)
+
+
+def test_marks_that_contradict_the_tape_widen_the_law():
+    lengths = noisy(5)
+    lengths[4] += 0.03
+    found = law(lengths)
+    assert "times as much as the tape explains" in found.note
+    scatter = found.residual @ found.residual / (FORCE.size - 2)
+    assert found.covariance[1, 1] / law(noisy(5)).covariance[1, 1] == pytest.approx(
+        scatter / (3 * READING**2), rel=0.1
+    )
 
 
 def test_a_law_follows_the_relaxed_length_as_stated():
