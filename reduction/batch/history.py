@@ -8,9 +8,8 @@ import numpy as np
 
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
-from reduction.moduli.slack import slack_crossings
+from reduction.pipeline.extremes import greatest_strain, growth_of_slack_length
 from reduction.product import History
-from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
 
 __all__ = ["history_of", "history_remarks"]
@@ -19,17 +18,8 @@ Models = Mapping[tuple[str, str], StrainModel]
 
 
 def _greatest_strain(survey: Survey, name: str, models: Models) -> float:
-    """Greatest strain: measured, or at one of the samples at the greatest position.
-
-    NaN where the test failed, or has no number of it.
-    """
-    model = models.get((survey.plan.id, name))
-    if survey.step_readings is not None or (model is not None and model.method == "extensometer"):
-        return survey.greatest_measured_strain.get(name, float("nan"))
-    if model is None or name not in survey.greatest:
-        return float("nan")
-    position, tension = survey.greatest[name]
-    return float(np.nanmax(strain_by_model(model, position=position, tension=tension)))
+    """Greatest strain of a specimen in a test; NaN where it failed, or has no number of it."""
+    return greatest_strain(survey.extremes, name, models.get((survey.plan.id, name)))
 
 
 def _set_after_rest(
@@ -38,24 +28,9 @@ def _set_after_rest(
     """Growth of the length at which the specimen becomes taut, since its first test. [1]."""
     if not earlier:
         return float("nan"), float("nan")
-    first = earlier[0]
-    pair = (first, survey)
-    # a displacement from slack begins at zero again in every test
-    if any(name not in entry.first_rise or not entry.position_is_length for entry in pair):
-        return float("nan"), float("nan")
-    # one tension for both, so that the slope of the first rise does not enter
-    slack = max(entry.slack_tension for entry in pair)
-    lengths, spreads = [], []
-    for entry in pair:
-        position, tension = entry.first_rise[name]
-        crossing, crossing_spread, _ = slack_crossings(position, tension, slack_tension=slack)
-        lengths.append(crossing[0])
-        spreads.append(crossing_spread[0])
-    growth, spread = (lengths[1] - lengths[0]) / free_length, np.hypot(*spreads) / free_length
-    # a crossing through two samples alone has no residual, and so no uncertainty to give
-    if not np.isfinite(spread):
-        return float("nan"), float("nan")
-    return float(growth), float(spread)
+    return growth_of_slack_length(
+        earlier[0].extremes, survey.extremes, name, free_length=free_length
+    )
 
 
 def _whole(survey: Survey, surveys: Sequence[Survey]) -> Survey:
@@ -150,7 +125,9 @@ def history_of(
         earlier = _earlier(survey, surveys, name)
         tests.append(tuple(entry.plan.id for entry in earlier))
         strain.append(_greatest([_greatest_strain(entry, name, models) for entry in earlier]))
-        tension.append(_greatest([entry.greatest_tension.get(name, nothing) for entry in earlier]))
+        tension.append(
+            _greatest([entry.extremes.greatest_tension.get(name, nothing) for entry in earlier])
+        )
         specimen = campaign.specimens[name]
         cycles.append(_earlier_cycles(earlier, own, specimen.earlier_cycles))
         of_name = [entry for entry in surveys if name in entry.plan.specimens]

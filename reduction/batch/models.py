@@ -77,7 +77,7 @@ def fit_strain_models(
                     mark_tension=at_end.get(name),
                     mark_tension_at_start=at_start.get(name),
                     settings=survey.plan.settings.strain,
-                    has_extensometer=survey.has_extensometer,
+                    has_extensometer=survey.extremes.has_extensometer,
                     reference_position=survey.zero_strain_position,
                     failed_tests=failed,
                 )

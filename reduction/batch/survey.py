@@ -10,8 +10,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-import numpy as np
-
 from reduction.batch.found import found_in
 from reduction.batch.steps import step_plan, step_record
 from reduction.campaign.plan import Campaign, TestPlan
@@ -19,32 +17,26 @@ from reduction.errors import DataError, LogError, ReductionError
 from reduction.ingest.datum import length_at_slack
 from reduction.ingest.record_of_test import read_record
 from reduction.ingest.stepwise import read_step_readings
-from reduction.moduli.stepwise import greatest_step_strain
+from reduction.pipeline.extremes import Extremes, extremes_of_readings, extremes_of_test
 from reduction.pipeline.locate import Located, locate
+from reduction.pipeline.markreadings import tension_at_marks
 from reduction.provenance import Source
 from reduction.record import Floats, Record, SpliceMarks, StepReadings
 from reduction.strain.fit import zero_strain_position
-from reduction.strain.marks import measure_mark_tension
 
 __all__ = ["Survey", "as_reduction_error", "located_again", "read_test", "survey_campaign"]
 
 # records larger than this together are read again rather than kept between the passes
 KEPT_SAMPLES = 10_000_000
-# share of the greatest tension up to which the first rise is kept, to tell where slack ends
-FIRST_RISE = 0.5
 
 
 @dataclass
 class Survey:
     """One test after the first pass.
 
-    ``mark_tension`` holds, by specimen, one tension [N] for each pooled mark that was
-    read in this test, in the order of the marks.  ``greatest`` holds, by specimen, position
-    [m] and tension [N] of the samples at the greatest position, ``greatest_tension`` [N] that
-    of the test; ``greatest_measured_strain`` [1] that of the extensometer, where there is one,
-    or of the readings of a stepwise test;
-    ``first_rise`` position [m] and tension [N] of the samples up to half of its peak; ``found``
-    what a person is told of the log.
+    ``mark_tension`` and ``mark_tension_at_start`` hold, by specimen, one tension [N] for each
+    pooled mark that was read in this test, in the order of the marks.  ``extremes`` is how far
+    the test went; ``found`` what a person is told of the log.
     """
 
     plan: TestPlan
@@ -56,13 +48,7 @@ class Survey:
     mark_tension: dict[str, Floats] = field(default_factory=dict)
     mark_tension_at_start: dict[str, Floats] = field(default_factory=dict)
     zero_strain_position: float | None = None
-    has_extensometer: bool = False
-    position_is_length: bool = True
-    greatest: dict[str, tuple[Floats, Floats]] = field(default_factory=dict)
-    greatest_tension: dict[str, float] = field(default_factory=dict)
-    greatest_measured_strain: dict[str, float] = field(default_factory=dict)
-    first_rise: dict[str, tuple[Floats, Floats]] = field(default_factory=dict)
-    slack_tension: float = float("nan")
+    extremes: Extremes = field(default_factory=Extremes)
     found: dict[str, Any] = field(default_factory=dict)
     error: ReductionError | None = None
 
@@ -90,14 +76,19 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
     files = [(campaign.file(name), campaign.layouts[layout], name) for name, layout in plan.files]
     if plan.kind == "stepwise":
         readings, sources = read_step_readings(files, test_id=plan.id)
-        survey = Survey(plan, sources, step_readings=readings, n_rows=readings.time.size)
-        for name in plan.specimens[:1]:  # weights hang from one specimen
-            gauge = campaign.specimens[name].gauge_length
-            survey.greatest_tension[name] = float(readings.tension.max())
-            survey.greatest_measured_strain[name] = greatest_step_strain(
-                readings, stated_gauge_length=gauge
+        name = plan.specimens[0]  # weights hang from one specimen
+        extremes = extremes_of_readings(
+            readings, name, stated_gauge_length=campaign.specimens[name].gauge_length
+        )
+        return [
+            Survey(
+                plan,
+                sources,
+                step_readings=readings,
+                n_rows=readings.time.size,
+                extremes=extremes,
             )
-        return [survey]
+        ]
     record, sources = read_record(
         files,
         test_id=plan.id,
@@ -145,69 +136,22 @@ def _needs_length(campaign: Campaign, plan: TestPlan) -> bool:
 
 def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Survey:
     located = locate(record, kind=plan.kind, settings=plan.settings)
-    survey = Survey(plan, sources, located, n_rows=record.n_samples)
-    survey.has_extensometer = record.measured_strain is not None
-    survey.position_is_length = record.position_is_length
-    survey.found = found_in(located)
-    survey.n_cycles = 0 if located.cycles is None else located.cycles.n_cycles
-    survey.greatest = _greatest(located)
-    survey.greatest_tension = {
-        name: float(np.nanmax(tension))
-        for name, tension in zip(record.specimens, located.tension, strict=True)
-        if np.isfinite(tension).any()
-    }
-    if record.measured_strain is not None:
-        survey.greatest_measured_strain = {
-            name: float(np.nanmax(strain))
-            for name, strain in zip(record.specimens, record.measured_strain, strict=True)
-            if np.isfinite(strain).any()
-        }
-    survey.slack_tension = located.standstills.slack_tension
-    position = located.position
-    for name, tension in zip(record.specimens, located.tension, strict=True):
-        taut = tension > FIRST_RISE * np.nanmax(tension, initial=0.0)
-        stop = int(np.argmax(taut)) + 1 if taut.any() else 0
-        survey.first_rise[name] = (position[:stop].copy(), tension[:stop].copy())
-    return survey
-
-
-def _greatest(located: Located) -> dict[str, tuple[Floats, Floats]]:
-    """Position and tension of the samples at the greatest position.
-
-    At a held length the rubber goes on stretching as its splices relax, so the greatest
-    strain is at one of these samples, which the strain model tells.
-    """
-    record = located.record
-    position = located.position
-    if not np.isfinite(position).any():
-        return {}
-    far = float(np.nanmax(position))
-    at_top = np.flatnonzero(position >= far - located.standstills.position_tolerance)
-    found = {}
-    for name, tension in zip(record.specimens, located.tension, strict=True):
-        if np.isfinite(tension[at_top]).any():
-            found[name] = (position[at_top], tension[at_top])
-    return found
+    return Survey(
+        plan,
+        sources,
+        located,
+        n_rows=record.n_samples,
+        n_cycles=0 if located.cycles is None else located.cycles.n_cycles,
+        extremes=extremes_of_test(located),
+        found=found_in(located),
+    )
 
 
 def _measure_marks(survey: Survey, located: Located | None, marks: dict[str, SpliceMarks]) -> None:
     """Tension while each mark of a log was read, into the survey of its test or first step."""
-    if located is None:
-        return
-    for index, name in enumerate(survey.plan.specimens):
-        if name in marks and survey.plan.log in marks[name].test:
-            read_at_end, read_at_start = (
-                measure_mark_tension(
-                    marks[name],
-                    test_id=survey.plan.log,
-                    standstills=located.standstills,
-                    tension=located.tension[index],
-                    reading=reading,
-                )
-                for reading in ("end", "start")
-            )
-            survey.mark_tension[name] = read_at_end
-            survey.mark_tension_at_start[name] = read_at_start
+    if located is not None:
+        at = tension_at_marks(located, marks, survey.plan.specimens, log=survey.plan.log)
+        survey.mark_tension, survey.mark_tension_at_start = at["end"], at["start"]
 
 
 def survey_campaign(
