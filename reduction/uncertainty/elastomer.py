@@ -1,7 +1,11 @@
 r"""What shared errors do to the parameters of a hyperelastic law fitted to a first loading.
 
-.. math:: \delta p = J^{+} \left(\delta\sigma|_\varepsilon\right), \qquad
+.. math:: \delta p = \left(J^T J - \sum_i r_i \frac{\partial^2 \sigma_i}{\partial p^2}\right)^{-1}
+          J^T \left(\delta\sigma|_\varepsilon\right), \qquad
           J = \partial \sigma / \partial p
+
+with what the law leaves over of the stress, r, which counts where a law is not linear in its
+parameters.
 
 A gain scales every modulus by itself, a diameter by twice itself, and neither touches an
 exponent.
@@ -25,20 +29,27 @@ from reduction.record import Floats
 
 __all__ = ["elastomer_contributions"]
 
-_STEP = 1e-6  # of a parameter: the law is linear in its moduli, nearly so in exponents over this
+_STEP = 1e-4  # of a parameter: for first and second differences of a smooth law
 
 
 def elastomer_contributions(
-    stress: ArrayLike, *, strain: ArrayLike, law: Law, parameters: dict[str, float]
+    contribution: ArrayLike,
+    *,
+    strain: ArrayLike,
+    stress: ArrayLike,
+    law: Law,
+    parameters: dict[str, float],
 ) -> Floats:
     """Contributions to the parameters of one law.
 
     Parameters
     ----------
-    stress : array_like, shape (n_components, n_strains)
-        Contributions to the nominal stress at the strains of the first loading. [Pa]
+    contribution : array_like, shape (n_components, n_strains)
+        To the nominal stress at the strains of the first loading. [Pa]
     strain : array_like, shape (n_strains,)
         [1]
+    stress : array_like, shape (n_strains,)
+        As it was fitted. [Pa]
     law : str
         As fitted.
     parameters : dict of str to float
@@ -57,8 +68,9 @@ def elastomer_contributions(
     Notes
     -----
     First order ([1]_), through the least squares that made the fit: on means over even
-    intervals of strain, each of which counts alike.  Where several sets of parameters fit alike
-    ([2]_), the change stays beside the set that was found.
+    intervals of strain, each of which counts alike.  Two Ogden terms may fit alike with very
+    different parameters ([2]_): the change is that of the set that was found, and no first order
+    tells of a jump to another.
 
     Examples
     --------
@@ -66,28 +78,48 @@ def elastomer_contributions(
 
     >>> x = np.linspace(0.05, 2.0, 100)
     >>> known = {"c10": 2e5, "c01": 5e4}
-    >>> more = 0.01 * hyperelastic_stress(x, law="mooney-rivlin", parameters=known)
-    >>> print(elastomer_contributions([more], strain=x, law="mooney-rivlin", parameters=known)
-    ...     .round(3))
+    >>> y = hyperelastic_stress(x, law="mooney-rivlin", parameters=known)
+    >>> print(elastomer_contributions([0.01 * y], strain=x, stress=y, law="mooney-rivlin",
+    ...     parameters=known).round(3))
     [[2000.  500.]]
     """
-    rows, at = np.asarray(stress, dtype=np.float64), np.asarray(strain, dtype=np.float64)
-    known = np.isfinite(rows).all(axis=0)
-    grids = [even_grid(at[known], row[known]) for row in rows]
+    rows, at = np.asarray(contribution, dtype=np.float64), np.asarray(strain, dtype=np.float64)
+    level = np.asarray(stress, dtype=np.float64)
+    known = np.isfinite(rows).all(axis=0) & np.isfinite(level)
     names = PARAMETERS[law]
-    if not grids:
+    if not len(rows):
         return np.empty((0, len(names)))
-    grid = grids[0][0]
-    columns = []
-    for name in names:
-        step = _STEP * max(abs(parameters[name]), _STEP)
-        above, below = (
-            hyperelastic_stress(grid, law=law, parameters={**parameters, name: value})
-            for value in (parameters[name] + step, parameters[name] - step)
-        )
-        columns.append((above - below) / (2 * step))
-    jacobian = np.stack(columns, axis=1)
-    scale = np.linalg.norm(jacobian, axis=0)
+    grid, fitted = even_grid(at[known], level[known])
+    moved = np.stack([even_grid(at[known], row[known])[1] for row in rows])
+    centre = np.array([parameters[name] for name in names])
+    step = _STEP * np.maximum(np.abs(centre), _STEP)
+
+    def model(place: Floats) -> Floats:
+        given = dict(zip(names, place.tolist(), strict=True))
+        return hyperelastic_stress(grid, law=law, parameters=given)
+
+    # in steps of its own, every parameter is of one size
+    way = np.diag(step)
+    jacobian = np.stack([(model(centre + one) - model(centre - one)) / 2 for one in way], axis=1)
+    left = fitted - model(centre)
+    bend = np.array(
+        [
+            [
+                left
+                @ (
+                    model(centre + one + other)
+                    - model(centre + one - other)
+                    - model(centre - one + other)
+                    + model(centre - one - other)
+                )
+                / 4
+                for other in way
+            ]
+            for one in way
+        ]
+    )
+    hessian = jacobian.T @ jacobian - bend
+    scale = np.sqrt(np.abs(np.diag(hessian)))
     scale = np.where(scale > 0, scale, 1.0)
-    inverse = np.linalg.pinv(jacobian / scale) / scale[:, None]
-    return np.stack([inverse @ values for _, values in grids])
+    solved = np.linalg.pinv(hessian / np.outer(scale, scale)) / np.outer(scale, scale)
+    return np.asarray(moved @ jacobian @ solved * step)

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from reduction.moduli.hyperelastic import LAWS
+from reduction.moduli.product import ElastomerFit
 from reduction.product import ReducedTest
 from reduction.record import Floats, areas_of
 from reduction.strain.model import StrainModel
@@ -109,28 +110,27 @@ def of_elastomers(
             {"stress": stress.values["stress"][diameterless]},
         )
         stress = with_diameter(stress, errors[place], value, area=area)
-        own += _of_fit(stress, first.strain_bin, fit.law, fit.parameters)
+        own += _of_fit(stress, first.strain_bin, value["stress"], fit)
     return [stacked(own)]
 
 
 def _of_fit(
-    stress: Contributions, strain: Floats, law: str, parameters: dict[str, float]
+    contribution: Contributions, strain: Floats, stress: Floats, fit: ElastomerFit
 ) -> list[Contributions]:
     """One entry a parameter: a modulus or an exponent, whichever it is."""
-    if np.isfinite(list(parameters.values())).all():
+    if np.isfinite(list(fit.parameters.values())).all():
         rows = elastomer_contributions(
-            stress.values["stress"],
-            strain=strain,
-            law=next(one for one in LAWS if one == law),
-            parameters=parameters,
-        )
+            contribution.values["stress"], strain=strain, stress=stress,
+            law=next(one for one in LAWS if one == fit.law), parameters=fit.parameters,
+        )  # fmt: skip
     else:
-        rows = np.full((len(stress.component), len(parameters)), np.nan)
+        rows = np.full((len(contribution.component), len(fit.parameters)), np.nan)
     return [
         merged(
             [
                 Contributions(
-                    stress.component, {"elastomer_modulus": column, "elastomer_exponent": column}
+                    contribution.component,
+                    {"elastomer_modulus": column, "elastomer_exponent": column},
                 )
             ]
         )
