@@ -14,6 +14,7 @@ import xarray as xr
 
 from reduction.archive.values import Values, texts
 from reduction.archive.variable import Variable, companion, count, label
+from reduction.errors import ArchiveError
 from reduction.record import Floats
 from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.uncertainty.product import Component, Contributions
@@ -134,15 +135,28 @@ def with_shared(
     -------
     values : dict of str to ndarray
         New; equal where nothing is shared.
+
+    Raises
+    ------
+    ArchiveError
+        If there are contributions to a quantity that has no variable for them.
     """
+    homeless = sorted(set(contributions.values) - set(SHARED)) if contributions else []
+    if homeless:
+        raise ArchiveError(
+            "the archive has no variable for contributions of shared errors",
+            found=", ".join(homeless),
+            needed="quantities of reduction.archive.shared.SHARED",
+            hint="this is a fault of the program, not of the campaign",
+        )
     found = dict(values)
     for name, shared in of_cycles.items():
         _combine(found, name, shared[None])
     if contributions is None:
         return found
     for name, rows in contributions.values.items():
-        if name not in SHARED or name not in values:
-            continue
+        if name not in values:
+            continue  # of a stage that this test has not
         if random is not None and name in random:
             found[f"{name}_standard_uncertainty"] = random[name]
         found[f"{name}_random_standard_uncertainty"] = _combine(found, name, rows)

@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
 from reduction.record import Floats
-from reduction.uncertainty.curves import by_diameter
+from reduction.uncertainty.curves import by_diameter, diameter_error
 from reduction.uncertainty.field import ErrorField
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
@@ -87,7 +87,7 @@ def with_diameter(
             else np.zeros(array.shape[1:])
         )
         rows[name] = np.concatenate([array, own[None]])
-    return Contributions((*found.component, Component("diameter", errors.specimen)), rows)
+    return Contributions((*found.component, diameter_error(errors)), rows)
 
 
 def section_contributions(errors: InstrumentErrors, *, area: float) -> Contributions:
@@ -124,7 +124,7 @@ def section_contributions(errors: InstrumentErrors, *, area: float) -> Contribut
     """
     if not errors.diameter:
         return Contributions((), {"diameter": np.empty(0), "area": np.empty(0)})
-    component = (Component("diameter", errors.specimen),)
+    component = (diameter_error(errors),)
     rows = {
         "diameter": np.array([errors.diameter]),
         "area": -by_diameter(area, errors, area=area).reshape(1),
@@ -139,23 +139,27 @@ def stress_contributions(
     stress: ArrayLike,
     tension_slope: ArrayLike,
     area: float,
+    strain_rate: ArrayLike = 0.0,
 ) -> Contributions:
     r"""Contributions to the stress at stated strains.
 
-    .. math:: \delta\sigma = (\delta T - T' \delta\varepsilon) / A - 2 \sigma \, \delta d / d
+    .. math:: \delta\sigma = (\delta T - T' \delta\varepsilon - T' \dot\varepsilon \Delta t) / A
+              - 2 \sigma \, \delta d / d
 
     Parameters
     ----------
     field : ErrorField
         At these strains.
     errors : InstrumentErrors
-        For the diameter.
+        For lag and diameter.
     stress : array_like, shape (...)
         Nominal. [Pa]
     tension_slope : array_like, shape (...)
         Of tension over strain there. [N]
     area : float
         Nominal. [m2]
+    strain_rate : array_like, shape (...)
+        At which it was stretched: tension that is logged late is lower. [s-1]
 
     Returns
     -------
@@ -185,7 +189,13 @@ def stress_contributions(
     """
     value, slope = as_same_shape(stress=stress, tension_slope=tension_slope)
     rows = (field.tension - slope * field.strain) / area
-    found = Contributions(field.component, {"stress": rows})
+    component = field.component
+    if errors.lag:
+        late = errors.lag * (1 - field.strain_by_tension * slope)
+        own = np.broadcast_to(-late * slope * np.asarray(strain_rate) / area, value.shape)
+        component = (*component, Component("lag", errors.tension_instrument))
+        rows = np.concatenate([rows, own[None]])
+    found = Contributions(component, {"stress": rows})
     return with_diameter(found, errors, {"stress": value}, area=area)
 
 

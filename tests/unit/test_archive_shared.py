@@ -1,8 +1,10 @@
 """Random and shared parts of an uncertainty on their way into an archive."""
 
 import numpy as np
+import pytest
 
 from reduction.archive.shared import with_shared
+from reduction.errors import ArchiveError
 from reduction.uncertainty.product import Component, Contributions
 
 CELL, TAPE = Component("tension_gain", "cell"), Component("strain_calibration", "new", 2)
@@ -71,3 +73,9 @@ def test_where_no_contribution_is_known_the_random_part_still_stands():
     )  # fmt: skip
     assert (found["tangent_modulus_standard_uncertainty"] == 1.0).all()
     assert np.isnan(found["tangent_modulus_uncertainty_contribution"]).all()
+
+
+def test_contributions_without_a_variable_are_refused_and_not_dropped():
+    lost = Contributions((Component("tension_gain", "cell"),), {"test_speed": np.ones((1, 1))})
+    with pytest.raises(ArchiveError, match="no variable for contributions of shared errors"):
+        with_shared(values(), lost, {})

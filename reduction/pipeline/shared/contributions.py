@@ -12,7 +12,7 @@ import numpy as np
 
 from reduction.line.product import SlowPull
 from reduction.line.pullgrid import BREAK_SHARES, tension_grid
-from reduction.pipeline.shared.curves import of_curves, of_segments, strain_rates
+from reduction.pipeline.shared.curves import of_curves, of_segments, rise_rates, strain_rates
 from reduction.pipeline.shared.cycles import of_cycles, of_ends, of_slips
 from reduction.pipeline.shared.holds import of_holds, of_pairs
 from reduction.pipeline.shared.loops import of_dynamic_modulus, of_line, of_loops
@@ -26,6 +26,9 @@ from reduction.uncertainty.join import merged, renamed, stacked
 from reduction.uncertainty.product import Contributions, InstrumentErrors
 
 __all__ = ["contributions_of_test", "shared_uncertainty_of_cycles"]
+
+# an archive has them for each cycle, not for the means of a test
+_OF_CYCLES_ALONE = ("peak_tension", "valley_tension")
 
 
 def contributions_of_test(
@@ -141,11 +144,11 @@ def _of_specimen(
             yield of_segments(test.curves, test.segments, index, errors, model, area, rate)
     # without an area the curve is one of tension, of which the slope is not kept
     if test.first_loading is not None and np.isfinite(area):
-        still = np.zeros((2, 2, test.first_loading.strain_bin.size))
-        yield of_curves(test.first_loading, "_first_loading", index, errors, model, area, still)
+        rate = rise_rates(test, index) if errors.lag else np.zeros((2, 2, 1))
+        yield of_curves(test.first_loading, "_first_loading", index, errors, model, area, rate)
     if summary is not None and test.cycles is not None:
         of_loop = of_loops(summary, index, errors, model, test.cycles, cycles)
-        yield _named(of_loop, "test_")
+        yield _named(of_loop, "test_", left_out=_OF_CYCLES_ALONE)
         if np.isfinite(area):
             yield _named(of_dynamic_modulus(of_loop, summary, index, errors, area), "test_")
         if test.line_of_test is not None and pull is not None:
@@ -155,5 +158,6 @@ def _of_specimen(
             )
 
 
-def _named(found: Contributions, prefix: str) -> Contributions:
-    return renamed(found, {name: f"{prefix}{name}" for name in found.values})
+def _named(found: Contributions, prefix: str, *, left_out: Sequence[str] = ()) -> Contributions:
+    names = [name for name in found.values if name not in left_out]
+    return renamed(found, {name: f"{prefix}{name}" for name in names})

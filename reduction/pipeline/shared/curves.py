@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from reduction.moduli.product import ModulusCurves, Segments
 from reduction.pipeline.shared.loops import speed_ratio
@@ -15,7 +16,7 @@ from reduction.uncertainty.field import error_field
 from reduction.uncertainty.product import Contributions, InstrumentErrors
 from reduction.uncertainty.segments import segment_contributions
 
-__all__ = ["of_curves", "of_segments", "strain_rates"]
+__all__ = ["of_curves", "of_segments", "rise_rates", "strain_rates"]
 
 _SMOOTHED = 5  # bins: a slope of the modulus from bin to bin is mostly scatter
 
@@ -39,6 +40,36 @@ def strain_rates(
         speed_ratio=float(speed_ratio(summary, index, model, test.cycles, cycles)),
     )
     return np.stack([[rate, -rate], [slope, -slope]])
+
+
+def rise_rates(test: ReducedTest, index: int) -> Floats:
+    """Strain rate of the first rise on its grid, and its slope; zero on the descending branch.
+
+    From the times at which a strain is first reached: a stop on the way is one slow bin, which the
+    median of its neighbours leaves out.
+    """
+    if test.first_loading is None or test.record is None or test.strain is None:
+        return np.zeros(
+            (2, 2, 0 if test.first_loading is None else test.first_loading.strain_bin.size)
+        )
+    at = test.first_loading.strain_bin
+    still = np.zeros(at.size)
+    strain = test.strain[index]
+    reached = strain >= at[-1]
+    end = int(reached.argmax()) + 1 if reached.any() else strain.size
+    highest = np.fmax.accumulate(strain[:end])
+    begin = int(np.isfinite(highest).argmax())
+    place = np.searchsorted(highest[begin:], at) + begin
+    inside = place < end
+    if inside.sum() <= _SMOOTHED:
+        return np.stack([[still, still], [still, still]])
+    reach, time = at[inside], test.record.time[place[inside]]
+    with np.errstate(divide="ignore"):
+        found = median_filter(
+            np.gradient(reach) / np.gradient(time), size=_SMOOTHED, mode="nearest"
+        )
+    rate = np.interp(at, reach, np.where(np.isfinite(found), found, 0.0))
+    return np.stack([[rate, still], [_smooth_slope(rate, at), still]])
 
 
 def _smooth_slope(modulus: Floats, strain: Floats) -> Floats:

@@ -16,10 +16,10 @@ from reduction.record import Floats
 from reduction.settings import CycleSettings
 from reduction.strain.inverse import position_by_model
 from reduction.strain.model import StrainModel
-from reduction.uncertainty.curves import by_diameter
+from reduction.uncertainty.curves import by_diameter, diameter_error
 from reduction.uncertainty.line import line_contributions
 from reduction.uncertainty.loops import loop_contributions
-from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
+from reduction.uncertainty.product import Contributions, InstrumentErrors
 
 __all__ = ["of_dynamic_modulus", "of_line", "of_loops", "speed_ratio"]
 
@@ -92,7 +92,7 @@ def of_dynamic_modulus(
     rows = of_loop.values["apparent_spring_constant"] / area
     component = of_loop.component
     if errors.diameter:
-        component = (*component, Component("diameter", errors.specimen))
+        component = (*component, diameter_error(errors))
         own = by_diameter(summary.dynamic_modulus[index], errors, area=area)
         rows = np.concatenate([rows, own[None]])
     return Contributions(component, {"dynamic_modulus": rows})

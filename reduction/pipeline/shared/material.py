@@ -8,6 +8,7 @@ import numpy as np
 
 from reduction.moduli.hyperelastic import LAWS
 from reduction.moduli.product import ElastomerFit
+from reduction.pipeline.shared.curves import rise_rates
 from reduction.product import ReducedTest
 from reduction.record import Floats, areas_of
 from reduction.strain.model import StrainModel
@@ -49,8 +50,13 @@ def _of_stress(
         else np.full(level.shape, np.nan)
     )
     field = error_field(errors, model, strain=level, tension=stress * area)
+    rate = (
+        np.interp(level, test.first_loading.strain_bin, rise_rates(test, index)[0, 0])
+        if errors.lag
+        else 0.0
+    )
     found = stress_contributions(
-        field, errors, stress=stress, tension_slope=slope * area, area=area
+        field, errors, stress=stress, tension_slope=slope * area, area=area, strain_rate=rate
     )
     order = np.argsort(level, kind="stable")
     return Contributions(found.component, {"stress_at_strain": found.values["stress"][:, order]})

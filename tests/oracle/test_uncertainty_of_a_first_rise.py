@@ -1,0 +1,62 @@
+"""The first rise of a tether whose load is logged later still: logs shifted and reduced again."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reduction.archive.open import open_archive
+from reduction.batch.run import run_campaign
+from reduction.campaign.load import load_campaign
+
+RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
+LAG = 0.020  # as the campaign states it [s]
+NAMES = ("branch_tension_first_loading", "stress_at_strain")
+
+
+def reduced(folder, late=0.0, zero=0.0):
+    raw = folder / "raw"
+    shutil.copytree(RAW, raw)
+    path = raw / "T-1.csv"
+    lines = path.read_text().splitlines(keepends=True)
+    head = "".join(line for line in lines if line.startswith("#"))
+    table = pd.read_csv(path, comment="#")
+    time = table["time_s"].to_numpy()
+    for name in ("load_new_lb", "load_used_lb"):
+        load = table[name].to_numpy()
+        table[name] = np.interp(time - late, time, load) + zero
+    path.write_text(head + table.to_csv(index=False, float_format="%.6f"))
+    found = run_campaign(
+        load_campaign(raw / "campaign.toml"), processed=folder / "p", reports=folder / "r",
+        clock=lambda: 0.0, tests=["T-1"],
+    )  # fmt: skip
+    with open_archive(found.processed / "T-1.nc") as archive:
+        return archive.load()
+
+
+@pytest.fixture(scope="module")
+def stated(tmp_path_factory):
+    return reduced(tmp_path_factory.mktemp("stated"))
+
+
+def contribution(archive, name, source):
+    of = archive["uncertainty_source"].to_numpy().astype(str) == source
+    return np.nansum(archive[f"{name}_uncertainty_contribution"].to_numpy()[of], axis=0)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_later_load_is_lower_on_the_rise_by_its_rate(stated, tmp_path, name):
+    above, below = (
+        reduced(tmp_path / side, late=way * LAG)[name].to_numpy()
+        for side, way in (("later", 1), ("earlier", -1))
+    )
+    wanted, found = (above - below) / 2, contribution(stated, name, "lag")
+    known = np.isfinite(wanted) & np.isfinite(found) & (found != 0)
+    assert known.sum() > 3
+    assert (wanted[known] < 0).mean() > 0.95
+    # at both ends of the rise a window is one-sided, and noise of the log is in the difference
+    assert found[known].sum() == pytest.approx(wanted[known].sum(), rel=0.1)
+    far = np.abs(found[known] - wanted[known]) > 0.25 * np.abs(wanted[known]).max()
+    assert far.mean() < 0.1
