@@ -9,7 +9,7 @@ from reduction.batch.survey import Survey, as_reduction_error, located_again
 from reduction.campaign.plan import Campaign
 from reduction.errors import ReductionError
 from reduction.line.product import SlowPull
-from reduction.pipeline.reduce import strain_of_record
+from reduction.pipeline.channels import strain_of_record
 from reduction.pipeline.rope import PullConditions, pull_specimens
 from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.strain.model import StrainModel

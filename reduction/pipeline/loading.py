@@ -74,24 +74,25 @@ def parts_of_first_loading(
     history: History | None,
     *,
     kind: str,
-) -> dict[str, Any]:
+) -> tuple[dict[str, Any], list[str]]:
     """The first rise of a record that begins slack: curve; of rubber, stress and laws too.
 
-    Without an area there is one of a bedding-in alone: its tension, and no modulus.
+    Without an area there is one of a bedding-in alone: its tension, and no modulus.  Beside the
+    fields, what a reader has to know of them.
     """
     begins = [force[np.isfinite(force).argmax()] for force in tension]
     if all(start > located.standstills.slack_tension for start in begins):
-        return {}
+        return {}, []
     area = areas_of(specimens)
     has_area = np.isfinite(area)
     if not has_area.all() and kind != "bedding-in":
-        return {}  # the slow pull of a rope or hose is `reduction.line`'s, without an area
+        return {}, []  # the slow pull of a rope or hose is `reduction.line`'s, without an area
     curves = first_loading_curves(
         strain, tension, area=np.where(has_area, area, 1.0), settings=settings.modulus,
         standstills=located.standstills,
     )  # fmt: skip
     if curves is None or curves.strain_bin.size < 2:
-        return {}
+        return {}, []
     curves = _without_modulus(curves, ~has_area)
     rise = curves.branch_tension[:, 0]
     names = located.record.specimens
@@ -99,7 +100,7 @@ def parts_of_first_loading(
     rubber = np.array([specimen.is_rubber for specimen in specimens])
     if not rubber.any():
         # cords carry a hose: neither a law of rubber nor its trade's stress at an elongation
-        return parts
+        return parts, []
     levels = settings.modulus.stress_at_strain
     is_still = located.standstills.covers(located.record.n_samples)
     stresses = run_blocks(
@@ -123,7 +124,6 @@ def parts_of_first_loading(
         "stress_at_strain": stress,
         "stress_at_strain_standard_uncertainty": spread,
         "stress_at_strain_levels": levels,
-        "notes": notes,
     }
     earlier = np.full(area.size, np.nan) if history is None else history.earlier_maximum_strain
     is_first = [history is None or _is_new(history, index) for index in range(area.size)]
@@ -140,4 +140,4 @@ def parts_of_first_loading(
     ]
     parts["elastomers"] = tuple(fit for fits, _ in found for fit in fits)
     notes += [reason for _, reason in found if reason]
-    return parts
+    return parts, notes

@@ -1,0 +1,88 @@
+"""Channels of a located test that follow from its own: strain, stress, flags."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from reduction.pipeline.locate import Located
+from reduction.record import Floats, Quality, Record, Specimen, areas_of
+from reduction.strain.evaluate import extrapolated, strain_by_model
+from reduction.strain.model import StrainModel
+from reduction.strain.stress import nominal_stress
+from reduction.uncertainty.product import InstrumentErrors
+from reduction.workers import run_blocks
+
+__all__ = ["flagged_record", "parts_of_stress", "strain_of_record"]
+
+_BLOCK = 1 << 16  # samples that stay in the cache
+
+
+def strain_of_record(
+    record: Record, position: Floats, tension: Floats, models: Sequence[StrainModel]
+) -> Floats:
+    """Strain of each specimen; NaN where position, or a tension that it needs, is not usable."""
+    strain = np.empty_like(tension)
+    measured = record.measured_strain
+
+    def fill(place: tuple[int, slice]) -> None:
+        index, part = place
+        strain[place] = strain_by_model(
+            models[index],
+            position=position[part],
+            tension=tension[place],
+            measured_strain=None if measured is None else measured[place],
+        )
+
+    starts = range(0, record.n_samples, _BLOCK)
+    run_blocks(
+        fill, [(row, slice(low, low + _BLOCK)) for row in range(len(models)) for low in starts]
+    )
+    return strain
+
+
+def parts_of_stress(
+    record: Record,
+    tension: Floats,
+    specimens: tuple[Specimen, ...],
+    instruments: Sequence[InstrumentErrors],
+) -> dict[str, Any]:
+    """Nominal stress, by field of `ReducedTest`, where a diameter is known.
+
+    NaN where tension is not usable.
+    """
+    if not any(specimen.diameter for specimen in specimens):
+        return {}
+    stress = np.full_like(tension, np.nan)
+    for row, specimen in enumerate(specimens):
+        if specimen.diameter:
+            stress[row] = nominal_stress(tension[row], area=specimen.area)
+    spread = record.tension_standard_uncertainty
+    if not spread:
+        return {"nominal_stress": stress}
+    of_stress = np.array(spread) / areas_of(specimens)
+    for row, errors in enumerate(instruments):
+        if errors.diameter and specimens[row].diameter:
+            level = np.sqrt(np.nanmean(stress[row] ** 2))
+            share = 2 * errors.diameter / specimens[row].mean_diameter
+            of_stress[row] = np.hypot(of_stress[row], level * share)
+    return {"nominal_stress": stress, "nominal_stress_standard_uncertainty": of_stress}
+
+
+def flagged_record(located: Located, models: Sequence[StrainModel]) -> Record:
+    """The record with the flags that only cycles and strain models can set."""
+    record, cycles = located.record, located.cycles
+    flags = record.quality_flag.copy()
+    of_position = record.crosshead_position_quality_flag
+    for index, model in enumerate(models):
+        outside = extrapolated(model, record.crosshead_position, record.tension[index])
+        flags[index][outside] |= np.uint16(Quality.EXTRAPOLATED)
+    if cycles is not None:
+        uneven = (cycles.cycle_number > 0) & ~cycles.is_constant_rate
+        flags[:, uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
+        of_position = of_position.copy()
+        of_position[uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
+    return replace(record, quality_flag=flags, crosshead_position_quality_flag=of_position)
