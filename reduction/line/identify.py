@@ -21,58 +21,29 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
-from reduction.line.product import REASONS, LineParameters
+from reduction.line.product import LineParameters
 from reduction.line.sensitivity import (
     AMPLITUDE_INPUTS,
     FUNDAMENTAL_INPUTS,
-    OUTPUTS,
     amplitude_sensitivities,
     line_sensitivities,
 )
+from reduction.line.solve import (
+    NOT_POSITIVE,
+    TOO_WIDE,
+    fault_of_loop,
+    line_of_loop,
+    relative_uncertainties,
+)
 from reduction.record import Floats
 
-__all__ = ["identify_by_amplitude", "identify_by_fundamental", "reasons_in_words"]
-
-_UNKNOWN_REST, _BAD_REST, _MISSING, _NOT_POSITIVE, _TOO_WIDE, _NOT_ABOVE = range(1, 7)
-
-
-def reasons_in_words(reason: ArrayLike) -> tuple[str, ...]:
-    """How many lines have no K_1 and tau, and why.
-
-    Parameters
-    ----------
-    reason : array_like of int, shape (...)
-        From `LineParameters`. [1]
-
-    Returns
-    -------
-    words : tuple of str
-        One entry a reason that occurs.
-
-    Raises
-    ------
-    KeyError
-        If a code is none of `REASONS`.
-
-    Examples
-    --------
-    >>> reasons_in_words([0, 6, 6])
-    ('K_1 and tau: 2 of 3 are refused: the storage spring constant does not exceed the
-    quasi-static one',)
-    """
-    codes, counts = np.unique(np.asarray(reason), return_counts=True)
-    total = int(counts.sum())
-    return tuple(
-        f"K_1 and tau: {count} of {total} are refused: {REASONS[int(code)]}"
-        for code, count in zip(codes, counts, strict=True)
-        if code
-    )
+__all__ = ["identify_by_amplitude", "identify_by_fundamental"]
 
 
 def _broadcast(**named: ArrayLike) -> dict[str, Floats]:
@@ -88,104 +59,6 @@ def _broadcast(**named: ArrayLike) -> dict[str, Floats]:
             needed="shapes that broadcast",
         ) from error
     return dict(zip(named, shaped, strict=True))
-
-
-def _relative(
-    values: dict[str, Floats], standard_uncertainty: Mapping[str, ArrayLike] | None
-) -> Floats:
-    """Relative standard uncertainties, one row an input; NaN where not stated."""
-    stated = standard_uncertainty or {}
-    unknown = sorted(set(stated) - set(values))
-    if unknown:
-        raise DataError(
-            f"the line has no input '{unknown[0]}'", needed=f"one of {', '.join(values)}"
-        )
-    shape = next(iter(values.values())).shape
-    relative = np.empty((len(values), *shape))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        for row, (name, value) in enumerate(values.items()):
-            relative[row] = np.asarray(stated.get(name, np.nan), dtype=np.float64) / value
-    return np.abs(relative)
-
-
-def _solve(
-    stored: Floats, lost: Floats, inputs: dict[str, Floats], reason: NDArray[np.int8]
-) -> dict[str, Floats]:
-    """Fields of `LineParameters` but the uncertainties."""
-    rest = inputs["quasi_static_spring_constant"]
-    turn_rate = 2 * np.pi * inputs["frequency"]
-    stands = reason == 0
-    with np.errstate(over="ignore"):
-        excess = np.where(stands, stored - rest, np.nan)
-        turn = excess / np.where(stands, lost, np.nan)
-        # A + E''^2/A, in the form that does not square small numbers
-        spring = excess + lost / turn
-        time = turn / turn_rate
-        dashpot = spring * time
-    return {
-        "quasi_static_spring_constant": rest,
-        "storage_spring_constant": stored,
-        "loss_spring_constant": lost,
-        "loss_angle": np.arctan2(lost, stored),
-        "dissipation_spring_constant": spring,
-        "relaxation_time": time,
-        "dashpot_coefficient": dashpot,
-        "angular_frequency": turn_rate,
-        "angular_frequency_relaxation_time": turn,
-        "conditioning": rest / excess,
-    }
-
-
-def _finish(
-    stored: Floats,
-    lost: Floats,
-    inputs: dict[str, Floats],
-    *,
-    bad_loop: NDArray[np.int8],
-    sensitivities: Callable[[ArrayLike, ArrayLike, ArrayLike], Floats],
-    relative: Floats,
-    correlation: ArrayLike,
-    reading: str,
-) -> LineParameters:
-    """Reasons, parameters and uncertainties from E' and E''."""
-    rest = inputs["quasi_static_spring_constant"]
-    reason = np.select(
-        [bad_loop > 0, np.isnan(rest), ~((rest > 0) & (rest < np.inf)), ~(stored > rest)],
-        [bad_loop, _UNKNOWN_REST, _BAD_REST, _NOT_ABOVE],
-        default=0,
-    ).astype(np.int8)
-    values = _solve(stored, lost, inputs, reason)
-    table = sensitivities(stored, lost, np.where(reason == 0, rest, np.nan))
-    # an input that a parameter does not feel need not have its uncertainty stated;
-    # K_0 is the last input of either table
-    random, shared, both = {}, {}, {}
-    with np.errstate(invalid="ignore", over="ignore"):
-        felt = np.where(table == 0, 0.0, table * relative)
-        crossed = 2 * np.asarray(correlation) * felt[:, 0] * felt[:, 2]
-        # differences of nearly equal terms may fall a rounding error below zero
-        random_part = np.sqrt(np.maximum((felt[:, :-1] ** 2).sum(axis=1) + crossed, 0))
-        for row, name in enumerate(OUTPUTS):
-            size = np.abs(values[name])
-            random[name] = np.asarray(size * random_part[row])
-            shared[name] = np.asarray(size * np.abs(felt[row, -1]))
-            both[name] = np.hypot(random[name], shared[name])
-    return LineParameters(
-        **{name: np.asarray(value) for name, value in values.items()},
-        reason=reason,
-        random_uncertainty=random,
-        shared_uncertainty=shared,
-        uncertainty=both,
-        reading=reading,
-        notes=reasons_in_words(reason),
-    )
-
-
-def _bad_loop(measured: list[Floats]) -> NDArray[np.int8]:
-    """Code of a loop with a quantity missing or not positive."""
-    missing = np.logical_or.reduce([np.isnan(one) for one in measured])
-    with np.errstate(invalid="ignore"):
-        sound = np.logical_and.reduce([(one > 0) & (one < np.inf) for one in measured])
-    return np.select([missing, ~sound], [_MISSING, _NOT_POSITIVE], default=0).astype(np.int8)
 
 
 def identify_by_amplitude(
@@ -256,22 +129,22 @@ def identify_by_amplitude(
         quasi_static_spring_constant=quasi_static_spring_constant,
     )
     apparent, energy, amplitude, rate = (inputs[name] for name in AMPLITUDE_INPUTS[:4])
-    bad = _bad_loop([apparent, energy, amplitude, rate])
+    bad = fault_of_loop([apparent, energy, amplitude, rate])
     sound = np.where(bad == 0, apparent, np.nan)
     with np.errstate(all="ignore"):
         lost = energy * sound**2 / (np.pi * amplitude**2)
-        bad = np.where((bad == 0) & ~(lost < apparent), np.int8(_TOO_WIDE), bad)
+        bad = np.where((bad == 0) & ~(lost < apparent), np.int8(TOO_WIDE), bad)
         # an area so small that its share of K_ap is no number any more
-        bad = np.where((bad == 0) & ~(lost > 0), np.int8(_NOT_POSITIVE), bad)
+        bad = np.where((bad == 0) & ~(lost > 0), np.int8(NOT_POSITIVE), bad)
         lost = np.where(bad == 0, lost, np.nan)
         stored = np.sqrt((sound - lost) * (sound + lost))
-    return _finish(
+    return line_of_loop(
         stored,
         lost,
         inputs,
-        bad_loop=bad,
+        fault=bad,
         sensitivities=amplitude_sensitivities,
-        relative=_relative(inputs, standard_uncertainty),
+        relative=relative_uncertainties(inputs, standard_uncertainty),
         correlation=correlation,
         reading="amplitude",
     )
@@ -328,15 +201,15 @@ def identify_by_fundamental(
         frequency=frequency,
         quasi_static_spring_constant=quasi_static_spring_constant,
     )
-    bad = _bad_loop([inputs[name] for name in FUNDAMENTAL_INPUTS[:3]])
+    bad = fault_of_loop([inputs[name] for name in FUNDAMENTAL_INPUTS[:3]])
     stored, lost = (np.where(bad == 0, inputs[name], np.nan) for name in FUNDAMENTAL_INPUTS[:2])
-    return _finish(
+    return line_of_loop(
         stored,
         lost,
         inputs,
-        bad_loop=bad,
+        fault=bad,
         sensitivities=line_sensitivities,
-        relative=_relative(inputs, standard_uncertainty),
+        relative=relative_uncertainties(inputs, standard_uncertainty),
         correlation=0.0,
         reading="fundamental",
     )

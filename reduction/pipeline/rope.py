@@ -10,11 +10,11 @@ import numpy as np
 
 from reduction.cycles.product import Loops
 from reduction.errors import DataError, FitError
-from reduction.line.identify import reasons_in_words
 from reduction.line.loops import identify_cycles, identify_run
 from reduction.line.product import SlowPull
 from reduction.line.pull import MISFIT_NOTED, fit_pull
 from reduction.line.quasistatic import quasi_static_of_run
+from reduction.line.solve import reasons_in_words
 from reduction.pipeline.locate import Located
 from reduction.record import Floats, Specimen
 from reduction.settings import CycleSettings
