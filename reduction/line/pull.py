@@ -19,7 +19,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,20 +30,21 @@ from reduction.errors import DataError, FitError
 from reduction.line.cubic import positive_range, printed_form
 from reduction.line.loading import find_loading, greatest_fall
 from reduction.line.product import SlowPull
+from reduction.line.pullblocks import (
+    N_BLOCKS,
+    block_means,
+    covariance_of_blocks,
+    misfit_of_cubic,
+    rates_of_pull,
+)
 from reduction.moduli.separable import lag_one_inflation
-from reduction.record import Floats, Integers
+from reduction.record import Integers
 
 __all__ = ["MISFIT_NOTED", "fit_pull"]
 
 # rms of what a cubic misses, over the strain of the pull: above it the curve is none
 MISFIT_NOTED = 0.01
 
-_BLOCKS = 100
-# degree that a load-strain curve may ask for beyond the cubic, and blocks that it needs
-_DEGREE_BEYOND = 6
-_FEWEST_BLOCKS_BEYOND = 20
-# times the square that noise makes, which three more terms pass once in thirty
-_BEYOND_NOISE = 3.0
 _FEWEST_BLOCKS = 8
 _FALL_NOTED = 0.02
 _FALL_REFUSED = 0.25
@@ -53,97 +54,6 @@ _UNEVEN_RATE = 2.0
 # strain at the reference tension, as a share of that of the pull, that is no zero
 _OFF_ZERO = 0.05
 _NOISE_FACTOR = 6.0
-
-
-@dataclass(frozen=True)
-class _Blocks:
-    """Means over equal steps of tension; ``powers`` has shape (n_blocks, 7)."""
-
-    time: Floats
-    strain: Floats
-    tension: Floats
-    powers: Floats
-
-
-def _block_means(time: Floats, strain: Floats, tension: Floats) -> _Blocks:
-    """Means over equal steps of the greatest tension so far.
-
-    A hold, or a slow stretch, falls into one block and counts once, however many readings
-    it has; and the cubic is fitted to means of powers, so that blocks cost it nothing.
-    """
-    reached = np.maximum.accumulate(tension)
-    low, high = float(tension[0]), float(reached[-1])
-    share = np.clip((reached - low) / (high - low), 0, 1)
-    number = np.minimum((share * _BLOCKS).astype(np.intp), _BLOCKS - 1)
-    first = np.flatnonzero(np.diff(number, prepend=-1))
-    count = np.diff(first, append=number.size)
-
-    def mean(values: Floats) -> Floats:
-        total: Floats = np.add.reduceat(values, first) / count
-        return total
-
-    scaled = 2 * (tension - low) / (high - low) - 1
-    powers = np.empty((first.size, _DEGREE_BEYOND + 1))
-    current = np.ones_like(scaled)
-    for power in range(_DEGREE_BEYOND + 1):
-        powers[:, power] = mean(current)
-        current *= scaled
-    return _Blocks(mean(time), mean(strain), mean(tension), powers)
-
-
-def _covariance(powers: Floats, residual: Floats) -> Floats:
-    """Of least squares with unequal and correlated errors: sandwich, leverage taken off.
-
-    Noise of tension moves strain by itself over K_0, more at the soft end of the curve.
-    """
-    inverse = np.linalg.inv(powers.T @ powers)
-    leverage = ((powers @ inverse) * powers).sum(axis=1)
-    own = powers * (residual / np.maximum(1 - leverage, 0.1))[:, None]
-    covariance: Floats = lag_one_inflation(residual) * inverse @ (own.T @ own) @ inverse
-    return covariance
-
-
-def _misfit(blocks: _Blocks, cubic: Floats, covariance: Floats) -> tuple[float, float]:
-    """Root mean square of what the cubic misses of strain and of its slope in u.
-
-    Judged by a polynomial of higher degree, less what noise alone makes the two differ by.
-    """
-    if blocks.strain.size < _FEWEST_BLOCKS_BEYOND:
-        return 0.0, 0.0
-    beyond, *_ = np.linalg.lstsq(blocks.powers, blocks.strain, rcond=None)
-    spread = _covariance(blocks.powers, blocks.strain - blocks.powers @ beyond)
-    degree = np.arange(_DEGREE_BEYOND + 1)
-    # a polynomial of high degree is loose at its ends
-    at = np.linspace(-0.9, 0.9, 61)[:, None]
-    missed = []
-    for rows in (at**degree, degree * at ** np.maximum(degree - 1, 0)):
-        apart = rows @ beyond - rows[:, :4] @ cubic
-        known = ((rows[:, :4] @ covariance) * rows[:, :4]).sum(axis=1)
-        noise = np.mean(np.maximum(((rows @ spread) * rows).sum(axis=1) - known, 0))
-        square = np.mean(apart**2)
-        missed.append(float(np.sqrt(square - noise)) if square > _BEYOND_NOISE * noise else 0.0)
-    return missed[0], missed[1]
-
-
-def _rates(blocks: _Blocks) -> tuple[float, float, float, float]:
-    """Mean, slowest and fastest strain rate, and the mean rate of tension."""
-    duration = float(blocks.time[-1] - blocks.time[0])
-    if not duration > 0:
-        raise DataError(
-            "time does not rise over the slow pull", found=f"{duration:g} s", needed="above 0"
-        )
-    stretch = float(blocks.strain[-1] - blocks.strain[0])
-    load = blocks.tension
-    at = np.clip(np.searchsorted(load, np.linspace(load[0], load[-1], 5)), 0, load.size - 1)
-    ends = np.unique(at)
-    with np.errstate(divide="ignore"):
-        local = np.diff(blocks.strain[ends]) / np.diff(blocks.time[ends])
-    return (
-        stretch / duration,
-        float(local.min()),
-        float(local.max()),
-        float(load[-1] - load[0]) / duration,
-    )
 
 
 def _remarks(
@@ -259,7 +169,7 @@ def fit_pull(
     rows = rows[np.isfinite(clock[rows])]
     clock, stretch, load = clock[rows], stretch[rows], load[rows]
     low, high = float(load[0]), float(load.max())
-    blocks = _block_means(clock, stretch, load)
+    blocks = block_means(clock, stretch, load)
     # falls of single readings are noise
     fall = max(greatest_fall(load) - _NOISE_FACTOR * reading_noise(load), 0.0) / (high - low)
     if fall > _FALL_REFUSED:
@@ -272,15 +182,15 @@ def fit_pull(
     if n_blocks < _FEWEST_BLOCKS:
         raise FitError(
             "too few steps of tension for a cubic",
-            found=f"{n_blocks} of {_BLOCKS} with a reading",
+            found=f"{n_blocks} of {N_BLOCKS} with a reading",
             needed=f"{_FEWEST_BLOCKS} or more",
         )
     powers = blocks.powers[:, :4]
     solution, *_ = np.linalg.lstsq(powers, blocks.strain, rcond=None)
     coefficient = solution.astype(np.float64)
     residual = blocks.strain - powers @ coefficient
-    covariance = _covariance(powers, residual)
-    strain_misfit, slope_misfit = _misfit(blocks, coefficient, covariance)
+    covariance = covariance_of_blocks(powers, residual)
+    strain_misfit, slope_misfit = misfit_of_cubic(blocks, coefficient, covariance)
     start, stop = positive_range(coefficient)
     if stop - start < 2 * _SHORTEST_RANGE:
         raise FitError(
@@ -294,7 +204,7 @@ def fit_pull(
     polynomial, deviation = printed_form(
         coefficient, low=use[0], high=use[1], centre=centre, half=half
     )
-    rates = _rates(blocks)
+    rates = rates_of_pull(blocks)
     length = np.nan if reference_length is None else reference_length
     begins = np.nan
     if reference_tension is not None:
