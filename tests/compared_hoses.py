@@ -8,7 +8,8 @@ from measured_hoses import Truth
 
 from reduction.archive.comparisons import NamedComparison, comparisons_to_dataset
 from reduction.compare.hose import compare_hose
-from reduction.compare.measured import SharedUncertainty, measured_curve
+from reduction.compare.measured import measured_curve
+from reduction.compare.shared import constant_errors
 from reduction.provenance import Origin, Source, Step
 
 PSI = 6894.757293168
@@ -28,7 +29,7 @@ def cycled(truth, *, reach, n_cycles=3, loading="static", softer=0.0):
     tension = tension + np.where(branch == 1, LOOP / 2, -LOOP / 2)
     return measured_curve(
         strain, tension, loading=loading, cycle_number=cycle, branch=branch,
-        shared=SharedUncertainty(tension_offset=20.0),
+        shared=constant_errors(tension_offset=20.0),
     )  # fmt: skip
 
 
@@ -36,7 +37,7 @@ def pulled(truth, *, reach):
     strain = np.linspace(0.0, reach, 801)
     return measured_curve(
         strain, truth.tension(strain), loading="static",
-        shared=SharedUncertainty(tension_offset=20.0),
+        shared=constant_errors(tension_offset=20.0),
     )  # fmt: skip
 
 

@@ -32,6 +32,7 @@ _CALLED = {"branch_name": "branch", "strain_bin": "strain", "first_loading_strai
 _OF_SAMPLES = frozenset({
     "cycle", "selected_cycle", "hold", "held_pair", "slip", "step", "interval", "tension_grid",
     "break_share", "pull_term", "strain_level", "elastomer_parameter",
+    "comparison_point",
 })  # fmt: skip
 _LINES = ("_per_decade", "_per_cycle", "_change", "_drift")
 _ROUNDING = 1e-9

@@ -9,6 +9,7 @@ dimension                  one entry for
 ``hose_event``             pick-up, working load, break of the cords; text coordinate
 ``comparison_cycle``       each cycle, or row of pooled cycles, from 1
 ``parameter``              each fitted number of the hose, from 1; ``parameter_name``
+``uncertainty_component``  each error that all samples of a test share, from 1
 ``note``                   each note of any comparison
 =========================  ===========================================================
 
@@ -22,13 +23,15 @@ from __future__ import annotations
 from itertools import chain
 
 from reduction.archive.reasons import BOUND, CRITERION, NO_YES, PART, SETTING, SPREAD, STATISTIC
-from reduction.archive.variable import Variable, count, flag, label, measured, stated
+from reduction.archive.shared import COMPONENT
+from reduction.archive.variable import Variable, companion, count, flag, label, measured, stated
 
 __all__ = ["COMPARISON_SCHEMA"]
 
 _C = ("comparison",)
 _P = ("comparison", "comparison_point")
 _V = ("comparison", "curve")
+_T = ("comparison", "curve", "comparison_point")
 _E = ("comparison", "hose_event")
 _K = ("comparison", "comparison_cycle")
 _N = ("comparison", "parameter")
@@ -59,10 +62,18 @@ COMPARISON_SCHEMA: dict[str, Variable] = {
             )
         ),
         stated("strain", _P, _GIVEN),
-        measured("measured_tension", ("comparison", "curve", "comparison_point")),
+        count(COMPONENT, (COMPONENT,)),
+        label("uncertainty_source", (COMPONENT,)),
+        label("uncertainty_source_of", (COMPONENT,)),
+        count("uncertainty_source_number", (COMPONENT,)),
+        measured("measured_tension", _T),
+        [
+            companion("measured_tension", "_random_standard_uncertainty", _T),
+            companion("measured_tension", "_uncertainty_contribution", (COMPONENT, *_T)),
+        ],
         measured("predicted_tension", _P),
         stated("calibrated_tension", _P, "see the fitted numbers"),
-        stated("tension_difference", ("comparison", "curve", "comparison_point"), _DIFFERENCE),
+        stated("tension_difference", _T, _DIFFERENCE),
         stated("validation_uncertainty", _P, _IS),
         *(
             stated(name, _V, why)

@@ -11,18 +11,19 @@ import xarray as xr
 from reduction.archive.attributes import part_attributes
 from reduction.archive.build import build_dataset
 from reduction.archive.comparison_schema import COMPARISON_SCHEMA
+from reduction.archive.shared import component_values
 from reduction.archive.values import Values, pad, pad_texts, texts
-from reduction.compare.measuredcurve import CurveName
+from reduction.compare.measuredcurve import CURVES
 from reduction.compare.product import Calibration, Comparison
 from reduction.errors import ArchiveError
 from reduction.predict.hose import predict_hose
 from reduction.provenance import Origin
 from reduction.record import Floats
+from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.vocabulary import quantity
 
-__all__ = ["CURVES", "NamedComparison", "comparisons_to_dataset"]
+__all__ = ["NamedComparison", "comparisons_to_dataset"]
 
-CURVES: tuple[CurveName, ...] = ("ascending", "descending", "midline")
 _OF_CURVE = {
     "tension_bias": "bias",
     "tension_rms": "rms",
@@ -68,6 +69,7 @@ _OF_PARAMETER = {
     "parameter_upper_bound": "upper_bound",
 }
 _NOT_ASKED = 2
+_RANDOM = "_random_standard_uncertainty"
 
 
 @dataclass(frozen=True)
@@ -151,7 +153,7 @@ def _curve_values(found: Sequence[Comparison]) -> Values:
         name: np.full(shape, np.nan)
         for name in (
             "measured_tension",
-            "measured_tension_standard_uncertainty",
+            f"measured_tension{_RANDOM}",
             "tension_difference",
         )
     }
@@ -163,12 +165,13 @@ def _curve_values(found: Sequence[Comparison]) -> Values:
                 continue
             difference = one.differences[curve]
             values["measured_tension"][row, place, :size] = one.measured.tension_of(curve)
-            values["measured_tension_standard_uncertainty"][row, place, :size] = (
+            values[f"measured_tension{_RANDOM}"][row, place, :size] = (
                 one.measured.standard_uncertainty_of(curve)
             )
             values["tension_difference"][row, place, :size] = difference.difference
             for name, field in _OF_CURVE.items():
                 values[name][row, place] = getattr(difference, field)
+    values |= _shared_values(found, values)
     values["strain"] = pad([one.measured.strain for one in found])
     values["predicted_tension"] = pad([one.prediction.tension for one in found])
     values["predicted_tension_standard_uncertainty"] = pad(
@@ -176,6 +179,23 @@ def _curve_values(found: Sequence[Comparison]) -> Values:
     )
     values["validation_uncertainty"] = pad([one.validation.standard_uncertainty for one in found])
     return values
+
+
+def _shared_values(found: Sequence[Comparison], values: Values) -> Values:
+    """What the samples of each test share, and the uncertainty of its curves with it."""
+    measured = values["measured_tension"]
+    component = sorted({each for one in found for each in one.measured.component})
+    rows = np.zeros((len(component), *measured.shape))
+    for place, one in enumerate(found):
+        own = [component.index(each) for each in one.measured.component]
+        rows[own, place, :, : one.measured.strain.size] = one.measured.contribution
+    return component_values(component) | {
+        # where there is no tension, nothing contributes to it
+        "measured_tension_uncertainty_contribution": np.where(np.isnan(measured), np.nan, rows),
+        "measured_tension_standard_uncertainty": combined_standard_uncertainty(
+            rows, values[f"measured_tension{_RANDOM}"]
+        ),
+    }
 
 
 def _judgement_values(found: Sequence[Comparison]) -> Values:

@@ -8,11 +8,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from reduction import __version__
 from reduction.archive.comparisons import NamedComparison, comparisons_to_dataset
+from reduction.archive.curveerrors import curve_errors_of
 from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive
 from reduction.batch.part import PartStatus
@@ -142,7 +142,7 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
         specimen, index = _specimen(path, archive, plan.specimen)
         _require_hose(path, archive, index)
         kind = archive.attrs["test_kind"]
-        offset, scale = _of_strain(archive, index)
+        shared, notes = curve_errors_of(archive, index)
         comparison = compare_record(
             hose,
             archive["strain"].values[index],
@@ -152,11 +152,10 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
             branch=archive["branch"].values if "branch" in archive else None,
             # a pull has no cycles to break in
             break_in_cycles=_break_in(archive) if "cycle_number" in archive else 0,
-            tension_standard_uncertainty=_declared(archive, "tension", index),
-            strain_standard_uncertainty=offset,
-            strain_scale_standard_uncertainty=scale,
+            shared=shared,
             calibrate=plan.calibrate,
         )
+        comparison = replace(comparison, notes=(*notes, *comparison.notes))
         if plan.loading is None and comparison.measured.loading == "dynamic":
             assumed = f'taken as dynamic, as {kind} tests are; a slow one has loading = "static"'
             comparison = replace(comparison, notes=(assumed, *comparison.notes))
@@ -182,28 +181,6 @@ def _specimen(path: Path, archive: xr.Dataset, wanted: str) -> tuple[str, int]:
             needed="specimen = one of " + ", ".join(names),
         )
     return wanted, names.index(wanted)
-
-
-def _declared(archive: xr.Dataset, name: str, index: int) -> float:
-    spread = f"{name}_standard_uncertainty"
-    return float(archive[spread].values[index]) if spread in archive else float("nan")
-
-
-def _of_strain(archive: xr.Dataset, index: int) -> tuple[float, float]:
-    """Standard uncertainty of strain that all samples share: as an offset, and as a share.
-
-    A gauge length scales every strain; what is left is the reading of position over it.
-    """
-    length = archive.get("strain_gauge_length")
-    if length is None or not np.isfinite(length.values[index]):
-        return _declared(archive, "strain", index), float("nan")
-    gauge = float(length.values[index])
-    position = "crosshead_position"
-    if "crosshead_displacement" in archive:
-        position = "crosshead_displacement"
-    spread = archive.get(f"{position}_standard_uncertainty")
-    offset = float("nan") if spread is None else float(spread) / gauge
-    return offset, _declared(archive, "strain_gauge_length", index) / gauge
 
 
 def _break_in(archive: xr.Dataset) -> int:

@@ -23,6 +23,7 @@ from reduction.compare.identifiability import identify_directions, plausible_err
 from reduction.compare.inputs import cord_curve_error, known_uncertainties
 from reduction.compare.measuredcurve import MeasuredCurve
 from reduction.compare.product import Calibration, Identifiability
+from reduction.compare.shared import error_words, read_along
 from reduction.compare.trials import design_with, number_of
 from reduction.errors import DataError, SettingsError
 from reduction.predict.hose import predict_hose
@@ -233,15 +234,9 @@ def _pose(
         )
     floor = _LEAST_NOISE * float(np.sqrt(np.mean(judged[used] ** 2)))
     stated = known_uncertainties(design, held)
-    moved = {
-        name: spread
-        for name, spread in (
-            ("strain_offset", measured.strain_offset_uncertainty),
-            ("strain_scale", measured.strain_scale_uncertainty),
-        )
-        if spread > 0
-    }
-    in_proportion = [k for k, name in enumerate(measured.source) if name not in moved]
+    is_moved = np.any(measured.strain_error != 0, axis=1)
+    in_proportion = measured.contribution_of(measured.judged)[~is_moved]
+    node = measured.reading.node
     scatter = measured.scatter_contribution
     problem = FitProblem(
         design=design,
@@ -250,14 +245,16 @@ def _pose(
         low=low_high[:, 0],
         high=low_high[:, 1],
         held=stated,
-        moved=moved,
+        moved=np.array(
+            [read_along(node, measured.strain, row) for row in measured.strain_error[is_moved]]
+        ).reshape(-1, node.size),
         measured=measured,
         noise=np.maximum(measured.independent_uncertainty()[used], floor),
-        shared=np.vstack([measured.contribution[in_proportion], scatter])[:, used],
+        shared=np.vstack([in_proportion, scatter])[:, used],
     )
     common = tuple(f"scatter of the cycles {k + 1}" for k in range(scatter.shape[0]))
-    rest = tuple(measured.source[k] for k in in_proportion)
-    return problem, (*stated, *moved, *rest, *common)
+    names_of = np.array([error_words(one) for one in measured.component], dtype=object)
+    return problem, (*stated, *names_of[is_moved], *names_of[~is_moved], *common)
 
 
 def _notes_of_numbers(

@@ -90,7 +90,7 @@ def event_differences(
     own = np.vstack(
         [
             measured.independent_uncertainty()[None, there],
-            measured.contribution[:, there],
+            measured.contribution_of(measured.judged)[:, there],
             measured.scatter_contribution[:, there],
         ]
     )

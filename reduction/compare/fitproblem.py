@@ -83,8 +83,8 @@ class FitProblem:
         Plausible error of each [SI], and its bounds in that unit.
     held : mapping of str to float
         Standard uncertainties of numbers that are not fitted. [SI]
-    moved : mapping of str to float
-        Standard uncertainties of ``strain_offset`` and ``strain_scale``. [1]
+    moved : ndarray, shape (n_moved, n_node)
+        Errors of strain at the nodes of the reading, signed. [1]
     measured : MeasuredCurve
         The test. [SI]
     noise : ndarray, shape (n_used,)
@@ -107,7 +107,7 @@ class FitProblem:
     low: Floats
     high: Floats
     held: Mapping[str, float]
-    moved: Mapping[str, float]
+    moved: Floats
     measured: MeasuredCurve
     noise: Floats
     shared: Floats
@@ -143,19 +143,13 @@ class FitProblem:
             at = number_of(self.design, name) + spread * traced[:, p + k]
             values.append(np.clip(at, *range_of(name))[:, None])
         numbers, names = np.hstack(values), (*self.names, *self.held)
-        error = dict(zip(self.moved, traced[:, p + q :].T, strict=True))
-        none = np.zeros(traced.shape[0])
-        offset, scale = (
-            self.moved.get(name, 0.0) * error.get(name, none)
-            for name in ("strain_offset", "strain_scale")
-        )
         node = self.measured.reading.node
         tension = np.empty((traced.shape[0], self.noise.size))
         used = self.used
-        axes, which = np.unique(np.column_stack([offset, scale]), axis=0, return_inverse=True)
-        for k, (by, factor) in enumerate(axes):
+        axes, which = np.unique(traced[:, p + q :], axis=0, return_inverse=True)
+        for k, size in enumerate(axes):
             trials = which.ravel() == k
-            strain = (node - by) / (1 + factor)
+            strain = node - size @ self.moved
             # a record that is read low has strains just below zero: the curve goes on there
             curve = trial_tension(self.design, names, numbers[trials], np.abs(strain))
             tension[trials] = self.measured.reading.of(np.sign(strain) * curve)[:, used]

@@ -10,44 +10,23 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.checks import as_spread
 from reduction.compare.cells import Cells, fill_cells, reading_of, tension_at_centres
 from reduction.compare.measuredcurve import Loading, MeasuredCurve
 from reduction.compare.samples import select_samples
 from reduction.compare.scatter import bin_noise, branch_scatter, shared_scatter
+from reduction.compare.shared import SharedErrors, constant_errors
 from reduction.errors import DataError, SettingsError
 from reduction.record import Bools, Floats, Integers
 
-__all__ = ["SharedUncertainty", "measured_curve"]
+__all__ = ["measured_curve"]
 
 _ONE_BRANCH = (
     "one branch was measured: it is judged itself, and lies above a midline by half the loop"
 )
 _GREATEST_STRAIN = 10.0  # no hose stretches to eleven times its length
-
-
-@dataclass(frozen=True)
-class SharedUncertainty:
-    """Standard uncertainties of the calibration, which all samples of a test share.
-
-    Offset and scale of the load cell [N], [1] and of the strain [1], [1]; a strain scale is
-    that of the relaxed length too.
-    """
-
-    tension_offset: float = 0.0
-    tension_scale: float = 0.0
-    strain_offset: float = 0.0
-    strain_scale: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Check that none is negative or unknown."""
-        for name, value in vars(self).items():
-            as_spread(name, value)
 
 
 def measured_curve(
@@ -59,7 +38,7 @@ def measured_curve(
     branch: ArrayLike | None = None,
     strain_step: float | None = None,
     break_in_cycles: int = 0,
-    shared: SharedUncertainty | None = None,
+    shared: SharedErrors | None = None,
 ) -> MeasuredCurve:
     r"""Tension of every cycle and branch at equally spaced strains, and over the cycles.
 
@@ -89,8 +68,8 @@ def measured_curve(
         Between the strains of the curve; without it 1 %, or wider where samples are few. [1]
     break_in_cycles : int
         First cycles that are in no mean; they are kept cycle by cycle. [1]
-    shared : SharedUncertainty, optional
-        Of the calibration; none where not given.
+    shared : SharedErrors, optional
+        What is wrong alike with all samples; nothing where not given.
 
     Returns
     -------
@@ -118,10 +97,11 @@ def measured_curve(
 
     *Uncertainty* of the means is type A: scatter over the cycles, and for a single pull the
     noise in the bins and from bin to bin.  Where cycles lie high or low as a whole, that part
-    is kept as signed contributions, since it does not average out over strain.  Calibration
-    errors are signed contributions too: what the curve is wrong by if the instrument reads
-    one standard uncertainty high.  A strain that is read high moves the curve to the right:
-    minus the slope times it.
+    is kept as signed contributions, since it does not average out over strain.  What is wrong
+    alike with all samples is signed contributions too: what the curve is wrong by if the
+    instrument reads one standard uncertainty high.  A strain that is read high moves the curve
+    to the right: minus the slope times it.  The noise of a reading is no such thing: it is in
+    the scatter.
 
     *NaN.* A sample that is missing in either series is left out; a bin is NaN where a branch
     has no sample, or only samples beside its centre with nothing beyond; a mean is NaN where
@@ -180,8 +160,8 @@ def measured_curve(
     of_branch = np.sqrt(variance)
     if not is_paired:
         of_branch[0] = type_a
-    known = shared or SharedUncertainty()
-    source, contribution = _contributions(centre, judged, known)
+    known = shared or constant_errors()
+    contribution, strain_error = _contributions(centre, mean, known)
     in_mean = np.isfinite(cycles) & np.isfinite(judged)
     row_weight = np.zeros(by_cycle.shape)
     part = in_mean / np.maximum(in_mean.sum(axis=0), 1)
@@ -198,8 +178,9 @@ def measured_curve(
         midline_tension=midline,
         midline_standard_uncertainty=type_a if is_paired else np.full(centre.size, np.nan),
         scatter_contribution=common,
-        source=source,
+        component=known.component,
         contribution=contribution,
+        strain_error=strain_error.mean(axis=1) if is_paired else strain_error[:, 0],
         loading=loading,
         reading=reading_of(
             samples.strain,
@@ -209,8 +190,6 @@ def measured_curve(
             centre=centre,
             step=step,
         ),
-        strain_offset_uncertainty=known.strain_offset,
-        strain_scale_uncertainty=known.strain_scale,
         end_strain=centre[0] + step * end[0],
         end_tension=end[1],
         end_standard_uncertainty=end[2],
@@ -252,20 +231,15 @@ def _end_of_curve(
     )
 
 
-def _contributions(
-    strain: Floats, tension: Floats, shared: SharedUncertainty
-) -> tuple[tuple[str, ...], Floats]:
-    """Errors of the judged curve if an instrument reads one standard uncertainty high."""
-    there = np.isfinite(tension)
-    slope = np.zeros(strain.size)
-    if np.count_nonzero(there) > 1:
-        slope[there] = np.gradient(tension[there], strain[there])
-    level = np.where(there, tension, 0.0)
-    errors = {
-        "tension_offset": np.full(strain.size, shared.tension_offset),
-        "tension_scale": shared.tension_scale * level,
-        "strain_offset": -shared.strain_offset * slope,
-        "strain_scale": -shared.strain_scale * strain * slope,
-    }
-    names = tuple(name for name in errors if getattr(shared, name) > 0)
-    return names, np.array([errors[name] for name in names]).reshape(-1, strain.size)
+def _contributions(strain: Floats, tension: Floats, shared: SharedErrors) -> tuple[Floats, Floats]:
+    """Errors of the branches and their middle in tension, and of the branches in strain."""
+    errors = shared.at(strain, tension)
+    slope = np.zeros(tension.shape)
+    for branch, curve in zip(slope, tension, strict=True):
+        there = np.isfinite(curve)
+        if np.count_nonzero(there) > 1:
+            branch[there] = np.gradient(curve[there], strain[there])
+    of_branch = np.where(np.isfinite(tension), errors.tension - slope * errors.strain, 0.0)
+    both = np.isfinite(tension).all(axis=0)
+    middle = np.where(both, of_branch.mean(axis=1), 0.0)
+    return np.concatenate([of_branch, middle[:, None]], axis=1), errors.strain

@@ -8,12 +8,14 @@ from typing import Literal
 import numpy as np
 
 from reduction.record import Floats, Integers, freeze_arrays, require_shapes
+from reduction.uncertainty.product import Component
 
-__all__ = ["BRANCHES", "NODES_A_BIN", "CurveName", "Loading", "MeasuredCurve", "Reading"]
+__all__ = ["BRANCHES", "CURVES", "NODES_A_BIN", "CurveName", "Loading", "MeasuredCurve", "Reading"]
 
 Loading = Literal["static", "dynamic"]
 CurveName = Literal["ascending", "descending", "midline"]
 BRANCHES: tuple[CurveName, CurveName] = ("ascending", "descending")
+CURVES: tuple[CurveName, ...] = (*BRANCHES, "midline")
 NODES_A_BIN = 40
 """Steps of the strains between two bin centres at which a prediction is read."""
 
@@ -71,16 +73,18 @@ class MeasuredCurve:
     scatter_contribution : ndarray, shape (n_component, n_strain)
         What the type A standard uncertainty of the judged curve has in common over strain, as
         signed contributions: cycles lie high or low as a whole. [N]
-    source : tuple of str, length n_source
-        Names of the errors that all cycles share.
-    contribution : ndarray, shape (n_source, n_strain)
-        Of each, to the judged curve, one standard uncertainty, signed. [N]
+    component : tuple of Component, length n_component
+        Errors that all cycles share.
+    contribution : ndarray, shape (n_component, 3, n_strain)
+        Of each, to both branches and the midline, one standard uncertainty, signed; zero where
+        there is no curve. [N]
+    strain_error : ndarray, shape (n_component, n_strain)
+        What the strain of the judged curve is read wrong by in it: the part of the contribution
+        that moves the curve along its axis. [1]
     loading : {"static", "dynamic"}
         How it was pulled.
     reading : Reading
         How the judged curve was read from the samples.
-    strain_offset_uncertainty, strain_scale_uncertainty : float
-        Standard uncertainties of which ``contribution`` is the change of tension in proportion. [1]
     end_strain, end_tension, end_standard_uncertainty : float
         Where the judged curve ends beyond its last bin centre: mean of the samples between, and
         its type A; NaN where there are none. [1], [N], [N]
@@ -99,12 +103,11 @@ class MeasuredCurve:
     midline_tension: Floats
     midline_standard_uncertainty: Floats
     scatter_contribution: Floats
-    source: tuple[str, ...]
+    component: tuple[Component, ...]
     contribution: Floats
+    strain_error: Floats
     loading: Loading
     reading: Reading
-    strain_offset_uncertainty: float = 0.0
-    strain_scale_uncertainty: float = 0.0
     end_strain: float = float("nan")
     end_tension: float = float("nan")
     end_standard_uncertainty: float = float("nan")
@@ -123,7 +126,8 @@ class MeasuredCurve:
             "midline_tension": (n_strain,),
             "midline_standard_uncertainty": (n_strain,),
             "scatter_contribution": (self.scatter_contribution.shape[0], n_strain),
-            "contribution": (len(self.source), n_strain),
+            "contribution": (len(self.component), len(CURVES), n_strain),
+            "strain_error": (len(self.component), n_strain),
         }
         require_shapes(self, shapes, of="measured curve")
 
@@ -144,10 +148,13 @@ class MeasuredCurve:
             return self.midline_standard_uncertainty
         return np.asarray(self.branch_standard_uncertainty[BRANCHES.index(curve)])
 
+    def contribution_of(self, curve: CurveName) -> Floats:
+        """Of the shared errors to that mean, signed, shape (n_component, n_strain). [N]."""
+        return np.asarray(self.contribution[:, CURVES.index(curve)])
+
     def curves(self) -> tuple[CurveName, ...]:
         """Curves that were measured anywhere."""
-        names: tuple[CurveName, ...] = (*BRANCHES, "midline")
-        return tuple(name for name in names if np.isfinite(self.tension_of(name)).any())
+        return tuple(name for name in CURVES if np.isfinite(self.tension_of(name)).any())
 
     def independent_uncertainty(self) -> Floats:
         """Type A of the judged curve that no two strains share, shape (n_strain,). [N]."""

@@ -121,8 +121,7 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
                 [
                     fit.uncertainty,
                     of_model,
-                    measured.strain_offset_uncertainty,
-                    measured.strain_scale_uncertainty * fit.strain,
+                    *(np.interp(fit.strain, measured.strain, row) for row in measured.strain_error),
                 ]
             )
         ),

@@ -161,11 +161,12 @@ def validate_curve(
     --------
     A load cell that may be 10 N off, and a prediction 8 N below.
 
-    >>> from reduction.compare.measured import SharedUncertainty, measured_curve
+    >>> from reduction.compare.measured import measured_curve
+    >>> from reduction.compare.shared import constant_errors
     >>> stroke = np.linspace(0, 1, 201)
     >>> pull = measured_curve(
     ...     stroke, 100 * stroke + 50, loading="static",
-    ...     shared=SharedUncertainty(tension_offset=10.0),
+    ...     shared=constant_errors(tension_offset=10.0),
     ... )
     >>> found = validate_curve(
     ...     100 * pull.strain + 42, pull, input_error=np.zeros((0, pull.strain.size))
@@ -188,9 +189,10 @@ def validate_curve(
             found=f"{int(np.isfinite(test).sum())} measured strains",
             needed="one at which both are known",
         )
+    shared = measured.contribution_of(measured.judged)
     errors = _Errors(
         own=measured.independent_uncertainty()[there],
-        shared=np.vstack([measured.contribution, measured.scatter_contribution])[:, there],
+        shared=np.vstack([shared, measured.scatter_contribution])[:, there],
         inputs=inputs[:, there],
     )
     error = np.where(there, model - test, np.nan)

@@ -76,12 +76,13 @@ def verdict_words(validation: Validation, *, unit: str = "N", factor: float = 1.
     --------
     A difference of 44.5 N for a reader in pounds-force.
 
-    >>> from reduction.compare.measured import SharedUncertainty, measured_curve
+    >>> from reduction.compare.measured import measured_curve
+    >>> from reduction.compare.shared import constant_errors
     >>> from reduction.compare.validation import validate_curve
     >>> stroke = np.linspace(0, 1, 201)
     >>> pull = measured_curve(
     ...     stroke, 100 * stroke + 50, loading="static",
-    ...     shared=SharedUncertainty(tension_offset=10.0),
+    ...     shared=constant_errors(tension_offset=10.0),
     ... )
     >>> found = validate_curve(
     ...     100 * pull.strain + 94.5, pull, input_error=np.zeros((0, pull.strain.size))

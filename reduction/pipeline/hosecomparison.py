@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from reduction.compare.hose import compare_hose
-from reduction.compare.measured import SharedUncertainty, measured_curve
+from reduction.compare.measured import measured_curve
 from reduction.compare.measuredcurve import Loading
 from reduction.compare.product import Comparison
+from reduction.compare.shared import SharedErrors
 from reduction.errors import DataError
 from reduction.prediction import HosePlan
 from reduction.record import Floats, Integers
@@ -39,9 +40,7 @@ def compare_record(
     cycle_number: Integers | None,
     branch: Integers | None,
     break_in_cycles: int = 0,
-    tension_standard_uncertainty: float = float("nan"),
-    strain_standard_uncertainty: float = float("nan"),
-    strain_scale_standard_uncertainty: float = float("nan"),
+    shared: SharedErrors | None = None,
     calibrate: Sequence[str] = (),
 ) -> Comparison:
     """Hold the prediction of a hose against one test.
@@ -58,10 +57,8 @@ def compare_record(
         Cycles of the test, and their branches; None of a pull, whose way back is a branch too.
     break_in_cycles : int
         First cycles that enter no mean.
-    tension_standard_uncertainty, strain_standard_uncertainty : float
-        As declared for the channels [N], [1]: taken as what all samples share.
-    strain_scale_standard_uncertainty : float
-        Of the relaxed length, as a share of it; NaN where not stated. [1]
+    shared : SharedErrors, optional
+        What is wrong alike with all samples; nothing where not given.
     calibrate : sequence of str
         Numbers of the hose to be fitted.
 
@@ -92,19 +89,11 @@ def compare_record(
         cycle_number=cycle_number,
         branch=branch,
         break_in_cycles=break_in_cycles,
-        shared=SharedUncertainty(
-            tension_offset=_known(tension_standard_uncertainty),
-            strain_offset=_known(strain_standard_uncertainty),
-            strain_scale=_known(strain_scale_standard_uncertainty),
-        ),
+        shared=shared,
     )
     return compare_hose(
         plan.design, curve, standard_uncertainty=plan.standard_uncertainty, calibrate=calibrate
     )
-
-
-def _known(value: float) -> float:
-    return value if np.isfinite(value) else 0.0
 
 
 def _out_and_back(strain: Floats) -> tuple[Integers | None, Integers | None]:

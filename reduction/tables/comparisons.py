@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from reduction.archive.shared import COMPONENT
 from reduction.tables.table import Table
 
 __all__ = ["COMPARISON_TABLES"]
@@ -76,6 +77,18 @@ COMPARISON_TABLES = (
             "calibrated_tension",
         ),
         ("measured_tension",),
+    ),
+    _table(
+        "shared_errors_comparisons",
+        ("comparison", "curve", "comparison_point", COMPONENT),
+        (
+            "strain",
+            "uncertainty_source",
+            "uncertainty_source_of",
+            "uncertainty_source_number",
+            "measured_tension_uncertainty_contribution",
+        ),
+        ("measured_tension_uncertainty_contribution",),
     ),
     _table(
         "comparison_events",

@@ -232,12 +232,12 @@ def test_the_uncertainty_of_the_length_scales_every_strain_of_a_comparison(run):
         run.processed / "S-64.nc", plan.hoses["H64"], plan.comparisons["H64-pull"]
     )
     measured = of_test.comparison.measured
-    assert measured.source == ("tension_offset", "strain_offset", "strain_scale")
-    _, offset, scale = measured.contribution
-    # 0.05 in of 96 in, and a reading of 0.02 in over them, with one slope at each strain
-    steep = np.abs(offset) > 1e-6
-    expected = 0.05 / 96 * measured.strain[steep] / (0.02 / 96)
-    assert scale[steep] / offset[steep] == pytest.approx(expected, rel=1e-6)
+    # what the layout says of a reading of 0.02 in or 5 lbf is no error that samples share
+    assert [one.source for one in measured.component] == ["strain_calibration"]
+    assert [one.of for one in measured.component] == ["hose-64"]
+    # a length that is 0.05 in of 96 in too great makes every strain too small
+    (error,) = measured.strain_error
+    np.testing.assert_allclose(np.abs(error), 0.05 / 96 * measured.strain, rtol=1e-6, atol=1e-12)
 
 
 def copied(tmp_path, change=lambda text: text):

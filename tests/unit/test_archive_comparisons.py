@@ -3,7 +3,7 @@
 import hashlib
 import subprocess
 import sys
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ import pytest
 from compared_hoses import LOOP, NOT_APART, SOURCE, TRUTH, agreeing, dataset, differing, trading
 from measured_hoses import INCH
 
+from reduction.archive.budget import budget_from_archive
 from reduction.archive.check import check_archive
 from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.open import open_archive
@@ -36,6 +37,13 @@ def archive(path):
         yield data.load()
 
 
+def renamed(named, name, cell):
+    """A comparison under another name, with the errors of one load cell."""
+    curve = named.comparison.measured
+    whose = replace(curve, component=tuple(replace(one, of=cell) for one in curve.component))
+    return replace(named, name=name, comparison=replace(named.comparison, measured=whose))
+
+
 def of(name):
     """The comparison of this row of the archive."""
     return {"alike": agreeing, "apart": differing, "trade": trading}[name]().comparison
@@ -59,7 +67,10 @@ def test_curves_and_differences_come_back_at_every_strain(archive, row):
             if difference is None
             else (
                 found.measured.tension_of(curve),
-                found.measured.standard_uncertainty_of(curve),
+                np.sqrt(
+                    found.measured.standard_uncertainty_of(curve) ** 2
+                    + np.sum(found.measured.contribution_of(curve) ** 2, axis=0)
+                ),
                 difference.difference,
             )
         )
@@ -69,12 +80,45 @@ def test_curves_and_differences_come_back_at_every_strain(archive, row):
             ("tension_difference", apart),
         ):
             stored = archive[name].values[row, place]
-            np.testing.assert_array_equal(stored[:size], values)
+            np.testing.assert_allclose(stored[:size], values, rtol=1e-15)
             assert np.isnan(stored[size:]).all()
     for name, values in on_strains.items():
         stored = archive[name].values[row]
         np.testing.assert_array_equal(stored[:size], values)
         assert np.isnan(stored[size:]).all()
+
+
+def test_random_and_shared_parts_stand_beside_the_whole_uncertainty(archive):
+    """A load cell that may be 20 N off, and the scatter of a curve."""
+    assert archive["uncertainty_source"].values.tolist() == ["tension_offset"]
+    rows = archive["measured_tension_uncertainty_contribution"]
+    assert rows.dims == ("uncertainty_component", "comparison", "curve", "comparison_point")
+    known = np.isfinite(archive["measured_tension"].values)
+    assert np.isfinite(rows.values[0][known]).all() and np.isnan(rows.values[0][~known]).all()
+    np.testing.assert_allclose(rows.values[0][known], 20.0, rtol=1e-12)
+    whole = archive["measured_tension_standard_uncertainty"].values[known]
+    random = archive["measured_tension_random_standard_uncertainty"].values[known]
+    np.testing.assert_allclose(whole, np.hypot(20.0, random), rtol=1e-12)
+
+
+def test_tests_under_one_load_cell_name_one_error(tmp_path):
+    """Their rows stand in one line of the archive: what is wrong with one is with the other."""
+    parts = [
+        renamed(differing(), "one", "cell A"), renamed(differing(), "two", "cell A"),
+        renamed(differing(), "three", "cell B"),
+    ]  # fmt: skip
+    data = dataset(*parts)
+    assert data["uncertainty_source_of"].values.tolist() == ["cell A", "cell B"]
+    rows = np.nanmax(data["measured_tension_uncertainty_contribution"].values, axis=(2, 3))
+    np.testing.assert_allclose(rows, [[20.0, 20.0, 0.0], [0.0, 0.0, 20.0]])
+
+
+def test_budgets_of_the_measured_curve_can_be_asked_for(archive):
+    at = {"comparison": "alike", "curve": "midline", "comparison_point": "50"}
+    found = budget_from_archive(archive, "measured_tension", at)
+    assert [row.source for row in found.rows] == ["tension_offset", "random"]
+    # scatter of hundreds of samples
+    assert found.coverage_factor == pytest.approx(1.96, abs=0.001)
 
 
 def test_the_longest_comparison_gives_the_axis(archive):

@@ -9,8 +9,9 @@ from reduction.compare.calibrate import calibrate_hose
 from reduction.compare.fitproblem import parameter_bounds
 from reduction.compare.identifiability import CALIBRATED, identify_directions, plausible_error
 from reduction.compare.inputs import cord_curve_error
-from reduction.compare.measured import SharedUncertainty, measured_curve
+from reduction.compare.measured import measured_curve
 from reduction.compare.residuals import autocorrelation_length
+from reduction.compare.shared import constant_errors
 from reduction.compare.trials import trial_tension
 from reduction.errors import DataError, FitError, SettingsError
 
@@ -22,7 +23,7 @@ def pull(truth, *, top=1.0, noise=0.0, seed=0, n=600, bend=0.0, **shared):
     tension = truth.tension(strain) + np.random.default_rng(seed).normal(0, noise, n)
     if bend:
         tension = tension * (1 + bend * np.sin(7 * strain))
-    return measured_curve(strain, tension, loading="static", shared=SharedUncertainty(**shared))
+    return measured_curve(strain, tension, loading="static", shared=constant_errors(**shared))
 
 
 def cyclic(truth, rng, *, scatter=0.003, noise=30.0, load_cell=0.0, n_cycles=10):
@@ -34,7 +35,7 @@ def cyclic(truth, rng, *, scatter=0.003, noise=30.0, load_cell=0.0, n_cycles=10)
     tension *= 1 + load_cell * rng.standard_normal()
     return measured_curve(
         strain, tension + rng.normal(0, noise, strain.size), loading="static",
-        cycle_number=number, branch=branch, shared=SharedUncertainty(tension_scale=load_cell),
+        cycle_number=number, branch=branch, shared=constant_errors(tension_gain=load_cell),
     )  # fmt: skip
 
 
@@ -145,7 +146,7 @@ def offset_record(rng, *, pulled, noise, strain_offset, tension_offset):
         strain + strain_offset * rng.standard_normal(),
         tension + rng.normal(0, noise, strain.size), loading="static",
         cycle_number=None if pulled else number, branch=None if pulled else branch,
-        shared=SharedUncertainty(strain_offset=strain_offset, tension_offset=tension_offset),
+        shared=constant_errors(strain_offset=strain_offset, tension_offset=tension_offset),
     )  # fmt: skip
 
 
@@ -172,7 +173,7 @@ def test_a_strain_that_is_off_by_its_uncertainty_is_not_taken_for_an_angle(error
     rng = np.random.default_rng(1)
     test = measured_curve(
         strain + error * 2e-3, TRUTH.tension(strain) + rng.normal(0, 20, strain.size),
-        loading="static", shared=SharedUncertainty(tension_offset=60, strain_offset=2e-3),
+        loading="static", shared=constant_errors(tension_offset=60, strain_offset=2e-3),
     )  # fmt: skip
     found = calibrate_hose(TRUTH.design(), test, ["wrap_angle", "rubber_modulus"])
     truth = np.array([TRUTH.wrap_angle, TRUTH.rubber_modulus])
@@ -240,17 +241,18 @@ def test_a_model_that_is_wrong_has_wide_intervals_that_hold_the_truth():
 
 def test_a_load_cell_that_may_be_off_widens_what_it_can_imitate():
     exact = calibrate_hose(TRUTH.design(), pull(TRUTH, noise=5, seed=8), ["rubber_modulus"])
-    test = pull(TRUTH, noise=5, seed=8, tension_scale=0.02)
+    test = pull(TRUTH, noise=5, seed=8, tension_gain=0.02)
     unsure = calibrate_hose(TRUTH.design(), test, ["rubber_modulus"])
     assert unsure.standard_uncertainty[0] > 3 * exact.standard_uncertainty[0]
-    assert unsure.shared_error == ("tension_scale", "cord curve between its points")
+    assert unsure.shared_error == ("tension_gain", "cord curve between its points")
     # fitted errors are the same as generalised least squares with the whole covariance
     slope = (
         Truth(rubber_modulus=1.39e6, dead_length_share=0.04).tension(test.strain)
         - Truth(rubber_modulus=1.37e6, dead_length_share=0.04).tension(test.strain)
     ) / 0.02e6
     own = np.hypot(test.independent_uncertainty(), unsure.model_error)
-    covariance = np.diag(own**2) + test.contribution.T @ test.contribution
+    (gain,) = test.contribution_of("ascending")
+    covariance = np.diag(own**2) + np.outer(gain, gain)
     expected = 1 / np.sqrt(slope @ np.linalg.solve(covariance, slope))
     assert unsure.standard_uncertainty[0] == pytest.approx(expected, rel=0.15)
 
@@ -275,10 +277,10 @@ def test_a_number_far_from_what_was_stated_is_noted():
 
 
 def test_an_instrument_that_would_have_to_be_far_off_is_noted():
-    test = pull(TRUTH, noise=5, seed=11, tension_scale=0.002)
+    test = pull(TRUTH, noise=5, seed=11, tension_gain=0.002)
     wrong = TRUTH.but(dead_length_share=0.0, cord_load_scale=1.0, rubber_modulus=1.3e6)
     found = calibrate_hose(wrong.design(), test, ["dead_length_share"])
-    assert any(text.startswith("tension_scale would have to be") for text in found.notes)
+    assert any(text.startswith("tension_gain would have to be") for text in found.notes)
 
 
 def test_a_fit_that_is_stopped_at_a_bound_says_so():

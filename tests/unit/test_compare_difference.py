@@ -9,7 +9,8 @@ from reduction.compare.difference import (
     strain_at_tension,
 )
 from reduction.compare.events import event_differences
-from reduction.compare.measured import SharedUncertainty, measured_curve
+from reduction.compare.measured import measured_curve
+from reduction.compare.shared import constant_errors
 from reduction.errors import DataError
 
 
@@ -135,7 +136,7 @@ def test_events_against_a_test_that_is_higher_by_a_known_tension():
 
 def test_uncertainty_at_an_event_has_both_sides_in_it():
     truth = Truth()
-    test = cycled(truth.tension, top=1.2, shared=SharedUncertainty(tension_offset=40.0))
+    test = cycled(truth.tension, top=1.2, shared=constant_errors(tension_offset=40.0))
     alone = event_differences(truth.design(), test)[1]
     assert alone.tension_difference_standard_uncertainty == pytest.approx(40, abs=0.5)
     unsure = event_differences(

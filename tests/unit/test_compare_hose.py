@@ -3,7 +3,8 @@ import pytest
 from measured_hoses import Truth
 
 from reduction.compare.hose import compare_hose
-from reduction.compare.measured import SharedUncertainty, measured_curve
+from reduction.compare.measured import measured_curve
+from reduction.compare.shared import constant_errors
 from reduction.errors import SettingsError
 from reduction.predict.events import find_events
 
@@ -18,7 +19,7 @@ def cyclic(top=1.1, loading="static", n_cycles=5):
     noise = np.random.default_rng(1).normal(0, 20, strain.size)
     return measured_curve(
         strain, tension + noise, loading=loading, cycle_number=phase.astype(int) + 1,
-        branch=branch, shared=SharedUncertainty(tension_scale=0.005),
+        branch=branch, shared=constant_errors(tension_gain=0.005),
     )  # fmt: skip
 
 

@@ -5,10 +5,11 @@ import pytest
 from measured_hoses import Truth
 
 from reduction.compare.cells import fill_cells, tension_at_centres
-from reduction.compare.measured import SharedUncertainty, measured_curve
+from reduction.compare.measured import measured_curve
 from reduction.compare.measuredcurve import MeasuredCurve, Reading
 from reduction.compare.samples import select_samples
 from reduction.compare.scatter import branch_scatter, shared_scatter
+from reduction.compare.shared import constant_errors
 from reduction.errors import DataError, SettingsError
 
 
@@ -121,22 +122,23 @@ def test_few_samples_widen_the_bins_and_a_step_can_be_given():
 def test_calibration_errors_are_signed_shifts_of_the_curve():
     strain = np.linspace(0, 1, 5001)
     truth = lambda x: 3000 * x + 2000 * x**2  # noqa: E731
-    shared = SharedUncertainty(
-        tension_offset=5, tension_scale=0.01, strain_offset=0.002, strain_scale=0.005
+    shared = constant_errors(
+        tension_offset=5, tension_gain=0.01, strain_offset=0.002, strain_gain=0.005
     )
     curve = measured_curve(strain, truth(strain), loading="static", shared=shared)
+    sources = [one.source for one in curve.component]
     inner = slice(2, -2)
     # the same pull, read by instruments that are one standard uncertainty high
     for name, read_strain, read_tension in (
         ("tension_offset", strain, truth(strain) + 5),
-        ("tension_scale", strain, truth(strain) * 1.01),
+        ("tension_gain", strain, truth(strain) * 1.01),
         ("strain_offset", strain + 0.002, truth(strain)),
-        ("strain_scale", strain * 1.005, truth(strain)),
+        ("strain_gain", strain * 1.005, truth(strain)),
     ):
         wrong = measured_curve(read_strain, read_tension, loading="static")
         n = min(wrong.strain.size, curve.strain.size)
         moved = (wrong.branch_tension[0][:n] - curve.branch_tension[0][:n])[inner]
-        row = curve.contribution[curve.source.index(name)][:n][inner]
+        row = curve.contribution_of("ascending")[sources.index(name)][:n][inner]
         assert row == pytest.approx(moved, abs=0.3), name  # second order
 
 
@@ -335,7 +337,7 @@ def test_bad_input_is_refused():
     with pytest.raises(DataError, match="no sample of a branch has a strain"):
         measured_curve([-0.5], [1.0], loading="static")
     with pytest.raises(SettingsError, match="uncertainty of strain_offset cannot be used"):
-        SharedUncertainty(strain_offset=-0.1)
+        constant_errors(strain_offset=-0.1)
 
 
 def test_a_measured_curve_checks_its_shapes():
@@ -343,7 +345,8 @@ def test_a_measured_curve_checks_its_shapes():
     with pytest.raises(DataError, match="branch_tension does not fit the measured curve"):
         MeasuredCurve(
             one, np.zeros((1, 2, 3)), np.zeros((1, 2, 3), int), np.ones(1, int), np.zeros((2, 4)),
-            np.zeros((2, 3)), one, one, np.zeros((0, 3)), (), np.zeros((0, 3)), "static",
+            np.zeros((2, 3)), one, one, np.zeros((0, 3)), (), np.zeros((0, 3, 3)), np.zeros((0, 3)),
+            "static",
             Reading(np.zeros(201), np.zeros((3, 121))),
         )  # fmt: skip
 

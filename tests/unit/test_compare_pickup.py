@@ -2,14 +2,15 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
-from reduction.compare.measured import SharedUncertainty, measured_curve
+from reduction.compare.measured import measured_curve
 from reduction.compare.pickup import measured_pick_up
+from reduction.compare.shared import constant_errors
 
 
 def pulled(truth, top, *, noise=20.0, seed=0, **shared):
     strain = np.linspace(0, top, 1500)
     tension = truth.tension(strain) + np.random.default_rng(seed).normal(0, noise, strain.size)
-    return measured_curve(strain, tension, loading="static", shared=SharedUncertainty(**shared))
+    return measured_curve(strain, tension, loading="static", shared=constant_errors(**shared))
 
 
 @pytest.mark.parametrize(("angle", "top"), [(62.0, 0.9), (64.0, 1.0), (64.0, 1.3), (68.0, 1.5)])
@@ -41,7 +42,7 @@ def test_intervals_of_a_bend_hold_it():
 
 def test_what_the_position_may_be_off_by_is_in_it():
     plain = measured_pick_up(pulled(Truth(), 1.0))
-    unsure = measured_pick_up(pulled(Truth(), 1.0, strain_offset=0.03, strain_scale=0.02))
+    unsure = measured_pick_up(pulled(Truth(), 1.0, strain_offset=0.03, strain_gain=0.02))
     assert unsure.strain == plain.strain
     assert unsure.standard_uncertainty == pytest.approx(
         np.sqrt(plain.standard_uncertainty**2 + 0.03**2 + (0.02 * plain.strain) ** 2)

@@ -3,7 +3,8 @@ import pytest
 from measured_hoses import Truth
 
 from reduction.compare.inputs import input_draws
-from reduction.compare.measured import SharedUncertainty, measured_curve
+from reduction.compare.measured import measured_curve
+from reduction.compare.shared import constant_errors
 from reduction.compare.validation import N_DRAWS, validate_curve
 from reduction.compare.verdict import probability_words, verdict_words
 from reduction.errors import DataError
@@ -13,7 +14,7 @@ STROKE = np.linspace(0, 1, 600)
 
 
 def pulled(tension, **shared):
-    return measured_curve(STROKE, tension, loading="static", shared=SharedUncertainty(**shared))
+    return measured_curve(STROKE, tension, loading="static", shared=constant_errors(**shared))
 
 
 def exact(curve):
@@ -144,7 +145,7 @@ def test_a_right_prediction_is_called_wrong_in_one_of_twenty():
         read = truth.tension(strain) * (1 + 0.005 * rng.standard_normal())
         test = measured_curve(
             strain, read + rng.normal(0, 20, strain.size), loading="static",
-            shared=SharedUncertainty(tension_scale=0.005),
+            shared=constant_errors(tension_gain=0.005),
         )  # fmt: skip
         found = validate_curve(
             predict_hose(guess, test.strain).tension, test,
