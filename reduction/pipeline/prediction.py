@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from reduction.errors import SettingsError
-from reduction.predict.cord import NEUTRAL_ANGLE
 from reduction.predict.events import find_events
 from reduction.predict.fabric import number_of_cords, ribbon_width
 from reduction.predict.helicallayers import greatest_layer_angle, layer_range, least_layer_angle
+from reduction.predict.helix import NEUTRAL_ANGLE
 from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign, HosePrediction
 from reduction.predict.uncertainty import propagate_hose

@@ -19,31 +19,19 @@ References
 
 from __future__ import annotations
 
-from math import atan, pi, sqrt
-from typing import Literal, get_args
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_positive
-from reduction.errors import SettingsError
+from reduction.predict.helix import Core, check_core, squared_radius_ratio, squares_of_angle
 from reduction.record import Floats
 
 __all__ = [
-    "NEUTRAL_ANGLE",
-    "Core",
     "cord_stretch_ratio",
-    "current_wrap_angle",
     "hose_stretch_ratio",
     "pick_up_stretch_ratio",
     "slackest_stretch_ratio",
-    "wrap_angle_for",
 ]
-
-Core = Literal["isochoric", "rigid"]
-
-NEUTRAL_ANGLE = atan(sqrt(2.0))
-"""54.7356 deg: wrapped at more, a cord goes slack as a water-filled hose stretches. [rad]."""
 
 
 def cord_stretch_ratio(
@@ -85,8 +73,11 @@ def cord_stretch_ratio(
     >>> print((100 * cord_stretch_ratio([1.28096, 1.61039], np.radians(64.0)) - 100).round(2))
     [-2.74 0. ]
     """
-    stretch, (cosine2, sine2) = as_positive("stretch_ratio", stretch_ratio), _squares(wrap_angle)
-    return np.asarray(np.sqrt(stretch**2 * cosine2 + _radius2(stretch, core) * sine2))
+    stretch, (cosine2, sine2) = (
+        as_positive("stretch_ratio", stretch_ratio),
+        squares_of_angle(wrap_angle),
+    )
+    return np.asarray(np.sqrt(stretch**2 * cosine2 + squared_radius_ratio(stretch, core) * sine2))
 
 
 def hose_stretch_ratio(
@@ -135,9 +126,9 @@ def hose_stretch_ratio(
     """
     cord, (cosine2, sine2) = (
         as_positive("cord_stretch_ratio", cord_stretch_ratio),
-        _squares(wrap_angle),
+        squares_of_angle(wrap_angle),
     )
-    _known(core)
+    check_core(core)
     with np.errstate(invalid="ignore"):
         if core == "rigid":
             return np.asarray(np.sqrt(1 + (cord - 1) * (cord + 1) / cosine2))
@@ -179,7 +170,7 @@ def pick_up_stretch_ratio(wrap_angle: ArrayLike) -> Floats:
     >>> print((100 * pick_up_stretch_ratio(np.radians([50.0, 64.0, 68.0])) - 100).round(2))
     [  0.    61.04 102.51]
     """
-    cosine2, sine2 = _squares(wrap_angle)
+    cosine2, sine2 = squares_of_angle(wrap_angle)
     above = np.maximum(sine2 / cosine2 - 2, 0.0)
     return np.asarray(1 + 2 * above / (3 + np.sqrt(9 + 4 * above)))
 
@@ -211,126 +202,12 @@ def slackest_stretch_ratio(wrap_angle: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from reduction.predict.wrapangle import current_wrap_angle
     >>> slackest = slackest_stretch_ratio(np.radians([64.0, 68.0]))
     >>> print(slackest.round(4))
     [1.281 1.4523]
     >>> print(np.degrees(current_wrap_angle(slackest, np.radians([64.0, 68.0]))).round(4))
     [54.7356 54.7356]
     """
-    cosine2, sine2 = _squares(wrap_angle)
+    cosine2, sine2 = squares_of_angle(wrap_angle)
     return np.asarray(np.maximum(np.cbrt(sine2 / cosine2 / 2), 1.0))
-
-
-def current_wrap_angle(
-    stretch_ratio: ArrayLike, wrap_angle: ArrayLike, *, core: Core = "isochoric"
-) -> Floats:
-    r"""Angle of the helix on the stretched cylinder.
-
-    .. math:: \tan a = \tan a_0 \, \lambda_r / \lambda_h
-
-    Parameters
-    ----------
-    stretch_ratio : array_like, shape (...)
-        :math:`\lambda_h` of the cylinder. [1]
-    wrap_angle : array_like, shape (...)
-        :math:`a_0` at rest, from the axis. [rad]
-    core : {"isochoric", "rigid"}
-        What the radius does.
-
-    Returns
-    -------
-    current_wrap_angle : ndarray, shape (...)
-        :math:`a`, from the axis. [rad]
-
-    Raises
-    ------
-    SettingsError
-        If an angle is not between 0 and 90 deg, or the core is unknown.
-    DataError
-        If a stretch ratio is not a positive number.
-
-    Notes
-    -----
-    Source: [1]_, eq. (7), :math:`\lambda_r/\lambda_h = \lambda_h^{-3/2}`.
-
-    Examples
-    --------
-    >>> print(np.degrees(current_wrap_angle(2.3, np.radians(68.0))).round(2))
-    35.36
-    """
-    stretch, (cosine2, sine2) = as_positive("stretch_ratio", stretch_ratio), _squares(wrap_angle)
-    tangent = np.sqrt(_radius2(stretch, core) * sine2 / cosine2) / stretch
-    return np.asarray(np.arctan(tangent))
-
-
-def wrap_angle_for(
-    stretch_ratio: ArrayLike, cord_stretch_ratio: ArrayLike, *, core: Core = "isochoric"
-) -> Floats:
-    r"""Angle at rest that gives both stretch ratios at once.
-
-    .. math:: \cos^2 a_0 = \frac{\lambda_c^2 - \lambda_r^2}{\lambda_h^2 - \lambda_r^2}
-
-    Parameters
-    ----------
-    stretch_ratio : array_like, shape (...)
-        :math:`\lambda_h` of the cylinder. [1]
-    cord_stretch_ratio : array_like, shape (...)
-        :math:`\lambda_c` of the helix. [1]
-    core : {"isochoric", "rigid"}
-        What the radius does.
-
-    Returns
-    -------
-    wrap_angle : ndarray, shape (...)
-        :math:`a_0` at rest, from the axis; NaN where no angle between 0 and 90 deg does. [rad]
-
-    Raises
-    ------
-    SettingsError
-        If the core is unknown.
-    DataError
-        If a stretch ratio is not a positive number.
-
-    Notes
-    -----
-    Source: [1]_, eq. (8) solved for the angle.
-
-    Examples
-    --------
-    Cords strained by 5.65 % at the 130 % of the second hose of [1]_, sec. 3.0:
-
-    >>> print(np.degrees(wrap_angle_for(2.3, 1.0565)).round(2))
-    68.
-    """
-    stretch = as_positive("stretch_ratio", stretch_ratio)
-    cord2 = as_positive("cord_stretch_ratio", cord_stretch_ratio) ** 2
-    radius2 = _radius2(stretch, core)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        tangent2 = (stretch**2 - cord2) / (cord2 - radius2)
-        is_angle = (tangent2 > 0) & np.isfinite(tangent2)
-        return np.asarray(np.arctan(np.sqrt(np.where(is_angle, tangent2, np.nan))))
-
-
-def _squares(wrap_angle: ArrayLike) -> tuple[Floats, Floats]:
-    """Squares of cosine and sine."""
-    angle = np.asarray(wrap_angle, dtype=np.float64)
-    is_angle = (angle > 0) & (angle < pi / 2)
-    if not np.all(is_angle):
-        bad = np.atleast_1d(angle)[np.atleast_1d(~is_angle)][0]
-        raise SettingsError(
-            "wrap_angle is no angle of a helix",
-            found=f"{np.degrees(bad):g} deg",
-            needed="between 0 and 90 deg from the axis",
-        )
-    return np.asarray(np.cos(angle) ** 2), np.asarray(np.sin(angle) ** 2)
-
-
-def _radius2(stretch: Floats, core: Core) -> Floats:
-    """Square of the ratio of the radius to that at rest."""
-    _known(core)
-    return np.asarray(1 / stretch if core == "isochoric" else np.ones_like(stretch))
-
-
-def _known(core: Core) -> None:
-    if core not in get_args(Core):
-        raise SettingsError("unknown core", found=str(core), needed=" or ".join(get_args(Core)))

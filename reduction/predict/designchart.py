@@ -16,12 +16,8 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite
 from reduction.errors import DataError
-from reduction.predict.cord import (
-    NEUTRAL_ANGLE,
-    cord_stretch_ratio,
-    pick_up_stretch_ratio,
-    slackest_stretch_ratio,
-)
+from reduction.predict.cord import cord_stretch_ratio, pick_up_stretch_ratio, slackest_stretch_ratio
+from reduction.predict.helix import NEUTRAL_ANGLE
 from reduction.record import Floats, freeze_arrays
 
 __all__ = ["CordStrainChart", "cord_strain_chart"]

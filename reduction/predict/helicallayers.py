@@ -27,7 +27,8 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite
 from reduction.errors import DataError
-from reduction.predict.cord import cord_stretch_ratio, slackest_stretch_ratio, wrap_angle_for
+from reduction.predict.cord import cord_stretch_ratio, slackest_stretch_ratio
+from reduction.predict.wrapangle import wrap_angle_for
 from reduction.record import Bools, Floats, freeze_arrays
 
 __all__ = ["LayerRange", "greatest_layer_angle", "layer_range", "least_layer_angle"]

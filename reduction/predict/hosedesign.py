@@ -38,11 +38,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.errors import SettingsError
-from reduction.predict.cord import wrap_angle_for
 from reduction.predict.cordload import cord_strain_at
 from reduction.predict.hoseloads import loads_at, numbers_of
 from reduction.predict.product import HoseDesign
 from reduction.predict.rubber import rubber_tension
+from reduction.predict.wrapangle import wrap_angle_for
 from reduction.record import Bools, Floats
 
 __all__ = ["design_angle", "design_diameters", "design_fabric"]

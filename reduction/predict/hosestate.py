@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.predict.cord import (
-    NEUTRAL_ANGLE,
     cord_stretch_ratio,
     hose_stretch_ratio,
     pick_up_stretch_ratio,
@@ -28,6 +27,7 @@ from reduction.predict.cordrates import (
     stretch_ratio_per_angle,
     stretch_ratio_per_cord_stretch,
 )
+from reduction.predict.helix import NEUTRAL_ANGLE
 from reduction.predict.product import HoseDesign
 from reduction.record import Floats
 

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.notes import Severity
-from reduction.predict.cord import NEUTRAL_ANGLE
+from reduction.predict.helix import NEUTRAL_ANGLE
 from reduction.record import Floats
 from reduction.report.rowview import RowView
 from reduction.report.style import Shown, shown

@@ -12,12 +12,13 @@ from math import pi
 
 import numpy as np
 
-from reduction.predict.cord import cord_stretch_ratio, current_wrap_angle
+from reduction.predict.cord import cord_stretch_ratio
 from reduction.predict.cordcurve import CordCurve
 from reduction.predict.hose import hose_energy, predict_hose
 from reduction.predict.hoseloads import numbers_of
 from reduction.predict.product import HoseDesign, HosePrediction
 from reduction.predict.rubber import rubber_tension
+from reduction.predict.wrapangle import current_wrap_angle
 from reduction.record import Floats
 from reduction.reproduce.answers import Answer, Answers, log_slope
 

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from reduction.predict.cord import NEUTRAL_ANGLE, cord_stretch_ratio, pick_up_stretch_ratio
+from reduction.predict.cord import cord_stretch_ratio, pick_up_stretch_ratio
+from reduction.predict.helix import NEUTRAL_ANGLE
 from reduction.reproduce.answers import Answer, Answers, items_from
 from reduction.reproduce.hose_equations import equation_answers
 from reduction.reproduce.item import Item

@@ -14,7 +14,6 @@ import pytest
 from scipy.optimize import brentq
 
 from reduction.predict.cord import (
-    NEUTRAL_ANGLE,
     cord_stretch_ratio,
     hose_stretch_ratio,
     pick_up_stretch_ratio,
@@ -23,6 +22,7 @@ from reduction.predict.cord import (
 from reduction.predict.cordcurve import CordCurve
 from reduction.predict.cordrates import stretch_ratio_per_angle, stretch_ratio_per_cord_stretch
 from reduction.predict.events import find_events
+from reduction.predict.helix import NEUTRAL_ANGLE
 from reduction.predict.hose import predict_hose
 from reduction.predict.hoseloads import numbers_of
 from reduction.predict.product import HoseDesign

@@ -11,7 +11,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from reduction.predict.cord import hose_stretch_ratio, wrap_angle_for
+from reduction.predict.cord import hose_stretch_ratio
 from reduction.predict.cordcurve import CordCurve
 from reduction.predict.cordrates import stretch_ratio_per_angle
 from reduction.predict.designchart import cord_strain_chart
@@ -22,6 +22,7 @@ from reduction.predict.hosedesign import design_angle
 from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
 from reduction.predict.sensitivity import hose_sensitivity
 from reduction.predict.uncertainty import propagate_hose
+from reduction.predict.wrapangle import wrap_angle_for
 
 INCH, PSI, POUND = 0.0254, 6894.757293168, 4.4482216152605
 DEGREES = np.array([64.0, 68.0])  # section 3.0

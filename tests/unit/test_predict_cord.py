@@ -3,14 +3,13 @@ import pytest
 
 from reduction.errors import DataError, SettingsError
 from reduction.predict.cord import (
-    NEUTRAL_ANGLE,
     cord_stretch_ratio,
-    current_wrap_angle,
     hose_stretch_ratio,
     pick_up_stretch_ratio,
     slackest_stretch_ratio,
-    wrap_angle_for,
 )
+from reduction.predict.helix import NEUTRAL_ANGLE
+from reduction.predict.wrapangle import current_wrap_angle, wrap_angle_for
 
 ANGLES = np.radians(np.arange(5.0, 86.0, 1.0))
 CORES = ("isochoric", "rigid")

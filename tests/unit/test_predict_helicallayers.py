@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError, SettingsError
-from reduction.predict.cord import NEUTRAL_ANGLE
 from reduction.predict.helicallayers import (
     greatest_layer_angle,
     layer_range,
     least_layer_angle,
 )
+from reduction.predict.helix import NEUTRAL_ANGLE
 
 
 def layer_strain(angle, strain, dead=0.0):

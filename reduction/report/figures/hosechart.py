@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from reduction.predict.cord import NEUTRAL_ANGLE
 from reduction.predict.designchart import cord_strain_chart
+from reduction.predict.helix import NEUTRAL_ANGLE
 from reduction.record import Floats
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
 from reduction.report.figures.hosemarks import (
