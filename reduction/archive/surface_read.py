@@ -15,16 +15,8 @@ from reduction.record import Floats, Integers
 from reduction.surface.blocks import block_columns
 from reduction.surface.coding import engineering_matrix
 from reduction.surface.leastsquares import FIT_REASONS
-from reduction.surface.product import (
-    LACK_OF_FIT_REASONS,
-    STATIONARY_REASONS,
-    Anova,
-    BlockEffects,
-    Canonical,
-    Diagnostics,
-    LackOfFit,
-    ResponseSurfaces,
-)
+from reduction.surface.parts import Anova, BlockEffects, Canonical, Diagnostics, LackOfFit
+from reduction.surface.product import LACK_OF_FIT_REASONS, STATIONARY_REASONS, ResponseSurfaces
 from reduction.vocabulary import RESPONSES, SURFACE_NAMES
 
 __all__ = ["surface_names", "surfaces_of"]

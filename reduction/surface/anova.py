@@ -23,7 +23,7 @@ from scipy.special import fdtrc
 from reduction.errors import DataError, SettingsError
 from reduction.record import Integers
 from reduction.surface.leastsquares import LeastSquares
-from reduction.surface.product import Anova, LackOfFit
+from reduction.surface.parts import Anova, LackOfFit
 from reduction.surface.rows import times
 
 __all__ = ["anova_table", "lack_of_fit", "replicate_cells"]

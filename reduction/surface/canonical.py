@@ -26,7 +26,7 @@ from reduction.checks import as_finite
 from reduction.errors import SettingsError
 from reduction.record import Floats, Integers
 from reduction.surface.coding import engineering_from_coded
-from reduction.surface.product import Canonical
+from reduction.surface.parts import Canonical
 from reduction.surface.terms import gradient_matrix, model_matrix
 from reduction.surface.variance import variance_factor
 

@@ -15,7 +15,7 @@ from scipy.special import ndtri
 
 from reduction.record import Bools, Floats
 from reduction.surface.leastsquares import LeastSquares
-from reduction.surface.product import Diagnostics
+from reduction.surface.parts import Diagnostics
 
 __all__ = ["diagnose"]
 

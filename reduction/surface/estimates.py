@@ -12,7 +12,7 @@ from reduction.record import Floats, Integers
 from reduction.surface.blocks import fit_random_intercept
 from reduction.surface.coding import engineering_matrix
 from reduction.surface.leastsquares import LeastSquares
-from reduction.surface.product import BlockEffects
+from reduction.surface.parts import BlockEffects
 from reduction.surface.variance import variance_factor
 
 __all__: list[str] = []

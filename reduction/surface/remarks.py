@@ -9,7 +9,7 @@ import numpy as np
 
 from reduction.record import Bools, Floats
 from reduction.surface.leastsquares import FIT_REASONS, LeastSquares
-from reduction.surface.product import BlockEffects, LackOfFit
+from reduction.surface.parts import BlockEffects, LackOfFit
 
 __all__: list[str] = []
 
