@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import xarray as xr
 
 from reduction.archive.schema import SCHEMA
+from reduction.archive.shared import components_of
 from reduction.archive.variable import count, label, measured
 from reduction.record import Floats
 from reduction.tables.column import Cell, Column
 from reduction.tables.table import SYNTHETIC
+from reduction.uncertainty.product import Contributions
 
-__all__ = ["ENVELOPE_COLUMNS", "Curve", "curves_of", "envelope_rows", "on_grid"]
+__all__ = ["ENVELOPE_COLUMNS", "Curve", "curves_of", "envelope_rows", "on_grid", "read_curve"]
 
 _BIN = ("specimen", "branch_name", "strain_bin")
 ENVELOPE_COLUMNS = (
@@ -33,7 +35,11 @@ ENVELOPE_COLUMNS = (
 
 @dataclass(frozen=True)
 class Curve:
-    """Mean tangent modulus of one test, specimen and branch; arrays (n_bins,)."""
+    """Mean tangent modulus of one test, specimen and branch; arrays (n_bins,).
+
+    ``uncertainty`` holds both parts; ``shared`` what each error that samples share adds to
+    ``tangent_modulus``, (n_components, n_bins).
+    """
 
     test: str
     specimen: str
@@ -43,6 +49,7 @@ class Curve:
     width: float
     modulus: Floats
     uncertainty: Floats
+    shared: Contributions = field(default_factory=lambda: Contributions(()))
 
 
 def curves_of(archive: xr.Dataset) -> Iterator[Curve]:
@@ -50,6 +57,8 @@ def curves_of(archive: xr.Dataset) -> Iterator[Curve]:
     if "tangent_modulus" not in archive:
         return
     edges = archive["strain_bin_bounds"].values
+    rows = archive.get("tangent_modulus_uncertainty_contribution")
+    component = () if rows is None else tuple(components_of(archive))
     for row, specimen in enumerate(archive["specimen"].values):
         for column, branch in enumerate(archive["branch_name"].values):
             yield Curve(
@@ -61,6 +70,9 @@ def curves_of(archive: xr.Dataset) -> Iterator[Curve]:
                 width=float(np.max(edges[:, 1] - edges[:, 0])),
                 modulus=archive["tangent_modulus"].values[row, column],
                 uncertainty=archive["tangent_modulus_standard_uncertainty"].values[row, column],
+                shared=Contributions(component)
+                if rows is None
+                else Contributions(component, {"tangent_modulus": rows.values[:, row, column]}),
             )
 
 
@@ -79,10 +91,16 @@ def on_grid(curve: Curve, grid: Floats) -> tuple[Floats, Floats]:
     modulus, uncertainty : ndarray, shape (n_grid,)
         NaN outside the curve and across a gap in it: nothing is extrapolated. [Pa]
     """
+    modulus, uncertainty = read_curve(curve, grid, np.stack([curve.modulus, curve.uncertainty]))
+    return modulus, uncertainty
+
+
+def read_curve(curve: Curve, grid: Floats, values: Floats) -> Floats:
+    """Values at the bins of a curve, (n, n_bins), on a strain grid, (n, n_grid); as `on_grid`."""
     known = np.isfinite(curve.modulus)
     strain = curve.strain[known]
     if strain.size == 0:
-        return np.full(grid.shape, np.nan), np.full(grid.shape, np.nan)
+        return np.full((values.shape[0], grid.size), np.nan)
     # a grid point that differs from a bin centre by rounding alone is that centre
     slack = 1e-6 * curve.width
     nearest = np.abs(grid[:, np.newaxis] - strain).argmin(axis=1)
@@ -94,9 +112,8 @@ def on_grid(curve: Curve, grid: Floats) -> tuple[Floats, Floats]:
         & (at <= strain[above])
         & (strain[above] - strain[below] <= 1.5 * curve.width)
     )
-    modulus = np.interp(at, strain, curve.modulus[known])
-    uncertainty = np.interp(at, strain, curve.uncertainty[known])
-    return np.where(inside, modulus, np.nan), np.where(inside, uncertainty, np.nan)
+    found = [np.where(inside, np.interp(at, strain, row[known]), np.nan) for row in values]
+    return np.array(found).reshape(len(values), grid.size)
 
 
 def envelope_rows(curves: Sequence[Curve]) -> list[list[Cell]]:

@@ -5,17 +5,22 @@ Figure 35 of WHOI-2005-10 lays three cyclic tests and a static one over each oth
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 import xarray as xr
 
 from reduction.archive.schema import SCHEMA
+from reduction.archive.shared import shared_contributions
 from reduction.archive.variable import label, measured
+from reduction.record import Floats
 from reduction.tables.column import Cell, Column, uncertainty_of
-from reduction.tables.envelope import Curve, on_grid
+from reduction.tables.envelope import Curve, on_grid, read_curve
 from reduction.tables.table import SYNTHETIC, TEST
+from reduction.uncertainty.combine import combined_standard_uncertainty
+from reduction.uncertainty.product import Component
+from reduction.uncertainty.ratio import ratio_contributions
 from reduction.vocabulary import BRANCH_VALUES
 
 __all__ = ["STATIC_DYNAMIC_COLUMNS", "Slope", "slopes_of", "static_dynamic_rows"]
@@ -39,7 +44,10 @@ STATIC_DYNAMIC_COLUMNS = (
 
 @dataclass(frozen=True)
 class Slope:
-    """Slope between two readings of a stepwise test, at the strain in their middle."""
+    """Slope between two readings of a stepwise test, at the strain in their middle.
+
+    ``uncertainty`` holds both parts; ``shared`` what each error that samples share adds.
+    """
 
     test: str
     specimen: str
@@ -48,6 +56,7 @@ class Slope:
     strain: float
     modulus: float
     uncertainty: float
+    shared: Mapping[Component, float] = field(default_factory=dict)
 
 
 def slopes_of(archive: xr.Dataset) -> Iterator[Slope]:
@@ -55,7 +64,7 @@ def slopes_of(archive: xr.Dataset) -> Iterator[Slope]:
     if "interval_modulus" not in archive:
         return
     branches = {value: name for name, value in BRANCH_VALUES.items()}
-    for index in np.flatnonzero(np.isfinite(archive["interval_modulus"].values)):
+    for index in map(int, np.flatnonzero(np.isfinite(archive["interval_modulus"].values))):
         yield Slope(
             test=archive.attrs["test"],
             specimen=str(archive["specimen"].values[0]),
@@ -64,6 +73,7 @@ def slopes_of(archive: xr.Dataset) -> Iterator[Slope]:
             strain=float(archive["interval_strain"].values[index]),
             modulus=float(archive["interval_modulus"].values[index]),
             uncertainty=float(archive["interval_modulus_standard_uncertainty"].values[index]),
+            shared=shared_contributions(archive, "interval_modulus", index),
         )
 
 
@@ -81,8 +91,9 @@ def static_dynamic_rows(slopes: Sequence[Slope], curves: Sequence[Curve]) -> lis
     -------
     rows : list of list
         In the order of `STATIC_DYNAMIC_COLUMNS`, by curve and then by rising strain;
-        strains at which the curve has no modulus are left out.  The uncertainty of the
-        ratio takes both moduli as independent.
+        strains at which the curve has no modulus are left out.  What both moduli share (a
+        load cell, a diameter) is in the ratio as far as it is not the same share of both; of
+        archives that say nothing of it they count as independent.
     """
     rows: list[list[Cell]] = []
     for curve in curves:
@@ -90,19 +101,35 @@ def static_dynamic_rows(slopes: Sequence[Slope], curves: Sequence[Curve]) -> lis
             (slope for slope in slopes if slope.branch == curve.branch),
             key=lambda slope: (slope.test, slope.specimen, slope.strain),
         )
-        dynamic = np.column_stack(on_grid(curve, np.array([slope.strain for slope in beside])))
+        at = np.array([slope.strain for slope in beside])
+        of_errors = curve.shared.values.get("tangent_modulus", np.empty((0, curve.strain.size)))
+        dynamic = np.column_stack([*on_grid(curve, at), *read_curve(curve, at, of_errors)])
         rows += [
-            _row(slope, curve, float(modulus), float(spread))
-            for slope, (modulus, spread) in zip(beside, dynamic, strict=True)
+            _row(slope, curve, float(modulus), float(spread), shared)
+            for slope, (modulus, spread, *shared) in zip(beside, dynamic, strict=True)
             if np.isfinite(modulus)
         ]
     return rows
 
 
-def _row(slope: Slope, curve: Curve, modulus: float, spread: float) -> list[Cell]:
+def _row(
+    slope: Slope, curve: Curve, modulus: float, spread: float, shared: Sequence[float]
+) -> list[Cell]:
     ratio = slope.modulus / modulus
-    share = float(np.hypot(slope.uncertainty / slope.modulus, spread / modulus))
-    numbers = [slope.modulus, slope.uncertainty, modulus, spread, ratio, abs(ratio) * share]
+    of_curve = dict(zip(curve.shared.component, np.nan_to_num(shared), strict=True))
+    component = sorted({*of_curve, *slope.shared})
+    above, below = (
+        np.array([known.get(one, 0.0) for one in component]) for known in (slope.shared, of_curve)
+    )
+    rows = ratio_contributions(
+        ratio, numerator=slope.modulus, of_numerator=above, denominator=modulus,
+        of_denominator=below,
+    )  # fmt: skip
+    random = np.hypot(
+        _left(slope.uncertainty, above) / slope.modulus, _left(spread, below) / modulus
+    )
+    whole = float(combined_standard_uncertainty(rows, abs(ratio) * random))
+    numbers = [slope.modulus, slope.uncertainty, modulus, spread, ratio, whole]
     return [
         slope.test,
         slope.specimen,
@@ -113,3 +140,8 @@ def _row(slope: Slope, curve: Curve, modulus: float, spread: float) -> list[Cell
         *(value if np.isfinite(value) else None for value in numbers),
         "yes" if "yes" in (slope.synthetic, curve.synthetic) else "no",
     ]
+
+
+def _left(whole: float, contribution: Floats) -> float:
+    """Random part of a standard uncertainty: what is not shared."""
+    return float(np.sqrt(max(whole**2 - float(contribution @ contribution), 0.0)))
