@@ -23,6 +23,7 @@ from reduction.moduli.product import (
     Segments,
     Slips,
 )
+from reduction.moduli.slack import SlackStrain
 from reduction.moduli.stepwise import StepwiseResult
 from reduction.notes import by_severity
 from reduction.phases.standstill import Standstills
@@ -64,6 +65,8 @@ class History:
     ``permanent_set`` is how much longer it is when it first becomes taut than it was at the
     start of its first test, over the free length: what is left of the earlier tests after
     rest. NaN where one of the two records does not begin slack. [1]
+    ``permanent_set_by_tension`` is by how much it changes with the tension that counts as
+    slack. [N-1]
     ``earlier_flex_cycles`` is None where nothing is known of flexing.
     """
 
@@ -73,6 +76,7 @@ class History:
     earlier_cycles: Floats
     permanent_set: Floats
     permanent_set_standard_uncertainty: Floats
+    permanent_set_by_tension: Floats
     earlier_flex_cycles: Floats | None = None
 
 
@@ -129,8 +133,7 @@ class ReducedTest:
     stress_at_strain: Floats | None = None
     stress_at_strain_standard_uncertainty: Floats | None = None
     stress_at_strain_levels: tuple[float, ...] = ()
-    slack_strain_at_unloading: Floats | None = None
-    slack_strain_at_unloading_standard_uncertainty: Floats | None = None
+    slack_strain: SlackStrain | None = None
     stepwise: StepwiseResult | None = None
     line: LineParameters | None = None
     line_of_test: LineParameters | None = None

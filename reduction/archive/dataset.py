@@ -127,9 +127,10 @@ def _all_values(test: ReducedTest) -> Values:
     stress, spread = test.stress_at_strain, test.stress_at_strain_standard_uncertainty
     if stress is not None and spread is not None:
         values |= stress_at_strain_values(stress, spread, test.stress_at_strain_levels)
-    for name in ("slack_strain_at_unloading", "slack_strain_at_unloading_standard_uncertainty"):
-        if getattr(test, name) is not None:
-            values[name] = getattr(test, name)
+    if test.slack_strain is not None:
+        left = test.slack_strain
+        values["slack_strain_at_unloading"] = left.strain
+        values["slack_strain_at_unloading_standard_uncertainty"] = left.standard_uncertainty
     values = with_shared(
         values,
         test.contributions,

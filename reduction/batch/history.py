@@ -24,10 +24,10 @@ def _greatest_strain(survey: Survey, name: str, models: Models) -> float:
 
 def _set_after_rest(
     survey: Survey, earlier: Sequence[Survey], name: str, free_length: float
-) -> tuple[float, float]:
+) -> tuple[float, float, float]:
     """Growth of the length at which the specimen becomes taut, since its first test. [1]."""
     if not earlier:
-        return float("nan"), float("nan")
+        return float("nan"), float("nan"), float("nan")
     return growth_of_slack_length(
         earlier[0].extremes, survey.extremes, name, free_length=free_length
     )
@@ -140,8 +140,9 @@ def history_of(
         earlier_maximum_strain=np.array(strain),
         earlier_maximum_tension=np.array(tension),
         earlier_cycles=np.array(cycles),
-        permanent_set=np.array([value for value, _ in left]),
-        permanent_set_standard_uncertainty=np.array([spread for _, spread in left]),
+        permanent_set=np.array([value for value, _, _ in left]),
+        permanent_set_standard_uncertainty=np.array([spread for _, spread, _ in left]),
+        permanent_set_by_tension=np.array([slope for _, _, slope in left]),
         earlier_flex_cycles=None if np.isnan(flex).all() else np.array(flex),
     )
 

@@ -9,22 +9,79 @@ References
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_positive, as_same_shape
 from reduction.errors import DataError
-from reduction.record import Floats
+from reduction.record import Floats, freeze_arrays
 
-__all__ = ["slack_crossings", "slack_position", "slack_strain_at_unloading"]
+__all__ = [
+    "SlackCrossings",
+    "SlackStrain",
+    "slack_crossings",
+    "slack_position",
+    "slack_strain_at_unloading",
+]
 
 FEWEST_SAMPLES = 3
 REACH = 4.0
 
 
+@dataclass(frozen=True)
+class SlackCrossings:
+    """Where a record first becomes taut and last goes slack; arrays have shape (2,).
+
+    Parameters
+    ----------
+    position, standard_uncertainty : ndarray
+        First rise and last fall through the slack tension, and scatter about their lines; NaN
+        where the record does not show it. [m]
+    compliance : ndarray
+        Of the specimen there: by how much a crossing moves with the tension that counts. [m N-1]
+    reason : str
+        Why one is missing; empty where none is.
+    """
+
+    position: Floats
+    standard_uncertainty: Floats
+    compliance: Floats
+    reason: str
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
+@dataclass(frozen=True)
+class SlackStrain:
+    """Strain at which specimens go slack when a test unloads; arrays have shape (n_specimens,).
+
+    Parameters
+    ----------
+    strain, standard_uncertainty : ndarray
+        NaN where the record does not begin or does not end slack; from scatter. [1]
+    by_tension : ndarray
+        Change of it with the tension that counts as slack. [N-1]
+    remarks : tuple of str, length n_specimens
+        Why the number is missing; empty where it is there.
+    """
+
+    strain: Floats
+    standard_uncertainty: Floats
+    by_tension: Floats
+    remarks: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze_arrays(self)
+
+
 def slack_position(
     position: ArrayLike, tension: ArrayLike, *, slack_tension: float
-) -> tuple[float, float]:
+) -> tuple[float, float, float]:
     """Position at which tension crosses the slack tension on one loading or unloading.
 
     Parameters
@@ -42,7 +99,9 @@ def slack_position(
         By a straight line through the samples between one and four times the slack
         tension; NaN where there are fewer than three or they do not rise with position. [m]
     crossing_standard_uncertainty : float
-        From the scatter about the line (type A); NaN for three samples. [m]
+        From the scatter about the line; NaN for three samples. [m]
+    compliance : float
+        Slope of the line. [m N-1]
 
     Raises
     ------
@@ -57,7 +116,7 @@ def slack_position(
     Examples
     --------
     >>> x = np.linspace(0, 1, 101)
-    >>> crossing, _ = slack_position(x, 100 * np.clip(x - 0.2, 0, None), slack_tension=5.0)
+    >>> crossing, _, _ = slack_position(x, 100 * np.clip(x - 0.2, 0, None), slack_tension=5.0)
     >>> round(crossing, 6)
     0.25
     """
@@ -66,23 +125,23 @@ def slack_position(
     used = (load >= slack_tension) & (load <= REACH * slack_tension) & np.isfinite(place)
     x, y = place[used], load[used] - slack_tension
     if x.size < FEWEST_SAMPLES or np.ptp(x) == 0:
-        return np.nan, np.nan
+        return np.nan, np.nan, np.nan
     # Position on tension: the noise of tension is small against its range here, and the
     # crossing is then the constant term.
     design = np.stack([np.ones_like(y), y], axis=1)
     (crossing, slope), *_ = np.linalg.lstsq(design, x)
     if not slope > 0:
-        return np.nan, np.nan
+        return np.nan, np.nan, np.nan
     if x.size == FEWEST_SAMPLES:
-        return float(crossing), np.nan
+        return float(crossing), np.nan, float(slope)
     residual = x - design @ [crossing, slope]
     covariance = np.linalg.inv(design.T @ design) * (residual @ residual) / (x.size - 2)
-    return float(crossing), float(np.sqrt(covariance[0, 0]))
+    return float(crossing), float(np.sqrt(covariance[0, 0])), float(slope)
 
 
 def slack_crossings(
     position: ArrayLike, tension: ArrayLike, *, slack_tension: float
-) -> tuple[Floats, Floats, str]:
+) -> SlackCrossings:
     """Positions at which a record first becomes taut and last goes slack.
 
     Parameters
@@ -96,13 +155,8 @@ def slack_crossings(
 
     Returns
     -------
-    crossing : ndarray, shape (2,)
-        First rise and last fall through the slack tension; NaN where the record does not
-        show it. [m]
-    crossing_standard_uncertainty : ndarray, shape (2,)
-        Type A. [m]
-    reason : str
-        Why one is missing; empty where none is. [text]
+    crossings : SlackCrossings
+        [m]
 
     Raises
     ------
@@ -117,9 +171,9 @@ def slack_crossings(
     Examples
     --------
     >>> x = np.concatenate([np.linspace(0, 2, 201), np.linspace(2, 0, 201)])
-    >>> crossing, _, _ = slack_crossings(x, 100 * np.clip(x - 0.2, 0, None), slack_tension=5.0)
-    >>> print(crossing.round(4))
-    [0.25 0.25]
+    >>> found = slack_crossings(x, 100 * np.clip(x - 0.2, 0, None), slack_tension=5.0)
+    >>> print(found.position.round(4), found.compliance.round(4))
+    [0.25 0.25] [0.01 0.01]
     """
     as_positive("slack_tension", slack_tension)
     place, load = as_same_shape(position=position, tension=tension)
@@ -127,9 +181,9 @@ def slack_crossings(
     if not known.all():
         place, load = place[known], load[known]
     is_taut = load > REACH * slack_tension
-    crossing, uncertainty = np.full((2, 2), np.nan)
+    crossing, uncertainty, compliance = np.full((3, 2), np.nan)
     if not is_taut.any():
-        return crossing, uncertainty, "the specimen is never taut"
+        return SlackCrossings(crossing, uncertainty, compliance, "the specimen is never taut")
     taut_first, taut_last = int(is_taut.argmax()), load.size - 1 - int(is_taut[::-1].argmax())
     before = np.flatnonzero(load[:taut_first] <= slack_tension)
     after = np.flatnonzero(load[taut_last:] <= slack_tension) + taut_last
@@ -138,19 +192,19 @@ def slack_crossings(
         reasons.append("the record does not begin slack")
     else:
         rise = slice(before[-1], taut_first + 1)
-        crossing[0], uncertainty[0] = slack_position(
+        crossing[0], uncertainty[0], compliance[0] = slack_position(
             place[rise], load[rise], slack_tension=slack_tension
         )
     if after.size == 0:
         reasons.append("the record does not return to slack")
     else:
         fall = slice(taut_last, after[0] + 1)
-        crossing[1], uncertainty[1] = slack_position(
+        crossing[1], uncertainty[1], compliance[1] = slack_position(
             place[fall], load[fall], slack_tension=slack_tension
         )
     if not reasons and not np.isfinite(crossing).all():
         reasons.append("too few samples where the specimen goes slack")
-    return crossing, uncertainty, "; ".join(reasons)
+    return SlackCrossings(crossing, uncertainty, compliance, "; ".join(reasons))
 
 
 def slack_strain_at_unloading(
@@ -159,7 +213,7 @@ def slack_strain_at_unloading(
     *,
     slack_tension: float,
     relaxed_free_length: ArrayLike,
-) -> tuple[Floats, Floats, tuple[str, ...]]:
+) -> SlackStrain:
     r"""Strain at which a specimen goes slack when a test unloads.
 
     .. math:: s = (x_{last} - x_{first}) / \ell_0
@@ -180,12 +234,8 @@ def slack_strain_at_unloading(
 
     Returns
     -------
-    slack_strain : ndarray, shape (n_specimens,)
-        NaN where the record does not begin or does not end slack. [1]
-    slack_strain_standard_uncertainty : ndarray, shape (n_specimens,)
-        Type A. [1]
-    remarks : tuple of str, length n_specimens
-        Why the number is missing; empty where it is there. [text]
+    slack_strain : SlackStrain
+        [1]
 
     Raises
     ------
@@ -206,10 +256,10 @@ def slack_strain_at_unloading(
     >>> up, down = np.linspace(0, 2, 201), np.linspace(2, 0, 201)
     >>> x = np.concatenate([up, down])
     >>> load = 100 * np.clip(np.concatenate([up - 0.2, down - 0.25]), 0, None)
-    >>> left, _, _ = slack_strain_at_unloading(
+    >>> left = slack_strain_at_unloading(
     ...     x, [load], slack_tension=5.0, relaxed_free_length=[2.0]
     ... )
-    >>> print(left.round(4))
+    >>> print(left.strain.round(4))
     [0.025]
     """
     loads = np.atleast_2d(np.asarray(tension, dtype=np.float64))
@@ -220,13 +270,15 @@ def slack_strain_at_unloading(
             found=f"{lengths.size} lengths",
             needed=f"{loads.shape[0]}",
         )
-    found, uncertainty = np.full((2, loads.shape[0]), np.nan)
+    found, uncertainty, by_tension = np.full((3, loads.shape[0]), np.nan)
     remarks = []
     for row, (load, length) in enumerate(zip(loads, lengths, strict=True)):
-        crossing, spread, reason = slack_crossings(position, load, slack_tension=slack_tension)
+        at = slack_crossings(position, load, slack_tension=slack_tension)
+        reason = at.reason
         if not reason and not np.isfinite(length):
             reason = "the relaxed free length is not known"
-        found[row] = (crossing[1] - crossing[0]) / length
-        uncertainty[row] = np.hypot(spread[0], spread[1]) / length
+        found[row] = (at.position[1] - at.position[0]) / length
+        uncertainty[row] = np.hypot(*at.standard_uncertainty) / length
+        by_tension[row] = (at.compliance[1] - at.compliance[0]) / length
         remarks.append(f"slack strain at unloading not given: {reason}" if reason else "")
-    return found, uncertainty, tuple(remarks)
+    return SlackStrain(found, uncertainty, by_tension, tuple(remarks))

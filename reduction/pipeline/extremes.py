@@ -173,7 +173,7 @@ def greatest_strain(extremes: Extremes, specimen: str, model: StrainModel | None
 
 def growth_of_slack_length(
     first: Extremes, later: Extremes, specimen: str, *, free_length: float
-) -> tuple[float, float]:
+) -> tuple[float, float, float]:
     """Growth of the length at which a specimen becomes taut, from its first test to a later one.
 
     Parameters
@@ -189,6 +189,8 @@ def growth_of_slack_length(
     -------
     growth, standard_uncertainty : float
         NaN where a test has no first rise, or no length. [1]
+    by_tension : float
+        Change of the growth with the tension that counts as slack. [N-1]
 
     Raises
     ------
@@ -203,29 +205,32 @@ def growth_of_slack_length(
     >>> def rise(slack):
     ...     tension = 100 * np.clip(position - slack, 0, None)
     ...     return Extremes(first_rise={"hose": Samples(position, tension)}, slack_tension=5.0)
-    >>> growth, _ = growth_of_slack_length(rise(3.0), rise(3.3), "hose", free_length=3.0)
+    >>> growth, _, _ = growth_of_slack_length(rise(3.0), rise(3.3), "hose", free_length=3.0)
     >>> round(growth, 6)
     0.1
     """
-    pair = (first, later)
+    pair, nothing = (first, later), (float("nan"), float("nan"), float("nan"))
     # a displacement from slack begins at zero again in every test
     if any(specimen not in one.first_rise or not one.position_is_length for one in pair):
-        return float("nan"), float("nan")
+        return nothing
     # one tension for both, so that the slope of the first rise does not enter
     slack = max(one.slack_tension for one in pair)
-    lengths, spreads = [], []
+    lengths, spreads, compliances = [], [], []
     for one in pair:
         rise = one.first_rise[specimen]
-        crossing, crossing_spread, _ = slack_crossings(
-            rise.position, rise.tension, slack_tension=slack
-        )
-        lengths.append(crossing[0])
-        spreads.append(crossing_spread[0])
-    growth, spread = (lengths[1] - lengths[0]) / free_length, np.hypot(*spreads) / free_length
+        at = slack_crossings(rise.position, rise.tension, slack_tension=slack)
+        lengths.append(at.position[0])
+        spreads.append(at.standard_uncertainty[0])
+        compliances.append(at.compliance[0])
+    spread = float(np.hypot(*spreads))
     # a crossing through two samples alone has no residual, and so no uncertainty to give
     if not np.isfinite(spread):
-        return float("nan"), float("nan")
-    return float(growth), float(spread)
+        return nothing
+    return (
+        float(lengths[1] - lengths[0]) / free_length,
+        spread / free_length,
+        float(compliances[1] - compliances[0]) / free_length,
+    )
 
 
 def _greatest(specimens: tuple[str, ...], values: Floats) -> dict[str, float]:

@@ -132,7 +132,7 @@ def reduce_test(
         specimens=record.specimens, settings=settings.holds,
         kind="relaxation" if standstills.tension_tolerance is None else "creep",
     )  # fmt: skip
-    slack, slack_uncertainty, slack_remarks = slack_strain_at_unloading(
+    slack_strain = slack_strain_at_unloading(
         position,
         tension,
         slack_tension=standstills.slack_tension,
@@ -146,7 +146,7 @@ def reduce_test(
     notes = notes_of_test(
         located, strain, kind=description.kind, specimens=specimens, settings=settings, holds=holds,
         parts=of_cycles, of_stages=(*first_rise_notes, *refused_pulls),
-        slack_remarks=slack_remarks,
+        slack_remarks=slack_strain.remarks,
     )  # fmt: skip
     reduced = ReducedTest(
         description=description,
@@ -168,8 +168,7 @@ def reduce_test(
         holds=holds,
         pulls=of_pulls,
         channel_lag=lag,
-        slack_strain_at_unloading=slack,
-        slack_strain_at_unloading_standard_uncertainty=slack_uncertainty,
+        slack_strain=slack_strain,
         rope_step=rope_step(
             located, strain, tension, kind=description.kind, specimens=specimens,
             loops=of_cycles.get("loops"), holds=holds, failed=description.failed,

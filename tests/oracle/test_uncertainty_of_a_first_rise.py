@@ -1,4 +1,4 @@
-"""The first rise of a tether whose load is logged later still: logs shifted and reduced again."""
+"""The first rise and the slack end of a tether: logs shifted, in time or load, reduced again."""
 
 import shutil
 from pathlib import Path
@@ -13,6 +13,7 @@ from reduction.campaign.load import load_campaign
 
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 LAG = 0.020  # as the campaign states it [s]
+ZERO = 0.5  # as the campaign states it [lbf]
 NAMES = ("branch_tension_first_loading", "stress_at_strain")
 
 
@@ -60,3 +61,16 @@ def test_a_later_load_is_lower_on_the_rise_by_its_rate(stated, tmp_path, name):
     assert found[known].sum() == pytest.approx(wanted[known].sum(), rel=0.1)
     far = np.abs(found[known] - wanted[known]) > 0.25 * np.abs(wanted[known]).max()
     assert far.mean() < 0.1
+
+
+def test_a_zero_of_the_load_cell_moves_where_a_specimen_goes_slack(stated, tmp_path):
+    name = "slack_strain_at_unloading"
+    above, below = (
+        reduced(tmp_path / side, zero=way * ZERO)[name].to_numpy()
+        for side, way in (("more", 1), ("less", -1))
+    )
+    wanted = (above - below) / 2
+    # both cells are moved here, and each has its own specimen
+    found = contribution(stated, name, "tension_offset")
+    assert found == pytest.approx(wanted, rel=0.25)
+    assert (wanted < 0).all()

@@ -101,7 +101,7 @@ def test_a_line_in_the_logarithm_gives_its_slope(slope, level, first):
 @given(st.floats(0, 5), st.floats(10, 500), st.floats(1, 20))
 def test_a_slack_crossing_is_where_the_line_is(start, stiffness, slack):
     place = start + np.linspace(0, 6 * slack / stiffness, 200)
-    crossing, _ = slack_position(place, stiffness * (place - start), slack_tension=slack)
+    crossing, _, _ = slack_position(place, stiffness * (place - start), slack_tension=slack)
     assert crossing == pytest.approx(start + slack / stiffness, abs=1e-9)
 
 

@@ -32,6 +32,7 @@ from reduction.moduli.product import (
     Segments,
     Slips,
 )
+from reduction.moduli.slack import SlackStrain
 from reduction.moduli.stepwise import StepwiseResult
 from reduction.phases.standstill import Standstills
 from reduction.product import History, ReducedTest, TestDescription
@@ -314,6 +315,7 @@ def rich_test():
             np.array([20.0, 0.0]),
             np.array([0.02, np.nan]),
             np.array([0.001, np.nan]),
+            np.array([1e-5, np.nan]),
             np.array([1e6, np.nan]),
         ),
         standstills=Standstills(
@@ -396,8 +398,9 @@ def rich_test():
         stress_at_strain=array(rng, 2, 2),
         stress_at_strain_standard_uncertainty=array(rng, 2, 2),
         stress_at_strain_levels=(1.0, 0.5),
-        slack_strain_at_unloading=np.array([0.02, np.nan]),
-        slack_strain_at_unloading_standard_uncertainty=np.array([0.001, np.nan]),
+        slack_strain=SlackStrain(
+            np.array([0.02, np.nan]), np.array([0.001, np.nan]), np.zeros(2), ("", "no slack")
+        ),
         contributions=make_contributions(np.random.default_rng(5)),
         shared_uncertainty_of_cycles={"apparent_spring_constant": np.full(per_cycle, 3.0)},
     )

@@ -216,7 +216,13 @@ def test_an_array_that_does_not_fit_is_refused(rich_test):
         ArchiveError,
         match=r"slack_strain_at_unloading does not fit its dimensions; found shape \(3,\)",
     ):
-        build(replace(rich_test, slack_strain_at_unloading=np.zeros(3), contributions=None))
+        build(
+            replace(
+                rich_test,
+                contributions=None,
+                slack_strain=replace(rich_test.slack_strain, strain=np.zeros(3)),
+            )
+        )
 
 
 def test_an_uncertainty_of_nothing_known_is_refused(rich_test):

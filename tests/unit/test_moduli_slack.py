@@ -16,22 +16,36 @@ def pull(start, end):
 
 
 def test_set_is_the_shift_of_the_crossing_over_the_free_length():
-    found, _, remarks = slack_strain_at_unloading(
+    found = slack_strain_at_unloading(
         POSITION,
         [pull(0.2, 0.25), pull(0.3, 0.3)],
         slack_tension=SLACK,
         relaxed_free_length=[2.5, 2.5],
     )
-    np.testing.assert_allclose(found, [0.02, 0], atol=1e-9)
-    assert remarks == ("", "")
+    np.testing.assert_allclose(found.strain, [0.02, 0], atol=1e-9)
+    assert found.remarks == ("", "")
+    # 1 N later on both ways, at 100 N m-1 each: nothing between them
+    np.testing.assert_allclose(found.by_tension, 0, atol=1e-12)
+
+
+def test_a_specimen_that_is_softer_on_its_way_back_goes_slack_earlier_at_a_higher_tension():
+    load = np.concatenate([100 * np.clip(UP - 0.2, 0, None), 50 * np.clip(DOWN - 0.25, 0, None)])
+    found, later = (
+        slack_strain_at_unloading(
+            POSITION, [load], slack_tension=tension, relaxed_free_length=[2.5]
+        )
+        for tension in (SLACK, SLACK + 0.1)
+    )
+    assert found.by_tension[0] == pytest.approx((1 / 50 - 1 / 100) / 2.5)
+    assert later.strain[0] - found.strain[0] == pytest.approx(0.1 * found.by_tension[0])
 
 
 def test_set_does_not_depend_on_the_datum_of_position():
     load = [pull(0.2, 0.25)]
     kwargs = {"slack_tension": SLACK, "relaxed_free_length": [2.5]}
-    here, _, _ = slack_strain_at_unloading(POSITION, load, **kwargs)
-    there, _, _ = slack_strain_at_unloading(POSITION + 7, load, **kwargs)
-    np.testing.assert_allclose(here, there, atol=1e-9)
+    here = slack_strain_at_unloading(POSITION, load, **kwargs)
+    there = slack_strain_at_unloading(POSITION + 7, load, **kwargs)
+    np.testing.assert_allclose(here.strain, there.strain, atol=1e-9)
 
 
 def test_the_stated_uncertainty_is_the_scatter_of_repeated_records():
@@ -45,8 +59,8 @@ def test_the_stated_uncertainty_is_the_scatter_of_repeated_records():
         )
         for _ in range(200)
     ]
-    found = np.array([run[0][0] for run in runs])
-    stated = np.mean([run[1][0] for run in runs])
+    found = np.array([run.strain[0] for run in runs])
+    stated = np.mean([run.standard_uncertainty[0] for run in runs])
     assert found.mean() == pytest.approx(0.02, abs=5e-4)
     assert stated == pytest.approx(found.std(), rel=0.25)
 
@@ -54,10 +68,10 @@ def test_the_stated_uncertainty_is_the_scatter_of_repeated_records():
 def test_missing_samples_are_left_out():
     load = pull(0.2, 0.25)
     load[::7] = np.nan
-    found, _, _ = slack_strain_at_unloading(
+    found = slack_strain_at_unloading(
         POSITION, [load], slack_tension=SLACK, relaxed_free_length=[2.5]
     )
-    assert found[0] == pytest.approx(0.02, abs=1e-9)
+    assert found.strain[0] == pytest.approx(0.02, abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -70,34 +84,34 @@ def test_missing_samples_are_left_out():
     ],
 )
 def test_a_record_that_does_not_show_it_gives_a_reason(rows, reason):
-    found, _, remarks = slack_strain_at_unloading(
+    found = slack_strain_at_unloading(
         POSITION[rows], [pull(0.2, 0.25)[rows]], slack_tension=SLACK, relaxed_free_length=[2.5]
     )
-    assert np.isnan(found[0])
-    assert remarks == (f"slack strain at unloading not given: {reason}",)
+    assert np.isnan(found.strain[0])
+    assert found.remarks == (f"slack strain at unloading not given: {reason}",)
 
 
 def test_without_a_free_length_there_is_no_strain():
-    found, _, remarks = slack_strain_at_unloading(
+    found = slack_strain_at_unloading(
         POSITION, [pull(0.2, 0.25)], slack_tension=SLACK, relaxed_free_length=[np.nan]
     )
-    assert np.isnan(found[0])
-    assert "the relaxed free length is not known" in remarks[0]
+    assert np.isnan(found.strain[0])
+    assert "the relaxed free length is not known" in found.remarks[0]
 
 
 def test_set_after_rest_is_the_shift_between_two_first_crossings():
-    first, _, _ = slack_crossings(POSITION, pull(0.2, 0.4), slack_tension=SLACK)
-    second, _, _ = slack_crossings(POSITION, pull(0.23, 0.4), slack_tension=SLACK)
+    first = slack_crossings(POSITION, pull(0.2, 0.4), slack_tension=SLACK).position
+    second = slack_crossings(POSITION, pull(0.23, 0.4), slack_tension=SLACK).position
     assert second[0] - first[0] == pytest.approx(0.03)
 
 
 def test_a_falling_line_has_no_crossing():
-    crossing, _ = slack_position(UP[:50], np.linspace(12, 4, 50), slack_tension=SLACK)
+    crossing, _, _ = slack_position(UP[:50], np.linspace(12, 4, 50), slack_tension=SLACK)
     assert np.isnan(crossing)
 
 
 def test_three_samples_give_a_crossing_without_uncertainty():
-    crossing, uncertainty = slack_position([0.0, 0.1, 0.2], [5.0, 7.0, 9.0], slack_tension=SLACK)
+    crossing, uncertainty, _ = slack_position([0.0, 0.1, 0.2], [5.0, 7.0, 9.0], slack_tension=SLACK)
     assert crossing == pytest.approx(-0.05)
     assert np.isnan(uncertainty)
 

@@ -31,7 +31,9 @@ def curves(*moduli):
 def history(strain, cycles):
     n = len(strain)
     nothing = np.full(n, np.nan)
-    return History((("T-0",),) * n, np.array(strain), nothing, np.array(cycles), nothing, nothing)
+    return History(
+        (("T-0",),) * n, np.array(strain), nothing, np.array(cycles), nothing, nothing, nothing
+    )
 
 
 def remarks(first, other, past):

@@ -92,9 +92,24 @@ def test_without_a_length_or_a_rise_there_is_no_growth(told):
     rise = Extremes(
         first_rise={"a": Samples(position, 100 * np.clip(position - 3, 0, None))}, slack_tension=5.0
     )
-    assert growth_of_slack_length(rise, rise, "a", free_length=3.0) == (0.0, pytest.approx(0.0))
+    assert growth_of_slack_length(rise, rise, "a", free_length=3.0) == (
+        0.0, pytest.approx(0.0), 0.0,
+    )  # fmt: skip
     both = growth_of_slack_length(rise, replace(rise, **told), "a", free_length=3.0)
     assert np.isnan(both).all()
+
+
+def test_a_softer_specimen_grows_with_the_tension_that_counts_as_slack():
+    position = np.linspace(2, 4, 401)
+
+    def rise(stiffness, slack_tension=5.0):
+        load = stiffness * np.clip(position - 3, 0, None)
+        return Extremes(first_rise={"a": Samples(position, load)}, slack_tension=slack_tension)
+
+    growth, _, slope = growth_of_slack_length(rise(100.0), rise(50.0), "a", free_length=3.0)
+    more, _, _ = growth_of_slack_length(rise(100.0, 6.0), rise(50.0, 6.0), "a", free_length=3.0)
+    assert slope == pytest.approx((1 / 50 - 1 / 100) / 3.0)
+    assert more - growth == pytest.approx(slope)
 
 
 def test_a_crossing_through_two_samples_has_no_growth():

@@ -67,27 +67,39 @@ def _of_slack(
 ) -> Iterator[Contributions]:
     """Differences of two positions at one small tension, over the relaxed length.
 
-    A zero of the crosshead is in both and cancels; one of the load cell moves both alike as far as
-    the specimen is as stiff there, and is left out.
+    A zero of the crosshead is in both and cancels; where the load cell reads too much both are
+    found at less tension than is meant, and move by as much as the specimen stretches for it there.
     """
-    component = [Component("position_gain", errors.position_instrument)]
-    relative = [errors.position_gain]
+    component, relative = [], []
+    if errors.position_gain:
+        component.append(Component("position_gain", errors.position_instrument))
+        relative.append(errors.position_gain)
     name = next((one for one in _LENGTHS if one in model.coefficients), None)
     if name is not None and model.covariance.size:
         place = list(model.coefficients).index(name)
         spread = np.sqrt(model.covariance[place, place]) / model.coefficients[name]
         component.append(Component("relaxed_length", errors.strain_model or errors.specimen))
         relative.append(-float(spread))
+    history, slack = test.history, test.slack_strain
     left = {
-        "slack_strain_at_unloading": test.slack_strain_at_unloading,
-        "permanent_set": None if test.history is None else test.history.permanent_set,
+        "slack_strain_at_unloading": None if slack is None else (slack.strain, slack.by_tension),
+        "permanent_set": None
+        if history is None
+        else (history.permanent_set, history.permanent_set_by_tension),
     }
+    tension = 0.0 if test.standstills is None else test.standstills.slack_tension
+    field = error_field(errors, model, strain=0.0, tension=tension)
+    moved = np.flatnonzero(field.tension)
+    component += [field.component[place] for place in moved]
+    by_length = np.array(relative)
     values = {
-        quantity: np.array(relative) * value[index]
-        for quantity, value in left.items()
-        if value is not None
+        quantity: np.concatenate(
+            [by_length * both[0][index], -field.tension[moved] * both[1][index]]
+        )
+        for quantity, both in left.items()
+        if both is not None
     }
-    if any(relative):
+    if component:
         yield Contributions(tuple(component), values)
 
 
