@@ -14,6 +14,7 @@ from reduction.notes import Severity
 from reduction.record import Floats
 from reduction.report.hoseview import DEGREES, EVENT_WORDS
 from reduction.report.rowview import RowView
+from reduction.report.sources import in_order
 from reduction.report.style import Shown, shown
 from reduction.units import UnitSystem
 
@@ -167,6 +168,16 @@ class ComparisonView(RowView):
     def difference(self) -> Floats:
         """Predicted less measured tension at the judged curve. [N]."""
         return self.of_curve("tension_difference", self.judged)
+
+    @property
+    def shared_sources(self) -> list[str]:
+        """Sources of what all samples of the test share, in fixed order."""
+        rows = self.data.get("measured_tension_uncertainty_contribution")
+        if rows is None:
+            return []
+        own = np.nan_to_num(rows.values[:, self.index]).reshape(rows.shape[0], -1)
+        names = self.data["uncertainty_source"].values.astype(str)
+        return in_order(set(names[(own != 0).any(axis=1)].tolist()))
 
     @property
     def allowed(self) -> Floats:

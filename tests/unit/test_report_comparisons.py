@@ -132,8 +132,8 @@ def test_no_comparison_is_no_table_and_no_tile():
 def test_the_test_and_the_prediction_are_drawn_at_their_strains():
     (figure,) = draw_comparison(view(agreeing()))
     found = traces(figure)
-    assert [*found][:6] == [
-        "95 % band of the prediction", "predicted", "calibrated", "measured, ascending",
+    assert [*found][:7] == [
+        "95 % band of the prediction", "95 % band of the test", "predicted", "calibrated", "measured, ascending",
         "measured, descending", "measured, midline",
     ]  # fmt: skip
     strain = numbers(found["predicted"]["x"]) / 100
@@ -146,22 +146,29 @@ def test_the_test_and_the_prediction_are_drawn_at_their_strains():
     assert heavy > found["measured, ascending"]["line"]["width"]
 
 
-def test_the_band_is_two_standard_uncertainties_of_the_prediction():
+@pytest.mark.parametrize("whose", ["the prediction", "the test"])
+def test_the_bands_are_expanded_uncertainties_with_the_factor_of_the_tables(whose):
     one = view(agreeing())
     (figure,) = draw_comparison(one)
-    band = traces(figure)["95 % band of the prediction"]
+    band = traces(figure)[f"95 % band of {whose}"]
     edges = [pair for pair in zip(band["x"], band["y"], strict=True) if pair[0] is not None]
     at = 100 * one.array("strain")[50]
     high, low = sorted((y for x, y in edges if abs(x - at) < 1e-6), reverse=True)
-    spread = agreeing().comparison.validation.input_standard_uncertainty[50]
-    assert high - low == pytest.approx(4 * spread, rel=1e-4)
+    found = agreeing().comparison
+    if whose == "the prediction":
+        spread = found.validation.input_standard_uncertainty[50]
+    else:
+        # a load cell that may be 20 N off, beside the scatter
+        spread = np.hypot(20.0, found.measured.midline_standard_uncertainty[50])
+    assert high - low == pytest.approx(2 * 1.96 * spread, rel=1e-4)
+    assert "95 % (k = 1.96)" in figure.caption
+    assert "what all samples share: tension offset" in figure.caption
 
 
 def test_a_prediction_without_uncertainty_has_no_band():
     named = judged_as(differing(), input_standard_uncertainty=np.zeros(121))
     (figure,) = draw_comparison(view(named))
     assert "95 % band of the prediction" not in traces(figure)
-    assert "95 % band" not in figure.caption
 
 
 def test_events_are_marked_where_they_are_predicted_and_where_the_test_came_by():

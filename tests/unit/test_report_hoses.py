@@ -154,7 +154,7 @@ def test_events_and_the_safe_working_load_stand_where_the_closed_forms_say():
     assert named["cords break"]["x"] == pytest.approx([100 * (stretch_at(68, 0.22) - 1)], rel=1e-5)
 
 
-def test_the_band_is_two_standard_uncertainties_wide_and_ends_where_the_load_does():
+def test_the_band_is_the_expanded_uncertainty_of_the_tables_and_ends_where_the_load_does():
     one = view(greatest_strain=2.4)
     (figure,) = draw_tension(one)
     band = traces(figure)["95 % band"]
@@ -162,9 +162,9 @@ def test_the_band_is_two_standard_uncertainties_wide_and_ends_where_the_load_doe
     known = np.isfinite(tension)
     assert 0 < known.sum() < known.size
     size = int(known.sum())
-    assert band["y"][:size] == pytest.approx((tension + 2 * spread)[known], rel=1e-5)
+    assert band["y"][:size] == pytest.approx((tension + 1.959964 * spread)[known], rel=1e-5)
     assert band["y"][size : 2 * size][::-1] == pytest.approx(
-        (tension - 2 * spread)[known], rel=1e-5
+        (tension - 1.959964 * spread)[known], rel=1e-5
     )
     assert traces(figure)["net tension"]["y"][-1] is None
 

@@ -10,15 +10,14 @@ import numpy as np
 from reduction.record import Bools, Floats
 from reduction.report.comparisonview import ComparisonView
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure, plain_numbers
+from reduction.report.sources import source_words
 from reduction.report.style import COLOURS, DASHES, SYMBOLS, Shown, colour, shown
-from reduction.report.uncertainty import expand, factor_words
+from reduction.report.uncertainty import NORMAL, expand, factor_words
 
 __all__ = ["draw_all_comparisons", "draw_comparison", "draw_cycle_bias", "draw_error"]
 
 _PREDICTED, _MEASURED, _CALIBRATED, _GREY = COLOURS[0], COLOURS[1], COLOURS[2], COLOURS[6]
 _ALPHA = 0.22
-_BAND = 2.0
-"""Standard uncertainties on either side: a band of 95 %."""
 _EVENT_SYMBOLS = {"pick_up": SYMBOLS[2], "working": SYMBOLS[0], "break": SYMBOLS[5]}
 _LEAST_TENSION = 0.05
 """Share of the greatest measured tension below which no difference is given relative to it."""
@@ -30,16 +29,28 @@ def draw_comparison(view: ComparisonView) -> list[Figure]:
     """Draw both branches and the judged curve of the test with the prediction and its band."""
     force = shown("tension", view.units)
     strain, predicted = _percent(view), force.factor * view.array("predicted_tension")
-    half = _BAND * force.factor * view.array_like(
-        "predicted_tension_standard_uncertainty", predicted
-    )  # fmt: skip
+    measured = force.factor * view.of_curve("measured_tension", view.judged)
+    banded = {
+        "the prediction": (
+            predicted,
+            view.array_like("predicted_tension_standard_uncertainty", predicted),
+            _PREDICTED,
+        ),
+        "the test": (
+            measured,
+            view.of_curve("measured_tension_standard_uncertainty", view.judged),
+            _MEASURED,
+        ),
+    }
     data: list[Trace] = []
-    has_band = bool(np.any(half > 0))
-    if has_band:
-        data.append(
-            band(strain, predicted - half, predicted + half, name="95 % band of the prediction",
-                 colour=_PREDICTED, alpha=_ALPHA)
-        )  # fmt: skip
+    for whose, (curve, spread, tint) in banded.items():
+        half = NORMAL * force.factor * spread
+        if np.any(half > 0):
+            data.append(
+                band(strain, curve - half, curve + half, name=f"95 % band of {whose}",
+                     colour=tint, alpha=_ALPHA)
+            )  # fmt: skip
+    has_band = bool(data)
     data.append(line(strain, predicted, name="predicted", colour=_PREDICTED, width=2.6))
     calibrated = force.factor * view.array_like("calibrated_tension", predicted)
     if np.isfinite(calibrated).any():
@@ -50,7 +61,7 @@ def draw_comparison(view: ComparisonView) -> list[Figure]:
     data += [_measured(view, curve, force) for curve in view.curves]
     data += _events(view, force)
     judged = view.judged if view.judged == "midline" else f"{view.judged} branch"
-    about = "Shaded: 95 % band, two standard uncertainties of the prediction. " if has_band else ""
+    about = f"{_shaded(view)} " if has_band else ""
     fitted = (
         " Calibrated: with the numbers of the hose that were fitted to this very test."
         if view.fitted
@@ -67,6 +78,16 @@ def draw_comparison(view: ComparisonView) -> list[Figure]:
             xaxis=_strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
         )
     )  # fmt: skip
+
+
+def _shaded(view: ComparisonView) -> str:
+    """Say what the bands hold."""
+    shared = ", ".join(source_words(one) for one in view.shared_sources)
+    of_test = f"scatter, and what all samples share: {shared}" if shared else "scatter alone"
+    return (
+        f"Shaded: expanded uncertainty, 95 % ({factor_words([NORMAL])}), of the prediction from"
+        f" what is stated of the hose, and of the judged curve of the test: {of_test}."
+    )
 
 
 def draw_error(view: ComparisonView) -> list[Figure]:

@@ -10,6 +10,7 @@ from reduction.record import Floats
 from reduction.report.figure import Figure, Trace, axis, band, plain_numbers
 from reduction.report.hoseview import EVENT_WORDS, HoseView, OneEvent
 from reduction.report.style import COLOURS, Shown, symbol
+from reduction.report.uncertainty import NORMAL
 
 __all__ = [
     "CORDS", "GREY", "NET", "RUBBER", "SLACKEST", "SYMBOLS", "event_marks", "interval", "is_drawn",
@@ -23,8 +24,6 @@ SYMBOLS = {
 }  # fmt: skip
 SLACKEST = EVENT_WORDS["deepest_slack"]
 _ALPHA = 0.22
-_BAND = 2.0
-"""Standard uncertainties on either side: a band of 95 %."""
 _SLACK = "rgba(140,140,140,0.16)"
 
 
@@ -42,7 +41,7 @@ def interval(
     strain: Floats, values: Floats, spread: Floats, factor: float, of_colour: str = NET
 ) -> Trace:
     """Return the band of 95 %; broken where nothing is known."""
-    half = _BAND * spread
+    half = NORMAL * spread
     return band(
         strain, factor * (values - half), factor * (values + half), name="95 % band",
         colour=of_colour, alpha=_ALPHA,

@@ -31,12 +31,14 @@ from reduction.report.figures.hosemarks import (
 )
 from reduction.report.hoseview import DEGREES, SOURCE_WORDS, HoseView
 from reduction.report.style import COLOURS, colour, shown
+from reduction.report.uncertainty import NORMAL, factor_words
 
 __all__ = ["draw_all_hoses", "draw_budget", "draw_pressure", "draw_tension"]
 
 _LEAST_SHARE = 2.0
 """A source that never has so much of the variance stands with the others. [%]"""
 _MOST_SOURCES = 6
+_FACTOR = factor_words([NORMAL])
 _DASHES = ("solid", "dash", "dot", "dashdot")
 _STATIC = (
     " From the static curve of one cord and a long, straight, closed hose full of water: nothing of"
@@ -72,7 +74,7 @@ def draw_tension(view: HoseView) -> list[Figure]:
                  colour=GREY, dash="dashdot", width=1.4)
         )  # fmt: skip
     data += event_marks(view, "tension", force)
-    about = f"Shaded blue: 95 % band (two standard uncertainties at held strain){_KINK}. "
+    about = f"Shaded blue: 95 % band ({_FACTOR}, at held strain){_KINK}. "
     about = about if view.sources else ""
     grey = " Grey: cords slack, the rubber alone carries." if view.is_slack_at_first else ""
     return kept_figure(
@@ -97,7 +99,7 @@ def draw_pressure(view: HoseView) -> list[Figure]:
         data.append(interval(strain, pressure, spread, unit.factor))
     data.append(line(strain, unit.factor * pressure, name="fill pressure", colour=NET, width=2.4))
     data += [mark for mark in event_marks(view, "fill_pressure", unit) if mark["name"] != SLACKEST]
-    about = f" Shaded blue: 95 % band{_KINK}." if view.sources else ""
+    about = f" Shaded blue: 95 % band ({_FACTOR}){_KINK}." if view.sources else ""
     return kept_figure(
         make_figure(
             f"{view.key}-pressure", f"Predicted fill pressure, hose {view.name}",
@@ -186,7 +188,7 @@ def draw_all_hoses(views: Sequence[HoseView]) -> list[Figure]:
                     },
                 }
             )  # fmt: skip
-    about = " Shaded: 95 % band, where uncertainties are stated." if any(
+    about = f" Shaded: 95 % band ({_FACTOR}), where uncertainties are stated." if any(
         view.sources for view in views
     ) else ""  # fmt: skip
     return kept_figure(
