@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -35,6 +36,18 @@ def _failed_logs(surveys: Sequence[Survey]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(s.plan.log for s in surveys if s.plan.log not in sound))
 
 
+def _load_cells(campaign: Campaign, surveys: Sequence[Survey], specimen: str) -> dict[str, str]:
+    """By log, the load cell under which the marks of a specimen were read in it."""
+    return {
+        survey.plan.log: campaign.uncertainty.load_cell_name(
+            survey.plan.attributes.get("load_cell", ""),
+            channel=survey.plan.specimens.index(specimen) + 1,
+        )
+        for survey in surveys
+        if specimen in survey.plan.specimens
+    }
+
+
 def fit_strain_models(
     campaign: Campaign, surveys: Sequence[Survey]
 ) -> tuple[dict[tuple[str, str], StrainModel], dict[str, ReductionError]]:
@@ -62,6 +75,7 @@ def fit_strain_models(
         name: _pooled(marks, surveys, lambda survey: survey.mark_tension_at_start)
         for name, marks in campaign.marks.items()
     }
+    cells = {name: _load_cells(campaign, surveys, name) for name in campaign.specimens}
     failed = _failed_logs(surveys)
     models: dict[tuple[str, str], StrainModel] = {}
     errors: dict[str, ReductionError] = {}
@@ -70,7 +84,7 @@ def fit_strain_models(
             continue
         for name in survey.plan.specimens:
             try:
-                models[survey.plan.id, name] = fit_strain_model(
+                model = fit_strain_model(
                     campaign.specimens[name],
                     test_id=survey.plan.log,
                     marks=campaign.marks.get(name),
@@ -81,6 +95,8 @@ def fit_strain_models(
                     reference_position=survey.zero_strain_position,
                     failed_tests=failed,
                 )
+                read_by = tuple(cells[name].get(test, "") for test in model.mark_test)
+                models[survey.plan.id, name] = replace(model, mark_load_cell=read_by)
             except Exception as error:
                 # one test's failure, even where it is a defect here
                 errors[survey.plan.id] = as_reduction_error(error)

@@ -21,6 +21,7 @@ from reduction.campaign.plan import Campaign
 from reduction.line.product import SlowPull
 from reduction.pipeline.reduce import reduce_stepwise_test, reduce_test
 from reduction.pipeline.shared.pulls import PullOrigin
+from reduction.pipeline.statedlimits import check_stated_errors
 from reduction.product import History, ReducedTest
 from reduction.strain.model import StrainModel
 
@@ -62,6 +63,8 @@ def reduce_survey(
 
     Raises
     ------
+    SettingsError
+        If what is stated of the instruments cannot be meant of this log.
     ReductionError
         If the record cannot support a stage that its kind needs.
     """
@@ -78,6 +81,8 @@ def reduce_survey(
             instruments=stepwise_instruments(campaign, survey),
         )
     located = located_again(campaign, survey)
+    instruments = instruments_of(campaign, survey, models)
+    check_stated_errors(located, instruments, place=f"{campaign.path}: uncertainty")
     return reduce_test(
         located,
         description=description,
@@ -90,7 +95,7 @@ def reduce_survey(
         pulls=pulls,
         pull_origins=pull_origins,
         pull_conditions=pull_conditions(campaign, survey),
-        instruments=instruments_of(campaign, survey, models),
+        instruments=instruments,
     )
 
 

@@ -319,5 +319,5 @@ def load_campaign(path: Path) -> Campaign:
         outcomes=outcomes,
         hoses=hoses,
         comparisons=comparisons,
-        uncertainty=stated_errors(path, file.uncertainty),
+        uncertainty=stated_errors(path, file.uncertainty, specimens.values()),
     )

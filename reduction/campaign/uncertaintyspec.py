@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Literal
 
@@ -9,6 +10,7 @@ from pydantic import BaseModel, ConfigDict
 
 from reduction.campaign.quantities import Number, TableReader
 from reduction.errors import ReductionError, SettingsError
+from reduction.record import Specimen
 from reduction.uncertainty.stated import (
     StatedErrors,
     of_expanded,
@@ -19,8 +21,12 @@ from reduction.units import Dimension
 
 __all__ = ["UncertaintySection", "stated_errors"]
 
+_HALF = 0.5
+"""Relative errors beyond this are no first-order ones: nothing that is carried would hold."""
+_OF_DIAMETER = 0.2
+"""Of a diameter: 40 % of its area, and of every stress and modulus."""
 _MOST: dict[Dimension, tuple[float, str]] = {
-    "strain": (0.5, ", at most 50 %"),
+    "strain": (_HALF, ", at most 50 %"),
     "temperature": (100.0, ", at most 100 K, as a difference: in K"),
 }
 
@@ -96,7 +102,9 @@ class UncertaintySection(_Section):
     temperature: TemperatureSection | None = None
 
 
-def stated_errors(path: Path, section: UncertaintySection) -> StatedErrors:
+def stated_errors(
+    path: Path, section: UncertaintySection, specimens: Iterable[Specimen] = ()
+) -> StatedErrors:
     """Standard uncertainties in SI; an error names campaign.toml and the key.
 
     Parameters
@@ -105,6 +113,8 @@ def stated_errors(path: Path, section: UncertaintySection) -> StatedErrors:
         campaign.toml.
     section : UncertaintySection
         As written.
+    specimens : iterable of Specimen
+        Of the campaign, whose diameters bound what may be stated of them.
 
     Returns
     -------
@@ -115,6 +125,11 @@ def stated_errors(path: Path, section: UncertaintySection) -> StatedErrors:
     ------
     SettingsError
         If a value has the wrong unit, is negative, or is beyond what can be meant.
+
+    Notes
+    -----
+    What only a log can bound (zeros, readings and lag) is looked at when the test is reduced, by
+    `reduction.pipeline.statedlimits.check_stated_errors`.
     """
     reader = TableReader(path, "uncertainty")
 
@@ -159,6 +174,25 @@ def stated_errors(path: Path, section: UncertaintySection) -> StatedErrors:
             "temperature.stiffness_per_kelvin", warmth.stiffness_per_kelvin, "strain"
         )
         stiffness = kelvin * abs(each)
+        if stiffness > _HALF:
+            raise reader.fault(
+                "temperature: value times stiffness_per_kelvin is no standard uncertainty",
+                SettingsError(
+                    "", found=f"{100 * stiffness:,.0f} % of the stiffness", needed="at most 50 %"
+                ),
+            )
+    diameter = standard("diameter", section.diameter, "length")
+    for specimen in specimens:
+        if specimen.diameter and diameter > _OF_DIAMETER * specimen.mean_diameter:
+            raise reader.fault(
+                f"diameter: this is no standard uncertainty of the diameter of '{specimen.name}'",
+                SettingsError(
+                    "",
+                    found=f"{1e3 * diameter:.4g} mm of {1e3 * specimen.mean_diameter:.4g} mm",
+                    needed="at most 20 % of it, which is 40 % of every modulus",
+                    hint="It is of the mean of the readings, not the diameter itself.",
+                ),
+            )
     return StatedErrors(
         tension_gain=standard("tension.gain", tension.gain, "strain"),
         tension_offset=standard("tension.offset", tension.offset, "force"),
@@ -167,7 +201,7 @@ def stated_errors(path: Path, section: UncertaintySection) -> StatedErrors:
         position_offset=standard("crosshead_position.offset", position.offset, "length"),
         position_reading=reading("crosshead_position", position, "length"),
         lag=standard("lag", section.lag, "time"),
-        diameter=standard("diameter", section.diameter, "length"),
+        diameter=diameter,
         strain_gain=standard("strain", section.strain, "strain"),
         rated_break_strength=standard(
             "rated_break_strength", section.rated_break_strength, "strain"

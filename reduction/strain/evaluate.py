@@ -22,10 +22,10 @@ from reduction.strain.methods import (
     gauge_length_strain,
     marked_line_strain,
     splice_ratio_strain,
-    tension_driven_strain,
 )
 from reduction.strain.model import StrainModel
 from reduction.strain.splice import free_length_strain
+from reduction.strain.tensiondriven import tension_driven_strain
 
 __all__ = ["extrapolated", "strain_by_model", "strain_sensitivity_of"]
 

@@ -139,6 +139,7 @@ def with_free_length(model: StrainModel, free_length: float) -> StrainModel:
         mark_strain=np.empty(0),
         mark_tension=np.empty(0),
         mark_strain_residual=np.empty(0),
+        mark_load_cell=(),
         notes=(*model.notes, f"of another free length: {length:.4g} m"),
         splice_law={},
     )

@@ -19,11 +19,13 @@ from reduction.record import Floats
 from reduction.strain.calibration import Calibration
 from reduction.strain.scatter import row_scatter
 
-__all__ = ["EXPONENT_BOUNDS", "fit_splice_law"]
+__all__ = ["EXPONENT_BOUNDS", "HELD_EXPONENT", "fit_splice_law"]
 
 EXPONENT_BOUNDS = (0.3, 1.9)
 """Exponents between which a splice law is looked for: a friction-locked splice
 stiffens with tension (below 1), one that beds in and then slides softens (above 1)."""
+HELD_EXPONENT = 1.0
+"""Exponent where the marks do not fix one: splices that strain in proportion to tension."""
 
 
 def fit_splice_law(

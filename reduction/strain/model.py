@@ -43,6 +43,8 @@ class StrainModel:
     mark_position, mark_strain, mark_tension, mark_strain_residual : ndarray, shape (n_marks,)
         Far thimble [m], strain at the marks [1], tension while they were read
         [N], strain by the method minus strain at the marks [1].
+    mark_load_cell : tuple of str, length n_marks or 0
+        Of which load cell the tension at each mark is; empty: that of the test.
     strain_slope_ratio : float
         d(strain)/d(position) by ``constant-fraction`` over that of this method,
         mean over the test's own marked range: a modulus by ``constant-fraction``
@@ -69,6 +71,7 @@ class StrainModel:
     mark_strain: Floats = field(default_factory=_empty)
     mark_tension: Floats = field(default_factory=_empty)
     mark_strain_residual: Floats = field(default_factory=_empty)
+    mark_load_cell: tuple[str, ...] = ()
     strain_slope_ratio: float = float("nan")
     notes: tuple[str, ...] = ()
     splice_law: dict[str, float] = field(default_factory=dict)

@@ -24,7 +24,7 @@ from reduction.strain.calibration import (
     line_slope,
 )
 from reduction.strain.evaluate import strain_by_model
-from reduction.strain.law import fit_splice_law
+from reduction.strain.law import HELD_EXPONENT, fit_splice_law
 from reduction.strain.model import StrainModel
 from reduction.strain.relaxed import RelaxedLengths, relaxed_lengths
 from reduction.strain.splice import free_length_fraction
@@ -185,7 +185,7 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
 
     notes: tuple[str, ...] = ()
     wide = readings.tension_span > TENSION_SPAN and rows.size > 2
-    fit = law(None) if wide else law(1.0)
+    fit = law(None) if wide else law(HELD_EXPONENT)
     if not wide:
         notes = (
             f"{marks.specimen}: {rows.size} marks over a factor of {readings.tension_span:.2f} in "
@@ -196,7 +196,7 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
             f"{marks.specimen}: the marks fix the exponent of the splice law only to "
             f"{fit.values[1]:.2f} +- {uncertainty:.2f}; it is held at 1",
         )
-        fit = law(1.0)
+        fit = law(HELD_EXPONENT)
     coefficients, covariance = _with_relaxed(("splice_compliance", "splice_exponent"), relaxed, fit)
     notes += _scatter_notes(marks, relaxed, fit)
     return StrainModel(marks.specimen, "tension-driven", coefficients, covariance, notes=notes)

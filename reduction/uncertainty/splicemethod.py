@@ -25,8 +25,8 @@ from reduction.checks import as_same_shape
 from reduction.record import Floats
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.inverse import position_by_model
-from reduction.strain.methods import splice_strain
 from reduction.strain.model import StrainModel
+from reduction.strain.tensiondriven import splice_strain
 
 __all__ = ["splice_method_error"]
 

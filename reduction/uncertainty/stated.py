@@ -173,7 +173,6 @@ class StatedErrors:
         strain_model: str = "",
     ) -> InstrumentErrors:
         """What they are for one specimen of one test; channels count from 1."""
-        cell = load_cell or "load cell"
         return InstrumentErrors(
             specimen=specimen,
             test=test,
@@ -188,7 +187,12 @@ class StatedErrors:
             stiffness=self.stiffness,
             tension_reading=self.tension_reading,
             position_reading=self.position_reading,
-            tension_instrument=cell if self.has_one_load_cell else f"{cell}, channel {channel}",
+            tension_instrument=self.load_cell_name(load_cell, channel=channel),
             position_instrument=machine or "crosshead",
             strain_model=strain_model or specimen,
         )
+
+    def load_cell_name(self, load_cell: str, *, channel: int) -> str:
+        """By which tests share the errors of a load cell; channels count from 1."""
+        cell = load_cell or "load cell"
+        return cell if self.has_one_load_cell else f"{cell}, channel {channel}"

@@ -6,6 +6,7 @@ import pytest
 
 from reduction.campaign.uncertaintyspec import UncertaintySection, stated_errors
 from reduction.errors import SettingsError
+from reduction.record import Specimen
 
 PATH = Path("campaign.toml")
 LBF = 4.4482216152605
@@ -62,11 +63,31 @@ def test_a_temperature_moves_the_stiffness():
             {"temperature": {"value": "2 degC", "stiffness_per_kelvin": "0.3 %"}},
             "as a difference: in K",
         ),
+        (
+            {"temperature": {"value": "90 K", "stiffness_per_kelvin": "300 %"}},
+            r"uncertainty\.temperature: value times stiffness_per_kelvin is no standard uncertainty; "
+            "found 27,000 % of the stiffness; needed at most 50 %",
+        ),
     ],
 )
 def test_what_cannot_be_meant_is_refused_with_its_key(section, words):
     with pytest.raises(SettingsError, match=words):
         errors(**section)
+
+
+def test_an_error_of_a_diameter_is_small_against_it():
+    half_an_inch = Specimen("rope", diameter=(0.0127,))
+    section = UncertaintySection.model_validate({"diameter": "0.1 in"})
+    assert stated_errors(PATH, section, [half_an_inch]).diameter == pytest.approx(0.00254)
+    section = UncertaintySection.model_validate({"diameter": "3 in"})
+    words = (
+        r"campaign.toml: uncertainty\.diameter: this is no standard uncertainty of the diameter of "
+        r"'rope'; found 76.2 mm of 12.7 mm; needed at most 20 % of it"
+    )
+    with pytest.raises(SettingsError, match=words):
+        stated_errors(PATH, section, [half_an_inch])
+    # a line of unknown diameter bounds nothing
+    assert stated_errors(PATH, section, [Specimen("chain")]).diameter == pytest.approx(0.0762)
 
 
 def test_channels_share_a_load_cell_only_where_that_is_said():

@@ -9,10 +9,10 @@ from reduction.strain.methods import (
     gauge_length_strain,
     marked_line_strain,
     splice_ratio_strain,
-    tension_driven_strain,
 )
 from reduction.strain.model import StrainModel
 from reduction.strain.splice import free_length_strain
+from reduction.strain.tensiondriven import tension_driven_strain
 
 POSITION, TENSION = np.array([5.9, 6.6, 7.3]), np.array([380.0, 480.0, 590.0])
 OF_POSITION = {

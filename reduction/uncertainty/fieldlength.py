@@ -1,0 +1,138 @@
+"""What the crosshead's scale and the readings of the tape do to strain at points of the plane.
+
+References
+----------
+.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.1.3 (sensitivity coefficients) and 5.2 (correlated inputs).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reduction.record import Floats
+from reduction.strain.evaluate import strain_by_model, strain_sensitivity_of
+from reduction.strain.inverse import position_by_model
+from reduction.strain.model import StrainModel
+from reduction.uncertainty.fieldrows import FieldPart, field_rows, steps_of
+from reduction.uncertainty.product import Component, InstrumentErrors
+
+__all__ = ["coefficient_errors", "coefficient_parts", "position_parts"]
+
+_REACH = 1e-4  # of the strain 1, for the slopes
+
+
+def position_parts(
+    errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
+) -> list[FieldPart]:
+    """Gain and zero of the crosshead's scale; none for an extensometer."""
+    gain, offset = errors.position_gain, errors.position_offset
+    if model.method == "extensometer" or not (gain or offset):
+        return []
+    position = position_by_model(model, strain=at, tension=load)
+    step = steps_of(load)
+    longer = position_by_model(model, strain=at, tension=load + step)
+    shorter = position_by_model(model, strain=at, tension=load - step)
+    slope = 1 / (position_by_model(model, strain=at + 1, tension=load) - position)
+    found: list[FieldPart] = []
+    if gain:
+        rows = field_rows(
+            load,
+            strain=gain * slope * position,
+            strain_slope=gain,
+            strain_slope_over_tension=gain * slope * (longer - shorter) / (2 * step),
+        )
+        found.append((Component("position_gain", errors.position_instrument), rows))
+    if offset:
+        rows = field_rows(load, strain=offset * slope)
+        found.append((Component("position_offset", errors.position_instrument), rows))
+    return found
+
+
+def coefficient_errors(model: StrainModel) -> Floats:
+    """Independent errors whose sum is the covariance of the coefficients.
+
+    Parameters
+    ----------
+    model : StrainModel
+        With the covariance of its coefficients.
+
+    Returns
+    -------
+    errors : ndarray, shape (n_coefficients, n_errors)
+        Signed change of each coefficient, in the order of the model, by each error: entry n is
+        that of the component ``strain_calibration`` with number n. [SI]
+
+    Raises
+    ------
+    DataError
+        Never.
+
+    Notes
+    -----
+    Whatever rests on one of the coefficients moves with them together ([1]_, 5.2): the relaxed
+    length is in the strain at slack, in a permanent set, and in every strain of the test.
+
+    Examples
+    --------
+    >>> model = StrainModel("rope", "gauge-length",
+    ...     {"reference_position": 0.0, "gauge_length": 1.0}, np.diag([0.0, 0.002**2]))
+    >>> print(coefficient_errors(model).ravel())
+    [0.    0.002]
+    """
+    size = len(model.coefficients)
+    if model.covariance.shape != (size, size) or not model.covariance.any():
+        return np.empty((size, 0))
+    # of correlations: the coefficients have units many powers of ten apart
+    deviation = np.sqrt(np.diag(model.covariance))
+    scale = np.where(deviation > 0, deviation, 1.0)
+    variance, direction = np.linalg.eigh(model.covariance / np.outer(scale, scale))
+    kept = variance > 1e-12 * variance.max()
+    root = scale[:, None] * direction * np.sqrt(np.maximum(variance, 0))
+    return np.asarray(root[:, kept])
+
+
+def coefficient_parts(
+    errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
+) -> list[FieldPart]:
+    """Coefficients of the strain model, their covariance taken apart into independent errors."""
+    root = coefficient_errors(model)
+    if not root.size:
+        return []
+    position = position_by_model(model, strain=at, tension=load)
+    reach = _REACH * (position_by_model(model, strain=at + 1, tension=load) - position)
+    push = steps_of(load)
+
+    def strain_error(place: Floats, force: Floats) -> Floats:
+        _, slope = strain_sensitivity_of(model, position=place, tension=force)
+        return np.tensordot(root.T, slope, axes=1)
+
+    def strain_at(place: Floats, force: Floats) -> Floats:
+        return strain_by_model(model, position=place, tension=force)
+
+    centre = strain_error(position, load)
+    by_position = (strain_error(position + reach, load) - strain_error(position - reach, load)) / (
+        2 * reach
+    )
+    by_tension = (strain_error(position, load + push) - strain_error(position, load - push)) / (
+        2 * push
+    )
+    of_position = (strain_at(position + reach, load) - strain_at(position - reach, load)) / (
+        2 * reach
+    )
+    of_tension = (strain_at(position, load + push) - strain_at(position, load - push)) / (2 * push)
+    along = by_position / of_position
+    across = by_tension - along * of_tension
+    of = errors.strain_model or errors.specimen
+    return [
+        (
+            Component("strain_calibration", of, number),
+            field_rows(
+                load,
+                strain=centre[number],
+                strain_slope=along[number],
+                strain_slope_over_tension=across[number],
+            ),
+        )
+        for number in range(root.shape[1])
+    ]
