@@ -3,10 +3,11 @@
     python benchmarks/coverage_ropes.py 1000
 
 Each campaign is one line, pulled slowly once and cycled at the fifteen points of a Box-Behnken
-design.  Load cell, crosshead, clock and gauge length are wrong by errors that are drawn once a
-campaign, runs scatter, and both channels are noisy.  In every other campaign K_1 and tau are
-quadratic in the coded levels, in the others K_ap and H: coefficients are judged where the surface
-is true.  Everything is synthetic.
+design.  Crosshead, clock, gauge length and scale of strain are wrong by errors that are drawn once
+a campaign, as are the load cells, one of the pull and one of the runs; every test is warmer or
+colder than it says, runs scatter, and both channels are noisy.  In every other campaign K_1 and
+tau are quadratic in the coded levels, in the others K_ap and H: coefficients are judged where the
+surface is true.  Everything is synthetic.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import os
 import sys
 from collections import defaultdict
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -32,6 +34,7 @@ from reduction.line.product import SlowPull
 from reduction.lookup.line import look_up
 from reduction.pipeline.locate import locate
 from reduction.pipeline.reduce import reduce_test
+from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.product import ReducedTest, TestDescription
 from reduction.provenance import Origin
 from reduction.record import Record, Specimen
@@ -42,7 +45,8 @@ from reduction.surface.levels import FactorLevels
 from reduction.surface.terms import model_matrix, quadratic_exponents
 from reduction.uncertainty.product import InstrumentErrors
 
-STRENGTH, LENGTH, REST = 28.5e3, 1.8, 60e3
+STRENGTH, LENGTH = 28.5e3, 1.8
+PULL = np.array([0.0, 1 / 45e3, -6.5e-10, 9.5e-15])  # strain of the slow pull: K_0 doubles on it
 LOW = np.array([0.1, 0.15 * STRENGTH, 0.05 * STRENGTH])
 HIGH = np.array([0.5, 0.30 * STRENGTH, 0.12 * STRENGTH])
 PLAN = box_behnken(3).coded
@@ -60,11 +64,23 @@ OF_PAIR = (RESPONSES[2:], RESPONSES[:2])
 RUN_SCATTER = 0.01
 U = InstrumentErrors(
     "line", tension_gain=0.003, tension_offset=20.0, position_gain=0.002, position_offset=2e-4,
-    lag=0.002,
+    lag=0.002, strain_gain=0.002, stiffness=0.004,
 )  # fmt: skip
+OF_CELL = ("tension_gain", "tension_offset")
 GAUGE = 0.003
 NOISE, PLACE_NOISE = 3.0, 2e-6
 N_CYCLES, SAMPLES = 8, 60
+
+
+def pulled_strain(tension: np.ndarray | float) -> np.ndarray:
+    """Strain of the slow pull."""
+    return np.asarray(np.polynomial.polynomial.polyval(tension, PULL))
+
+
+def rest(tension: float) -> float:
+    """K_0 at a mean tension."""
+    slope = np.polynomial.polynomial.polyder(PULL)
+    return 1 / float(np.polynomial.polynomial.polyval(tension, slope))
 
 
 def stiffness(pair: int, coded: np.ndarray, rng: np.random.Generator | None = None) -> complex:
@@ -75,23 +91,26 @@ def stiffness(pair: int, coded: np.ndarray, rng: np.random.Generator | None = No
     frequency = float((HIGH[0] + LOW[0]) / 2 + coded[0] * (HIGH[0] - LOW[0]) / 2)
     if pair == 0:
         turn = 2j * np.pi * frequency * float(terms[0] @ TIME) * second
-        return complex(REST + float(terms[0] @ SPRING) * first * turn / (1 + turn))
+        mean = float((HIGH[1] + LOW[1]) / 2 + coded[1] * (HIGH[1] - LOW[1]) / 2)
+        return complex(rest(mean) + float(terms[0] @ SPRING) * first * turn / (1 + turn))
     # H goes as the square of the tension amplitude: quadratic in its level
     size = float(terms[0] @ APPARENT) * first
     lost = LOSS * second * size * size / APPARENT[0]
     return complex(np.sqrt(size**2 - lost**2), lost)
 
 
-def responses(modulus: complex, frequency: float, amplitude: float) -> dict[str, float]:
+def responses(
+    modulus: complex, frequency: float, mean: float, amplitude: float
+) -> dict[str, float]:
     """What a run would give without errors."""
-    lost, above = modulus.imag, modulus.real - REST
+    lost, above = modulus.imag, modulus.real - rest(mean)
     ratio = above / lost
     return {
         "apparent_spring_constant": abs(modulus),
         "hysteresis_energy": np.pi * lost * (amplitude / abs(modulus)) ** 2,
         "dissipation_spring_constant": above * (1 + ratio**-2),
         "relaxation_time": ratio / (2 * np.pi * frequency),
-        "quasi_static_spring_constant": REST,
+        "quasi_static_spring_constant": rest(mean),
     }
 
 
@@ -100,7 +119,8 @@ def record(
     rng: np.random.Generator, errors: dict[str, float],
 ) -> Record:  # fmt: skip
     """What the channels say of a true strain and tension."""
-    place = LENGTH * strain * (1 + errors["position_gain"]) + errors["position_offset"]
+    told = strain * (1 + errors["strain_gain"])
+    place = LENGTH * told * (1 + errors["position_gain"]) + errors["position_offset"]
     load = late * (1 + errors["tension_gain"]) + errors["tension_offset"]
     return Record(
         name, ("line",), time, place + rng.normal(0, PLACE_NOISE, time.size),
@@ -108,6 +128,11 @@ def record(
         np.zeros((1, time.size), np.uint16), np.zeros(time.size, np.uint16),
         position_is_length=False, n_rows_read=time.size,
     )  # fmt: skip
+
+
+def stated(test: str) -> InstrumentErrors:
+    """What is known of a test: the pull has a load cell of its own, every test its temperature."""
+    return replace(U, test=test, tension_instrument="A" if test == "Q" else "B")
 
 
 def reduced(
@@ -120,7 +145,8 @@ def reduced(
         description=TestDescription("c", log.test_id, kind, "load", "sinusoidal", 1, {}),
         specimens=(Specimen("line", kind="rope", rated_break_strength=STRENGTH),),
         models=(model,), history=None, sources=(), settings=settings, settings_json=SETTINGS,
-        pulls=pulls, instruments=(U,),
+        pulls=pulls, instruments=(stated(log.test_id),),
+        pull_origins=() if pulls is None else (PullOrigin(stated("Q"), model),),
     )  # fmt: skip
 
 
@@ -132,17 +158,19 @@ def campaign(seed: int) -> list[Found]:
     """Every number of one campaign, beside its truth."""
     rng = np.random.default_rng(seed)
     pair = seed % 2
-    names = ("tension_gain", "tension_offset", "position_gain", "position_offset", "lag")
+    names = (*OF_CELL, "position_gain", "position_offset", "lag", "strain_gain")
     errors = {name: rng.normal(0, getattr(U, name)) for name in names}
-    stated = LENGTH + rng.normal(0, GAUGE)
+    of_pull = errors | {name: rng.normal(0, getattr(U, name)) for name in OF_CELL}
+    length = LENGTH + rng.normal(0, GAUGE)
     model = StrainModel(
-        "line", "gauge-length", {"reference_position": 0.0, "gauge_length": stated},
+        "line", "gauge-length", {"reference_position": 0.0, "gauge_length": length},
         np.diag([0.0, GAUGE**2]),
     )  # fmt: skip
     time = np.arange(0, 200, 0.1)
     force = np.interp(time, [0, 5, 195, 200], [0, 0, 0.4 * STRENGTH, 0.4 * STRENGTH])
+    strain = pulled_strain(force) / (1 + rng.normal(0, U.stiffness))
     pulled = reduced(
-        record("Q", time, force / REST, force, force, rng, errors), "quasi-static", model, None
+        record("Q", time, strain, force, force, rng, of_pull), "quasi-static", model, None
     )
     pulls = list(pulled.pulls)
     level = (HIGH + LOW) / 2 + PLAN * (HIGH - LOW) / 2
@@ -169,7 +197,8 @@ def campaign(seed: int) -> list[Found]:
         def wave(at: np.ndarray, turn: float = turn) -> np.ndarray:
             return np.asarray(-np.exp(1j * turn * at))
 
-        strain = mean / REST + (amplitude / modulus * wave(time)).real
+        strain = pulled_strain(mean) + (amplitude / modulus * wave(time)).real
+        strain = strain / (1 + rng.normal(0, U.stiffness))
         late = mean + amplitude * wave(time - errors["lag"]).real
         test = reduced(
             record(f"R{number}", time, strain, late, late, rng, errors), "cyclic", model, pulls
@@ -177,8 +206,8 @@ def campaign(seed: int) -> list[Found]:
         dataset = to_dataset(test, version="0", command="coverage")
         row = row_of_archive(plan, dataset, 0, "line")
         rows.append(row | {"run": f"R{number}", "coded": tuple(PLAN[number]), "order": number})
-        own = responses(modulus, frequency, amplitude)
-        exact_of.append(responses(stiffness(pair, PLAN[number]), frequency, amplitude))
+        own = responses(modulus, frequency, mean, amplitude)
+        exact_of.append(responses(stiffness(pair, PLAN[number]), frequency, mean, amplitude))
         for name, value in own.items():
             shared = dataset[f"test_{name}_uncertainty_contribution"].values[:, 0]
             found.append(
@@ -221,7 +250,7 @@ def looked_up(result: ExperimentResult, pair: int, rng: np.random.Generator) -> 
     found: list[Found] = []
     for coded in rng.uniform(-0.8, 0.8, (3, 3)):
         level = (HIGH + LOW) / 2 + coded * (HIGH - LOW) / 2
-        truth = responses(stiffness(pair, coded), float(level[0]), float(level[2]))
+        truth = responses(stiffness(pair, coded), *map(float, level))
         at = dict(zip(line.factor_names, level, strict=True))
         for name in OF_PAIR[pair]:
             value = look_up(line, name, **at)
