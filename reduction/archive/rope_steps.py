@@ -3,30 +3,52 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import xarray as xr
 
+from reduction.archive.shared import COMPONENT, components_of, shared_contributions
 from reduction.errors import ArchiveError
 from reduction.line.propertyproduct import (
+    MANY,
     BeddingCycles,
     CyclicLevel,
     FirstRise,
     HeldTension,
     PairOfHolds,
+    StepNumber,
     StepOfProgramme,
 )
 from reduction.record import Floats
+from reduction.strain.model import StrainModel
+from reduction.uncertainty.field import error_field
+from reduction.uncertainty.product import Component, InstrumentErrors
 
-__all__ = ["CHANGES_LENGTH", "step_of_archive"]
+__all__ = ["CHANGES_LENGTH", "ArchivedStep", "step_of_archive"]
 
 _HELD = ("quasi-static stiffness", "creep")
 CHANGES_LENGTH = ("bedding-in", "dynamic stiffness", *_HELD)
 """Steps that a change-in-length property can come from."""
 _U = "_standard_uncertainty"
+_RANDOM = "_random_standard_uncertainty"
 
 
-def step_of_archive(dataset: xr.Dataset, specimen: str) -> StepOfProgramme:
+@dataclass(frozen=True)
+class ArchivedStep:
+    """A step of a programme, and the shared errors that its contributions are of, in order."""
+
+    step: StepOfProgramme
+    component: tuple[Component, ...]
+
+
+def step_of_archive(
+    dataset: xr.Dataset,
+    specimen: str,
+    instruments: InstrumentErrors | None = None,
+    model: StrainModel | None = None,
+) -> ArchivedStep:
     """What an archive keeps of one specimen of a step.
 
     Parameters
@@ -35,11 +57,17 @@ def step_of_archive(dataset: xr.Dataset, specimen: str) -> StepOfProgramme:
         From `reduction.archive.open.open_archive`.
     specimen : str
         Which.
+    instruments : InstrumentErrors, optional
+        What is stated of them: for points of the first rise and of the first cycle, of which an
+        archive keeps no contributions. Without them these points count as free of shared errors.
+    model : StrainModel, optional
+        How position became strain in that test.
 
     Returns
     -------
-    step : StepOfProgramme
-        Its parts are those of the archive; a test that is no step has its first rise alone.
+    step : ArchivedStep
+        Its parts are those of the archive; a test that is no step has its first rise alone. Of an
+        archive without contributions the combined uncertainty stands as the random one.
 
     Raises
     ------
@@ -49,22 +77,101 @@ def step_of_archive(dataset: xr.Dataset, specimen: str) -> StepOfProgramme:
     names = dataset["specimen"].values.astype(str).tolist()
     if specimen not in names:
         raise ArchiveError(f"the archive has no specimen '{specimen}'", found=", ".join(names))
-    row = names.index(specimen)
     settings = json.loads(str(dataset.attrs["settings"]))
-    bedding = _bedding(dataset, row)
-    return StepOfProgramme(
+    control = settings["reduction"].get("cycles", {}).get("control")
+    read = _Reader(dataset, names.index(specimen), instruments, model, control == "load")
+    bedding = _bedding(read)
+    step = StepOfProgramme(
         name=str(dataset.attrs["test"]),
         reference_time=float(settings["reduction"]["rope"]["reference_time"]),
-        first_rise=_first_rise(dataset, row),
+        first_rise=_first_rise(read),
         bedding=bedding,
-        level=None if bedding is not None else _level(dataset, row),
-        pairs=_pairs(dataset, specimen),
-        holds=_holds(dataset, specimen),
+        level=None if bedding is not None else _level(read),
+        pairs=_pairs(read, specimen),
+        holds=_holds(read, specimen),
+        strength_contribution=read.of_strength,
     )
+    return ArchivedStep(step, read.component)
 
 
-def _first_rise(dataset: xr.Dataset, row: int) -> FirstRise | None:
+@dataclass(frozen=True)
+class _Reader:
+    """One specimen of an archive, with its shared errors on one axis."""
+
+    dataset: xr.Dataset
+    row: int
+    instruments: InstrumentErrors | None
+    model: StrainModel | None
+    is_load_kept: bool
+
+    @cached_property
+    def component(self) -> tuple[Component, ...]:
+        """Those of the archive, and what is stated beyond them."""
+        found = set(self.stored)
+        if self.instruments is not None:
+            found |= set(self.field_at(np.zeros(1), np.zeros(1))[0])
+            if self.instruments.rated_break_strength:
+                found.add(_strength(self.instruments))
+        return tuple(sorted(found))
+
+    @cached_property
+    def stored(self) -> list[Component]:
+        return components_of(self.dataset) if COMPONENT in self.dataset else []
+
+    @property
+    def of_strength(self) -> Floats:
+        """Relative contributions to the rated break strength."""
+        rows = np.zeros(len(self.component))
+        if self.instruments is not None and self.instruments.rated_break_strength:
+            place = self.component.index(_strength(self.instruments))
+            rows[place] = self.instruments.rated_break_strength
+        return rows
+
+    def number(self, name: str, *place: int, degrees_of_freedom: float = MANY) -> StepNumber:
+        """A number of the archive with both parts of its uncertainty."""
+        at = place or (self.row,)
+        kept = f"{name}{_RANDOM}"
+        spread = self.dataset[kept if kept in self.dataset else f"{name}{_U}"].values[at]
+        rows = np.zeros(len(self.component))
+        for one, amount in shared_contributions(self.dataset, name, *at).items():
+            rows[self.component.index(one)] = amount
+        value = float(self.dataset[name].values[at])
+        return StepNumber(value, float(spread), rows, degrees_of_freedom)
+
+    def value(self, name: str, *place: int) -> float:
+        return float(self.dataset[name].values[place or (self.row,)])
+
+    def field_at(
+        self, strain: Floats, tension: Floats
+    ) -> tuple[tuple[Component, ...], Floats, Floats]:
+        """What is stated of the instruments does to points: errors, strain and tension."""
+        if self.instruments is None or self.model is None:
+            return (), np.empty((0, strain.size)), np.empty((0, strain.size))
+        field = error_field(self.instruments, self.model, strain=strain, tension=tension)
+        return field.component, field.strain, field.tension
+
+    def points(self, strain: Floats, tension: Floats) -> tuple[Floats, Floats]:
+        """Contributions to the strain and the tension of points, shape (n_components, n_points)."""
+        component, of_strain, of_tension = self.field_at(strain, tension)
+        rows = np.zeros((2, len(self.component), strain.size))
+        for one, *moved in zip(component, of_strain, of_tension, strict=True):
+            rows[:, self.component.index(one)] = moved
+            if one.source == "temperature" and self.is_load_kept and self.instruments is not None:
+                # a stiffer rope stretches less where the machine sets the load
+                rows[:, self.component.index(one)] = (
+                    -self.instruments.stiffness * strain,
+                    0 * tension,
+                )
+        return rows[0], rows[1]
+
+
+def _strength(instruments: InstrumentErrors) -> Component:
+    return Component("rated_break_strength", instruments.specimen)
+
+
+def _first_rise(read: _Reader) -> FirstRise | None:
     """None where fewer than two strains have a tension."""
+    dataset, row = read.dataset, read.row
     name = "branch_tension_first_loading"
     if name not in dataset:
         return None
@@ -73,9 +180,14 @@ def _first_rise(dataset: xr.Dataset, row: int) -> FirstRise | None:
     known = np.isfinite(tension) & (grid <= _first_peak(dataset, row))
     if np.count_nonzero(known) < 2:
         return None
-    spread = dataset[f"{name}{_U}"].values[row, 0]
+    kept = f"{name}{_RANDOM}"
+    spread = dataset[kept if kept in dataset else f"{name}{_U}"].values[row, 0]
     return FirstRise(
-        grid[known], tension[known], np.nan_to_num(spread[known]), float(np.diff(grid).min())
+        grid[known],
+        tension[known],
+        np.nan_to_num(spread[known]),
+        float(np.diff(grid).min()),
+        *read.points(grid[known], tension[known]),
     )
 
 
@@ -87,63 +199,66 @@ def _first_peak(dataset: xr.Dataset, row: int) -> float:
     return float(np.nanmax(dataset["strain"].values[row, : last + 1]))
 
 
-def _bedding(dataset: xr.Dataset, row: int) -> BeddingCycles | None:
-    if "bedding_permanent_strain" not in dataset:
+def _bedding(read: _Reader) -> BeddingCycles | None:
+    if "bedding_permanent_strain" not in read.dataset:
         return None
-
-    def of_step(name: str) -> float:
-        return float(dataset[name].values[row])
-
-    def of_first(name: str) -> float:
-        return float(dataset[name].values[row, 0])
-
+    foot = read.value("mean_strain", read.row, 0) - read.value("strain_amplitude", read.row, 0)
+    valley = read.value("valley_tension", read.row, 0)
     return BeddingCycles(
-        first_stiffness=of_step("bedding_first_stiffness"),
-        first_stiffness_standard_uncertainty=of_step(f"bedding_first_stiffness{_U}"),
-        permanent_strain=of_step("bedding_permanent_strain"),
-        permanent_strain_standard_uncertainty=of_step(f"bedding_permanent_strain{_U}"),
-        foot_strain=of_first("mean_strain") - of_first("strain_amplitude"),
-        foot_strain_standard_uncertainty=float(
-            np.hypot(of_first(f"mean_strain{_U}"), of_first(f"strain_amplitude{_U}"))
-        ),
-        valley_tension=of_first("valley_tension"),
-        first_peak_tension=of_first("peak_tension"),
-        peak_tension=float(np.nanmax(dataset["peak_tension"].values[row])),
+        first_stiffness=read.number("bedding_first_stiffness"),
+        permanent_strain=read.number("bedding_permanent_strain"),
+        foot_strain=foot,
+        foot_strain_contribution=read.points(np.array([foot]), np.array([valley]))[0][:, 0],
+        valley_tension=valley,
+        first_peak_tension=read.value("peak_tension", read.row, 0),
+        peak_tension=float(np.nanmax(read.dataset["peak_tension"].values[read.row])),
     )
 
 
-def _level(dataset: xr.Dataset, row: int) -> CyclicLevel | None:
-    if "dynamic_stiffness" not in dataset:
+def _level(read: _Reader) -> CyclicLevel | None:
+    if "dynamic_stiffness" not in read.dataset:
         return None
-    names = ("stiffness", f"stiffness{_U}", "mean_tension", "tension_amplitude")
-    return CyclicLevel(*(float(dataset[f"dynamic_{name}"].values[row]) for name in names))
+    # the mean of so many cycles
+    cycles = read.value("dynamic_cycles") if "dynamic_cycles" in read.dataset else np.inf
+    return CyclicLevel(
+        read.number("dynamic_stiffness", degrees_of_freedom=max(cycles - 1, 1.0)),
+        read.value("dynamic_mean_tension"),
+        read.value("dynamic_tension_amplitude"),
+    )
 
 
-def _pairs(dataset: xr.Dataset, specimen: str) -> tuple[PairOfHolds, ...]:
-    if "held_pair_specimen" not in dataset:
+def _pairs(read: _Reader, specimen: str) -> tuple[PairOfHolds, ...]:
+    if "held_pair_specimen" not in read.dataset:
         return ()
     return tuple(
-        _pair(dataset, int(row))
-        for row in np.flatnonzero(dataset["held_pair_specimen"].values == specimen)
+        _pair(read, int(row))
+        for row in np.flatnonzero(read.dataset["held_pair_specimen"].values == specimen)
     )
 
 
-def _pair(dataset: xr.Dataset, row: int) -> PairOfHolds:
-    def of_pair(name: str) -> float:
-        return float(dataset[name].values[row])
-
-    reason = str(dataset["static_refusal"].values[row])
-    at = of_pair("static_reference_time")
-    elapsed = _known(dataset, "static_elapsed_time", row)
+def _pair(read: _Reader, row: int) -> PairOfHolds:
+    reason = str(read.dataset["static_refusal"].values[row])
+    at = read.value("static_reference_time", row)
+    elapsed = _known(read.dataset, "static_elapsed_time", row)
     if elapsed.size and not elapsed[0] <= at <= elapsed[-1]:
         reason = (
             f"read off the line beyond the hold, of which there are points from {elapsed[0]:.3g} "
             f"to {elapsed[-1]:.3g} s"
         )
     return PairOfHolds(
-        of_pair("held_pair_low_tension"), of_pair("held_pair_high_tension"),
-        of_pair("static_stiffness"), of_pair(f"static_stiffness{_U}"), at, reason,
-    )  # fmt: skip
+        _held(read, "held_pair_low_tension", row),
+        _held(read, "held_pair_high_tension", row),
+        read.number("static_stiffness", row),
+        at,
+        reason,
+    )
+
+
+def _held(read: _Reader, name: str, row: int) -> StepNumber:
+    """A tension that the machine keeps: the temperature of the rope is in its strain alone."""
+    found = read.number(name, row)
+    is_kept = np.array([one.source != "temperature" for one in read.component], dtype=bool)
+    return replace(found, contribution=np.where(is_kept, found.contribution, 0.0))
 
 
 def _known(dataset: xr.Dataset, name: str, row: int) -> Floats:
@@ -151,8 +266,9 @@ def _known(dataset: xr.Dataset, name: str, row: int) -> Floats:
     return values[np.isfinite(values)]
 
 
-def _holds(dataset: xr.Dataset, specimen: str) -> tuple[HeldTension, ...]:
+def _holds(read: _Reader, specimen: str) -> tuple[HeldTension, ...]:
     """Holds of a step at which the machine kept the tension."""
+    dataset = read.dataset
     step = str(dataset["programme_step"].values) if "programme_step" in dataset else ""
     if step not in _HELD or "hold_specimen" not in dataset:
         return ()
@@ -166,8 +282,7 @@ def _holds(dataset: xr.Dataset, specimen: str) -> tuple[HeldTension, ...]:
         HeldTension(
             float(tensions[row]) / 2,
             float(ends[row] - begins[row]),
-            float(dataset["creep_rate_per_decade"].values[row]),
-            float(dataset[f"creep_rate_per_decade{_U}"].values[row]),
+            read.number("creep_rate_per_decade", int(row)),
             str(dataset["hold_refusal"].values[row]),
         )
         for row in np.flatnonzero(is_own & (dataset["hold_kind"].values == "creep"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from reduction.archive.open import open_archive
 from reduction.archive.properties import properties_to_dataset
 from reduction.archive.rope_steps import CHANGES_LENGTH, step_of_archive
 from reduction.archive.write import write_archive
+from reduction.batch.instruments import instruments_of
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.ingest.source import source_of
@@ -21,18 +22,26 @@ from reduction.line.properties import change_in_length
 from reduction.line.propertyproduct import ChangeInLength, StepOfProgramme
 from reduction.provenance import Origin, Source, Step
 from reduction.record import Specimen
+from reduction.strain.model import StrainModel
+from reduction.uncertainty.product import Component, InstrumentErrors
 
 __all__ = ["tests_of_ropes", "write_change_in_length"]
+
+_Models = Callable[[Survey], Sequence[StrainModel]]
 
 
 @dataclass(frozen=True)
 class _Found:
-    """What the archives of the tests of one rope give; ``is_programme`` where one is a step."""
+    """What the archives of the tests of one rope give.
+
+    ``is_programme`` where one is a step; ``component`` are the shared errors of each step.
+    """
 
     steps: tuple[StepOfProgramme, ...]
     sources: tuple[Source, ...]
     missing: tuple[str, ...]
     is_programme: bool
+    component: dict[str, tuple[Component, ...]]
 
 
 def tests_of_ropes(campaign: Campaign, surveys: Sequence[Survey]) -> set[str]:
@@ -63,6 +72,7 @@ def write_change_in_length(
     folder: Path,
     surveys: Sequence[Survey],
     *,
+    models: _Models,
     failed: Collection[str],
     waiting: Mapping[str, str],
     command: str,
@@ -77,6 +87,8 @@ def write_change_in_length(
         Of its products, the archives of the tests among them.
     surveys : sequence of Survey
         All its tests.
+    models : callable
+        How position becomes strain in a test, specimen by specimen.
     failed : collection of str
         Tests that failed; their older archives do not count.
     waiting : mapping of str to str
@@ -97,11 +109,17 @@ def write_change_in_length(
     found: dict[str, tuple[ChangeInLength, ...]] = {}
     sources: dict[str, Source] = {}
     used: dict[str, list[str]] = {}
+    component: dict[tuple[str, str], tuple[Component, ...]] = {}
     for name, specimen in campaign.specimens.items():
         if not specimen.is_rope:
             continue
         own, is_ordered = _in_order(surveys, name)
-        given = _read(folder, own, name, failed=failed, waiting=waiting)
+        known = {
+            entry.plan.id: _instruments(campaign, entry, name, models(entry))
+            for entry in own
+            if entry.plan.id not in failed and entry.plan.id not in waiting
+        }
+        given = _read(folder, own, name, known, failed=failed, waiting=waiting)
         if not given.is_programme:
             continue
         found[name] = change_in_length(
@@ -113,6 +131,7 @@ def write_change_in_length(
         )
         sources |= {source.name: source for source in given.sources}
         used[name] = [one.name for one in given.steps]
+        component |= {(name, step): own for step, own in given.component.items()}
     if not found:
         return None
     settings = {
@@ -129,7 +148,7 @@ def write_change_in_length(
         command=command,
     )
     path = folder / "change_in_length.nc"
-    write_archive(properties_to_dataset(found, origin=origin), path)
+    write_archive(properties_to_dataset(found, component, origin=origin), path)
     return path
 
 
@@ -164,11 +183,13 @@ def _read(
     folder: Path,
     own: Sequence[Survey],
     specimen: str,
+    known: Mapping[str, tuple[InstrumentErrors, StrainModel] | tuple[None, None]],
     *,
     failed: Collection[str],
     waiting: Mapping[str, str],
 ) -> _Found:
     steps, sources, missing, is_programme = [], [], [], False
+    component = {}
     for entry in own:
         test = entry.plan.id
         if test in failed or test in waiting:
@@ -177,11 +198,22 @@ def _read(
         path = folder / f"{test}.nc"
         # a test that neither failed nor waits has an archive of this run or as good as one
         with open_archive(path) as archive:
-            steps.append(step_of_archive(archive, specimen))
+            found = step_of_archive(archive, specimen, *known[test])
+            steps.append(found.step)
+            component[found.step.name] = found.component
             kind = str(archive["programme_step"].values) if "programme_step" in archive else ""
             is_programme |= kind in CHANGES_LENGTH
         sources.append(source_of(path.read_bytes(), path.name))
-    return _Found(tuple(steps), tuple(sources), tuple(missing), is_programme)
+    return _Found(tuple(steps), tuple(sources), tuple(missing), is_programme, component)
+
+
+def _instruments(
+    campaign: Campaign, survey: Survey, specimen: str, models: Sequence[StrainModel]
+) -> tuple[InstrumentErrors, StrainModel] | tuple[None, None]:
+    """What is stated of the instruments of a specimen, and its strain; of weights neither."""
+    errors = instruments_of(campaign, survey, models)
+    pairs = zip(errors, models, strict=True)
+    return next((pair for pair in pairs if pair[1].specimen == specimen), (None, None))
 
 
 def _in_one_line(name: str, own: Sequence[ChangeInLength]) -> str:

@@ -217,8 +217,9 @@ def _write_parts(
     )
     write_outcomes(campaign, folder, command=command)
     lengths = write_change_in_length(
-        campaign, folder, surveys, failed=failed, waiting=waiting, command=command
-    )
+        campaign, folder, surveys, models=lambda survey: basis(survey).models,
+        failed=failed, waiting=waiting, command=command,
+    )  # fmt: skip
     hoses = write_predictions(campaign, folder, command=command)
     comparisons = write_comparisons(
         campaign, folder, failed=failed, waiting=waiting, command=command

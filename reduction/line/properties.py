@@ -27,23 +27,24 @@ from dataclasses import replace
 import numpy as np
 
 from reduction.errors import SettingsError
+from reduction.line.constructionstrain import bedded_in, construction_strain
 from reduction.line.propertyproduct import (
-    BeddingCycles,
+    RISE_GAP,
     ChangeInLength,
-    FirstRise,
+    PairOfHolds,
     StepOfProgramme,
 )
+from reduction.record import Floats
 
 __all__ = ["change_in_length"]
 
 _NAN = float("nan")
-# strains further apart than this, over the grid's spacing, have a gap between them
-_GAP = 1.5
 _HELD = "the rise was held on its way: what it gained meanwhile is in it"
 _NO_RISE = (
     "the first step has no curve of its first rise, which a log that begins slack gives, of "
     "another step than bedding-in with a diameter"
 )
+_NO_PAIR = "no step holds one tension after a lower one"
 _NO_ORDER = "the order of the tests is not stated"
 
 
@@ -83,9 +84,11 @@ def change_in_length(
 
     Notes
     -----
-    Every number is that of a stage before, or one line of arithmetic with it; uncertainties are
-    theirs, and those that enter together count as independent.  Construction strain holds what
-    the polymer gained in the minutes of the bedding-in.
+    Every number is that of a stage before, or one line of arithmetic with it.  An error that
+    samples share goes through that line with its sign, what is random by its square: a zero of
+    the load cell is in no chord, and its gain in no working strain.  The foot of the first cycle,
+    which is in both parts of a construction strain with opposite signs, adds nothing to it.
+    Construction strain holds what the polymer gained in the minutes of the bedding-in.
 
     Examples
     --------
@@ -104,20 +107,27 @@ def change_in_length(
         _original(steps, before),
         *_static(steps),
         *_dynamic(steps),
-        _construction(steps, before),
+        construction_strain(steps, before),
         *_polymer(steps),
         *_working(steps, is_ordered),
     )
-    return tuple(_told(_over(one, rated_break_strength), missing) for one in found)
+    of_strength = {one.name: one.strength_contribution for one in steps}
+    return tuple(
+        _told(_over(one, rated_break_strength, of_strength.get(one.step)), missing) for one in found
+    )
 
 
-def _over(one: ChangeInLength, strength: float) -> ChangeInLength:
+def _over(one: ChangeInLength, strength: float, of_strength: Floats | None) -> ChangeInLength:
     if not one.is_stiffness:
         return one
+    rows = one.contribution / strength
+    if rows.size and of_strength is not None and of_strength.size:
+        rows = rows - one.value / strength * of_strength
     return replace(
         one,
         over_strength=one.value / strength,
-        over_strength_standard_uncertainty=one.standard_uncertainty / strength,
+        over_strength_random_standard_uncertainty=one.random_standard_uncertainty / strength,
+        over_strength_contribution=rows,
     )
 
 
@@ -136,24 +146,28 @@ def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
         return replace(absent, reason="there is no step")
     first = steps[0]
     absent = replace(absent, step=first.name)
-    if first.first_rise is not None:
-        strain, tension = first.first_rise.strain, first.first_rise.tension
-        spread = first.first_rise.tension_standard_uncertainty
-        gain = float(strain[-1] - strain[0])
+    rise = first.first_rise
+    if rise is not None:
+        gain = float(rise.strain[-1] - rise.strain[0])
+        stiffness = float(rise.tension[-1] - rise.tension[0]) / gain
+        of_tension, of_strain = (
+            rows[:, -1] - rows[:, 0]
+            for rows in (rise.tension_contribution, rise.strain_contribution)
+        )
+        spread = rise.tension_random_standard_uncertainty
         return replace(
             absent,
-            value=float(tension[-1] - tension[0]) / gain,
-            standard_uncertainty=float(np.hypot(spread[0], spread[-1])) / gain,
-            low_tension=float(tension[0]),
-            high_tension=float(tension[-1]),
-            reason=_HELD if float(np.diff(strain).max()) > _GAP * first.first_rise.spacing else "",
+            value=stiffness,
+            random_standard_uncertainty=float(np.hypot(spread[0], spread[-1])) / gain,
+            contribution=(of_tension - stiffness * of_strain) / gain,
+            low_tension=float(rise.tension[0]),
+            high_tension=float(rise.tension[-1]),
+            reason=_HELD if float(np.diff(rise.strain).max()) > RISE_GAP * rise.spacing else "",
         )
     if first.bedding is None:
         return replace(absent, reason=_NO_RISE)
     return replace(
-        absent,
-        value=first.bedding.first_stiffness,
-        standard_uncertainty=first.bedding.first_stiffness_standard_uncertainty,
+        absent.with_number(first.bedding.first_stiffness),
         low_tension=first.bedding.valley_tension,
         high_tension=first.bedding.first_peak_tension,
         reason=(
@@ -164,86 +178,34 @@ def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
 
 
 def _static(steps: Sequence[StepOfProgramme]) -> tuple[ChangeInLength, ...]:
-    found = [
-        ChangeInLength(
-            "static stiffness", pair.stiffness, pair.stiffness_standard_uncertainty,
-            low_tension=pair.low_tension, high_tension=pair.high_tension,
-            reference_time=pair.reference_time, step=one.name, reason=pair.reason,
-        )
-        for one in steps
-        for pair in one.pairs
-    ]  # fmt: skip
-    none = "no step holds one tension after a lower one"
-    return tuple(found) or (ChangeInLength("static stiffness", reason=none),)
+    found = [_of_pair(one, pair) for one in steps for pair in one.pairs]
+    return tuple(found) or (ChangeInLength("static stiffness", reason=_NO_PAIR),)
+
+
+def _of_pair(step: StepOfProgramme, pair: PairOfHolds) -> ChangeInLength:
+    bare = ChangeInLength(
+        "static stiffness", low_tension=pair.low_tension.value,
+        high_tension=pair.high_tension.value, reference_time=pair.reference_time,
+        step=step.name, reason=pair.reason,
+    )  # fmt: skip
+    return bare.with_number(pair.stiffness)
 
 
 def _dynamic(steps: Sequence[StepOfProgramme]) -> tuple[ChangeInLength, ...]:
-    found = [
-        ChangeInLength(
-            "dynamic stiffness", one.level.stiffness, one.level.stiffness_standard_uncertainty,
-            low_tension=one.level.mean_tension - one.level.tension_amplitude,
-            high_tension=one.level.mean_tension + one.level.tension_amplitude, step=one.name,
-            reason="" if np.isfinite(one.level.stiffness) else "no cycle of it has a stiffness",
-        )
-        for one in steps
-        if one.level is not None
-    ]  # fmt: skip
+    found = []
+    for one in steps:
+        level = one.level
+        if level is None:
+            continue
+        bare = ChangeInLength(
+            "dynamic stiffness", low_tension=level.mean_tension - level.tension_amplitude,
+            high_tension=level.mean_tension + level.tension_amplitude, step=one.name,
+            reason="" if np.isfinite(level.stiffness.value) else "no cycle of it has a stiffness",
+        )  # fmt: skip
+        found.append(bare.with_number(level.stiffness))
     # the cycles of bedding-in are of a rope that is still settling
     none = "no step is of cycles of a settled rope"
     return tuple(found) or (ChangeInLength("dynamic stiffness", reason=none),)
-
-
-def _construction(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
-    absent = ChangeInLength("construction strain")
-    place = _bedded_in(steps)
-    if place is None:
-        return replace(absent, reason="no step beds the rope in")
-    one = steps[place]
-    absent = replace(absent, step=one.name)
-    if before or place > 0:
-        why = before or f"it had been loaded in {steps[0].name}"
-        return replace(absent, reason=f"{why}: what was left before the bedding-in is not known")
-    cycles = one.bedding
-    if cycles is None or np.isnan(cycles.permanent_strain):
-        return replace(absent, reason="the cycles give no permanent strain")
-    value, spread = cycles.permanent_strain, cycles.permanent_strain_standard_uncertainty
-    reason = "of the cycles alone: the first rise does not pass the tension of their valleys"
-    at_valley = _on_first_rise(one.first_rise, cycles)
-    if at_valley is not None and np.isnan(at_valley[0]):
-        reason = "the first foot is taken to be on the first rise, which was held there"
-    elif at_valley is not None:
-        strain, doubt = at_valley
-        value += cycles.foot_strain - strain
-        spread = float(np.sqrt(spread**2 + cycles.foot_strain_standard_uncertainty**2 + doubt**2))
-        reason = ""
-    return replace(
-        absent, value=value, standard_uncertainty=spread, low_tension=cycles.valley_tension,
-        high_tension=cycles.peak_tension, reason=reason,
-    )  # fmt: skip
-
-
-def _bedded_in(steps: Sequence[StepOfProgramme]) -> int | None:
-    """Place of the first step that beds the rope in; None where none does."""
-    return next((place for place, one in enumerate(steps) if one.bedding is not None), None)
-
-
-def _on_first_rise(rise: FirstRise | None, cycles: BeddingCycles) -> tuple[float, float] | None:
-    """Strain and its uncertainty where the rise first has the valleys' tension; None if nowhere.
-
-    NaN where the rise has a gap there: it was held, and the cycles begin from the hold.
-    """
-    tension = cycles.valley_tension
-    if rise is None or not rise.tension[0] <= tension <= rise.tension.max():
-        return None
-    place = max(int(np.argmax(rise.tension >= tension)), 1)
-    strain, load, doubt = (
-        part[place - 1 : place + 1]
-        for part in (rise.strain, rise.tension, rise.tension_standard_uncertainty)
-    )
-    if strain[1] - strain[0] > _GAP * rise.spacing:
-        return _NAN, _NAN
-    slope = float(load[1] - load[0]) / float(strain[1] - strain[0])
-    return float(strain[1] - (load[1] - tension) / slope), float(doubt[1]) / slope
 
 
 def _polymer(steps: Sequence[StepOfProgramme]) -> tuple[ChangeInLength, ...]:
@@ -254,31 +216,46 @@ def _polymer(steps: Sequence[StepOfProgramme]) -> tuple[ChangeInLength, ...]:
                 "polymer strain", low_tension=hold.tension, high_tension=hold.tension,
                 reference_time=one.reference_time, step=one.name, reason=hold.reason,
             )  # fmt: skip
-            if hold.end_time <= one.reference_time and np.isfinite(hold.creep_per_decade):
+            creep = hold.creep_per_decade
+            if hold.end_time <= one.reference_time and np.isfinite(creep.value):
                 why = f"the hold ends at {hold.end_time:.4g} s, before the reference time"
                 found.append(replace(absent, reason=why))
                 continue
             decades = float(np.log10(hold.end_time / one.reference_time))
             found.append(
                 replace(
-                    absent, value=decades * hold.creep_per_decade,
-                    standard_uncertainty=decades * hold.creep_per_decade_standard_uncertainty,
+                    absent,
+                    value=decades * creep.value,
+                    random_standard_uncertainty=decades * creep.random_standard_uncertainty,
+                    contribution=decades * creep.contribution,
                 )
-            )  # fmt: skip
+            )
     none = "no step holds a constant tension"
     return tuple(found) or (ChangeInLength("polymer strain", reason=none),)
 
 
 def _working(steps: Sequence[StepOfProgramme], is_ordered: bool) -> tuple[ChangeInLength, ...]:
     absent = ChangeInLength("working strain")
-    place = _bedded_in(steps)
+    place = bedded_in(steps)
     if place is None:
         return (replace(absent, reason="no step beds the rope in: construction would be in it"),)
     if not is_ordered:
         return (replace(absent, reason=f"{_NO_ORDER}: a hold may be of a rope not bedded in"),)
-    found = []
-    for one in _static(steps[place + 1 :]):
-        strain = (one.high_tension - one.low_tension) / one.value
-        spread = strain * one.standard_uncertainty / one.value
-        found.append(replace(one, name=absent.name, value=strain, standard_uncertainty=spread))
-    return tuple(found)
+    pairs = [(one, pair) for one in steps[place + 1 :] for pair in one.pairs]
+    if not pairs:
+        return (replace(absent, reason=_NO_PAIR),)
+    return tuple(_working_of(_of_pair(one, pair), pair) for one, pair in pairs)
+
+
+def _working_of(one: ChangeInLength, pair: PairOfHolds) -> ChangeInLength:
+    """Rise over stiffness: a gain of the load cell is in both, and in the strain no more."""
+    rise = one.high_tension - one.low_tension
+    strain = rise / one.value
+    of_rise = pair.high_tension.contribution - pair.low_tension.contribution
+    return replace(
+        one,
+        name="working strain",
+        value=strain,
+        random_standard_uncertainty=strain * one.random_standard_uncertainty / one.value,
+        contribution=strain * (of_rise / rise - one.contribution / one.value),
+    )

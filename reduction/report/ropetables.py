@@ -19,15 +19,14 @@ from reduction.report.htmltable import (
     span,
     words,
 )
-from reduction.report.ropeview import RopeView, expanded_property
-from reduction.report.sources import source_words
+from reduction.report.ropeview import RopeView, expanded_property, shared_by_properties
+from reduction.report.sources import in_order, source_words
 from reduction.report.style import Shown, shown
 from reduction.report.uncertainty import (
     MANY,
     expanded_of,
     plus_minus,
     plus_minus_of_tests,
-    shared_sources,
 )
 from reduction.report.view import TestView
 
@@ -42,10 +41,6 @@ __all__ = [
 ]
 
 _SCATTER = "scatter between cycles, noise, regression"
-_KNOWN_OF_STEPS = (
-    "bedding_first_stiffness", "bedding_permanent_strain", "dynamic_stiffness", "static_stiffness",
-    "creep_rate_per_decade",
-)  # fmt: skip
 _NOT_IN_IT = "load-cell calibration, scale of position or strain, lag between the channels"
 # what is shown of a step: variable, unit of the page or None for a share, words
 _Column = tuple[str, Shown | None, str]
@@ -74,12 +69,12 @@ def answer_of_ropes(views: Sequence[RopeView]) -> Table | None:
 
 
 def _about(rows: Sequence[Sequence[Cell]], views: Sequence[RopeView]) -> str:
-    """Say what ± holds: of the instruments what the steps of the programmes know of them."""
-    shared = shared_sources([test for view in views for test in view.tests], _KNOWN_OF_STEPS)
+    """Say what ± holds: and of the instruments what is stated of them."""
+    shared = in_order({one for view in views for one in shared_by_properties(view)})
     if not shared:
         return plus_minus(factors_of(rows), left_out=_NOT_IN_IT)
     told = ", ".join(source_words(one) for one in shared)
-    held = f"{_SCATTER}; and what all samples share, where a step knows it: {told}"
+    held = f"{_SCATTER}; and what all samples share: {told}"
     return plus_minus(factors_of(rows), held, left_out="")
 
 

@@ -9,12 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from reduction.archive.shared import COMPONENT
 from reduction.record import Floats
-from reduction.report.uncertainty import Expanded, expand, expanded_of
+from reduction.report.uncertainty import Expanded, expand
 from reduction.report.view import TestView
 from reduction.units import UnitSystem
 
-__all__ = ["RopeView", "view_ropes"]
+__all__ = ["RopeView", "expanded_property", "shared_by_properties", "view_ropes"]
+
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
@@ -83,21 +86,27 @@ class RopeView:
 
 
 def expanded_property(view: RopeView, name: str) -> Expanded:
-    """Return the expanded uncertainty of a property in each row.
+    """Return the expanded uncertainty of a property in each row, of shared and random parts."""
+    spread = view.array(f"{name}_standard_uncertainty")
+    kept = f"{name}_random_standard_uncertainty"
+    return expand(
+        spread,
+        random=view.array(kept) if kept in view.data else None,
+        degrees_of_freedom=view.array(f"{name}_degrees_of_freedom"),
+    )
 
-    A dynamic stiffness is the mean of the last cycles of its step; the others are of many samples.
-    """
-    found = expand(view.array(f"{name}_standard_uncertainty"))
-    factor = found.factor.copy()
-    for test, place in view.entries("specimen", "dynamic_stiffness"):
-        values = np.asarray(test.data["dynamic_stiffness"].values, dtype=np.float64)
-        cycles = np.asarray(test.data["dynamic_cycles"].values, dtype=np.float64)
-        freedom = np.maximum(cycles - 1, 1.0)
-        own = expanded_of(test, "dynamic_stiffness", values, freedom=freedom).factor[place]
-        for row, pair in enumerate(zip(view.names, view.texts("property_test"), strict=True)):
-            if pair == ("dynamic stiffness", test.id):
-                factor[row] = own
-    return Expanded(found.half / found.factor * factor, factor)
+
+def shared_by_properties(view: RopeView) -> set[str]:
+    """Return the sources of the errors that the properties of a rope share with others."""
+    if COMPONENT not in view.data:
+        return set()
+    sources = view.texts("uncertainty_source")
+    reached = np.zeros(len(sources), dtype=bool)
+    for name in ("stiffness", "stiffness_over_strength", "strain"):
+        rows = view.array(f"property_{name}_uncertainty_contribution")
+        # a zero that cancels in a difference leaves its rounding
+        reached |= (np.abs(rows) > _ROUNDING * np.abs(view.array(f"property_{name}"))).any(axis=1)
+    return {one for one, is_in in zip(sources, reached, strict=True) if is_in}
 
 
 def view_ropes(

@@ -5,9 +5,16 @@ A property without a number has a row, too, with the reason.
 
 from __future__ import annotations
 
+from reduction.archive.shared import COMPONENT
+from reduction.tables.shared import ERROR
 from reduction.tables.table import Table
 
 __all__ = ["PROPERTY_TABLES"]
+
+_CONTRIBUTIONS = tuple(
+    f"property_{name}_uncertainty_contribution"
+    for name in ("stiffness", "stiffness_over_strength", "strain")
+)
 
 PROPERTY_TABLES = (
     Table(
@@ -26,6 +33,19 @@ PROPERTY_TABLES = (
             "property_remark",
         ),
         ("property",),
+        product="properties",
+    ),
+    Table(
+        "shared_errors_change_in_length",
+        ("property", COMPONENT),
+        (
+            "specimen=property_specimen",
+            "property_name",
+            "property_test",
+            *ERROR,
+            *_CONTRIBUTIONS,
+        ),
+        _CONTRIBUTIONS,
         product="properties",
     ),
 )

@@ -5,9 +5,10 @@ from __future__ import annotations
 from reduction.archive.shared import COMPONENT, SHARED
 from reduction.tables.table import Table
 
-__all__ = ["SHARED_TABLES"]
+__all__ = ["ERROR", "SHARED_TABLES"]
 
-_ERROR = ("uncertainty_source", "uncertainty_source_of", "uncertainty_source_number")
+ERROR = ("uncertainty_source", "uncertainty_source_of", "uncertainty_source_number")
+"""Columns that say which error a row is of."""
 _FILES = {
     ("specimen",): "shared_errors",
     ("specimen", "branch_name", "segment"): "shared_errors_segments",
@@ -42,7 +43,7 @@ def _table(name: str, dims: tuple[str, ...]) -> Table:
     rows = tuple(
         f"{quantity}_uncertainty_contribution" for quantity, own in SHARED.items() if own == dims
     )
-    return Table(name, (*dims, COMPONENT), (*_OF.get(dims, ()), *_ERROR, *rows), rows)
+    return Table(name, (*dims, COMPONENT), (*_OF.get(dims, ()), *ERROR, *rows), rows)
 
 
 SHARED_TABLES = tuple(_table(name, dims) for dims, name in _FILES.items())

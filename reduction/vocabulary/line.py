@@ -199,6 +199,14 @@ OF_LINE = (
         "original, static or dynamic stiffness over the rated break strength",
     ),
     Quantity("property_strain", "1", "construction, polymer or working strain"),
+    *(
+        Quantity(
+            f"property_{name}_degrees_of_freedom",
+            "1",
+            "degrees of freedom of the random part; infinite where it is of many samples",
+        )
+        for name in ("stiffness", "stiffness_over_strength", "strain")
+    ),
     Quantity("property_remark", "", "why the property has no number, or what is not in it"),
     Quantity("cycles_are_run_out", "1", "whether the specimen had not failed after the cycles"),
     Quantity("failure_peak_tension", "N", "greatest tension of a cycle, mean until failure"),

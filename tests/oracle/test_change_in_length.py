@@ -53,7 +53,7 @@ def reduced(log, name):
         settings=settings,
         settings_json=json.dumps({"reduction": asdict(settings)}),
     )
-    return step_of_archive(to_dataset(test, version="0", command=""), "R-1")
+    return step_of_archive(to_dataset(test, version="0", command=""), "R-1").step
 
 
 @pytest.fixture(scope="module")

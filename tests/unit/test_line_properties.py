@@ -15,22 +15,24 @@ from reduction.line.propertyproduct import (
     FirstRise,
     HeldTension,
     PairOfHolds,
+    StepNumber,
     StepOfProgramme,
 )
 
 CYCLES = BeddingCycles(
-    first_stiffness=1000.0,
-    first_stiffness_standard_uncertainty=2.0,
-    permanent_strain=0.03,
-    permanent_strain_standard_uncertainty=0.002,
+    first_stiffness=StepNumber(1000.0, 2.0),
+    permanent_strain=StepNumber(0.03, 0.002),
     foot_strain=0.05,
-    foot_strain_standard_uncertainty=0.001,
+    foot_strain_contribution=np.empty(0),
     valley_tension=40.0,
     first_peak_tension=75.0,
     peak_tension=80.0,
 )
-PAIR = PairOfHolds(10.0, 30.0, 500.0, 5.0, 600.0)
-HOLD = HeldTension(20.0, 6000.0, 1e-3, 1e-5)
+PAIR = PairOfHolds(
+    StepNumber(10.0, 0.0), StepNumber(30.0, 0.0), StepNumber(500.0, 5.0), 600.0
+)  # fmt: skip
+HOLD = HeldTension(20.0, 6000.0, StepNumber(1e-3, 1e-5))
+UNKNOWN = StepNumber(math.nan, math.nan)
 
 
 def rise(*tension):
@@ -38,8 +40,9 @@ def rise(*tension):
     load = np.array(tension)
     known = np.isfinite(load)
     return FirstRise(
-        0.01 * (1 + np.flatnonzero(known)), load[known], np.full(known.sum(), 0.5), 0.01
-    )
+        0.01 * (1 + np.flatnonzero(known)), load[known], np.full(known.sum(), 0.5), 0.01,
+        np.empty((0, known.sum())), np.empty((0, known.sum())),
+    )  # fmt: skip
 
 
 def step(name="S", **parts):
@@ -70,7 +73,7 @@ def test_tests_without_a_product_are_told_where_a_property_is_absent(name):
 
 
 def test_a_refusal_of_a_step_says_nothing_of_missing_tests():
-    short = HeldTension(20.0, 90.0, math.nan, math.nan, "too short")
+    short = HeldTension(20.0, 90.0, UNKNOWN, "too short")
     (one,) = named([step(holds=(short,))], "polymer strain", missing="C failed")
     assert one.reason == "too short"
 
@@ -86,8 +89,8 @@ def test_construction_strain_holds_the_first_rise():
     assert one.value == pytest.approx(0.06)
     assert one.reason == ""
     assert (one.low_tension, one.high_tension) == (40.0, 80.0)
-    # 0.5 N on a slope of 2000 N
-    spread = math.sqrt(0.002**2 + 0.001**2 + (0.5 / 2000) ** 2)
+    # 0.5 N on a slope of 2000 N; the foot of the first cycle is in it twice, with opposite signs
+    spread = math.sqrt(0.002**2 + (0.5 / 2000) ** 2)
     assert one.standard_uncertainty == pytest.approx(spread)
 
 
@@ -109,7 +112,7 @@ def test_construction_strain_of_the_cycles_alone_is_told():
 
 
 def test_cycles_without_a_permanent_strain_give_no_construction_strain():
-    cycles = dataclasses.replace(CYCLES, permanent_strain=math.nan)
+    cycles = dataclasses.replace(CYCLES, permanent_strain=UNKNOWN)
     (one,) = named([bedding(bedding=cycles)], "construction strain")
     assert "no permanent strain" in one.reason
     assert one.step == "B"
@@ -150,7 +153,7 @@ def test_a_rise_that_was_held_on_its_way_says_so():
 
 def test_original_stiffness_is_as_uncertain_as_both_ends_of_the_rise():
     whole = dataclasses.replace(
-        rise(20, 50, 80), tension_standard_uncertainty=np.array([0.3, 9.0, 0.4])
+        rise(20, 50, 80), tension_random_standard_uncertainty=np.array([0.3, 9.0, 0.4])
     )
     (one,) = named([bedding(first_rise=whole)], "original stiffness")
     assert one.standard_uncertainty == pytest.approx(0.5 / 0.02)
@@ -168,13 +171,13 @@ def test_original_stiffness_falls_back_to_the_first_cycle():
 
 
 def test_dynamic_stiffness_is_that_of_each_level():
-    steps = [bedding(), step("D", level=CyclicLevel(800.0, 1.0, 50.0, 20.0))]
+    steps = [bedding(), step("D", level=CyclicLevel(StepNumber(800.0, 1.0), 50.0, 20.0))]
     (one,) = named(steps, "dynamic stiffness", rated_break_strength=400.0)
     assert (one.value, one.over_strength, one.step) == (800.0, 2.0, "D")
     assert (one.low_tension, one.high_tension) == (30.0, 70.0)
     (none,) = named(steps[:1], "dynamic stiffness")
     assert "settled" in none.reason
-    bare = step("D", level=CyclicLevel(math.nan, math.nan, 50.0, 20.0))
+    bare = step("D", level=CyclicLevel(UNKNOWN, 50.0, 20.0))
     (without,) = named([bare], "dynamic stiffness")
     assert without.reason == "no cycle of it has a stiffness"
 
@@ -196,8 +199,14 @@ def test_working_strain_is_the_rise_over_the_static_stiffness_after_bedding_in()
 
 
 def test_refusals_of_the_stages_before_are_handed_on():
-    refused = PairOfHolds(10.0, 20.0, math.nan, math.nan, math.nan, "the lower hold has no strain")
-    short = HeldTension(20.0, 90.0, math.nan, math.nan, "too short")
+    refused = PairOfHolds(
+        StepNumber(10.0, 0.0),
+        StepNumber(20.0, 0.0),
+        UNKNOWN,
+        math.nan,
+        "the lower hold has no strain",
+    )
+    short = HeldTension(20.0, 90.0, UNKNOWN, "too short")
     steps = [bedding(), step("Q", pairs=(refused,), holds=(short,))]
     (static,), (polymer,) = named(steps, "static stiffness"), named(steps, "polymer strain")
     (working,) = named(steps, "working strain")
@@ -219,3 +228,79 @@ def test_polymer_strain_counts_from_the_reference_time_to_the_end_of_the_hold():
 def test_a_reference_time_is_positive():
     with pytest.raises(SettingsError, match="S: the reference time is not positive; found 0 s"):
         change_in_length([StepOfProgramme("S", 0.0)])
+
+
+STRAIN = np.linspace(0.01, 0.05, 41)
+CHORD = 1e5  # N
+
+
+def straight_rise(of_tension=0.0, of_strain=0.0):
+    """A straight first rise, and what one shared error does to its points."""
+    tension = 2e3 + CHORD * (STRAIN - 0.01)
+    rows = [np.broadcast_to(one(STRAIN, tension) if callable(one) else one, (1, 41)).copy()
+            for one in (of_strain, of_tension)]  # fmt: skip
+    return FirstRise(STRAIN, tension, np.zeros(41), 0.001, *rows)
+
+
+@pytest.mark.parametrize(
+    ("error", "truth"),
+    [
+        ({"of_tension": 10.0}, 0.0),
+        ({"of_tension": lambda strain, tension: 0.01 * tension}, 0.01 * CHORD),
+        ({"of_strain": 0.002}, 0.0),
+        ({"of_strain": lambda strain, tension: 0.01 * strain}, -0.01 * CHORD),
+    ],
+    ids=["zero of 10 N", "gain of 1 %", "zero of strain", "scale of strain"],
+)
+def test_a_shared_error_is_at_both_ends_of_the_first_rise(error, truth):
+    (one,) = named([bedding(first_rise=straight_rise(**error))], "original stiffness")
+    assert one.contribution == pytest.approx([truth], abs=1e-6)
+    assert one.standard_uncertainty == pytest.approx(abs(truth), abs=1e-6)
+
+
+def test_a_gain_of_the_load_cell_is_in_the_rise_and_in_the_stiffness_of_a_working_strain():
+    def number(value, gain):
+        return StepNumber(value, 0.0, np.array([gain * value, 7.0]))
+
+    pair = PairOfHolds(
+        number(1000.0, 0.01), number(3000.0, 0.01), StepNumber(1e5, 0.0, np.array([1e3, -500.0])),
+        60.0,
+    )  # fmt: skip
+    (one,) = named([bedding(), step("Q", pairs=(pair,))], "working strain")
+    # the second error, the same at both tensions, is in the stiffness alone: 0.5 % of 0.02
+    assert one.contribution == pytest.approx([0.0, 1e-4])
+
+
+def test_construction_strain_takes_the_difference_of_a_shared_strain_error():
+    rising = rise(20, 40, 60, 80)
+    of_strain = np.stack([np.full(4, 0.001), 0.01 * rising.strain])
+    whole = dataclasses.replace(
+        rising, strain_contribution=of_strain, tension_contribution=np.full((2, 4), 9.0)
+    )
+    cycles = dataclasses.replace(
+        CYCLES,
+        permanent_strain=StepNumber(0.03, 0.002, np.array([0.0, 3e-4])),
+        foot_strain_contribution=np.array([0.001, 5e-4]),
+    )
+    (one,) = named([bedding(bedding=cycles, first_rise=whole)], "construction strain")
+    # a zero of strain leaves it as it is, a scale of 1 % is 1 % of it
+    assert one.contribution == pytest.approx([0.0, 0.01 * one.value], abs=1e-12)
+
+
+def test_a_share_of_the_strength_has_the_error_of_the_strength_beside_its_own():
+    level = CyclicLevel(StepNumber(800.0, 1.0, np.array([8.0, 0.0]), 9.0), 50.0, 20.0)
+    of_strength = np.array([0.0, 0.05])
+    (one,) = named(
+        [step("D", level=level, strength_contribution=of_strength)], "dynamic stiffness",
+        rated_break_strength=400.0,
+    )  # fmt: skip
+    assert one.contribution == pytest.approx([8.0, 0.0])
+    assert one.over_strength_contribution == pytest.approx([0.02, -0.1])
+    assert one.degrees_of_freedom == 9.0
+    assert one.over_strength_standard_uncertainty == pytest.approx(math.hypot(0.02, 0.1, 0.0025))
+
+
+def test_polymer_strain_moves_with_its_creep():
+    hold = dataclasses.replace(HOLD, creep_per_decade=StepNumber(1e-3, 0.0, np.array([2e-5])))
+    (one,) = named([step(holds=(hold,))], "polymer strain")
+    assert one.contribution == pytest.approx([2e-5])

@@ -19,13 +19,15 @@ from reduction.report.ropesection import make_rope_section, rope_tiles
 from reduction.report.ropetables import answer_of_ropes, creep_table, level_table, property_table
 from reduction.report.ropeview import view_ropes
 from reduction.report.view import TestView
+from reduction.uncertainty.product import Component
 
 FOUND = {
     "R-1": (
         ChangeInLength("original stiffness", 3e5, 300.0, 3.0, 3e-3, 10.0, 3e4, step="B",
                        reason="of the first cycle"),
         ChangeInLength("static stiffness", 5e5, 60.0, 5.0, 6e-4, 1e4, 3e4, 600.0, "Q"),
-        ChangeInLength("dynamic stiffness", 1e6, 900.0, 10.0, 9e-3, 5e3, 1.5e4, step="D"),
+        ChangeInLength("dynamic stiffness", 1e6, 900.0, 10.0, 9e-3, 5e3, 1.5e4, step="D",
+                       degrees_of_freedom=9.0),
         ChangeInLength("dynamic stiffness", 1.3e6, 900.0, 13.0, 9e-3, 1.5e4, 2.5e4, step="E"),
         ChangeInLength("construction strain", reason="no step beds the rope in"),
         ChangeInLength("polymer strain", 0.0012, 1e-5, low_tension=3e4, high_tension=3e4,
@@ -47,7 +49,7 @@ def dataset(synthetic="yes"):
         version="0",
         command="reduction run",
     )
-    return properties_to_dataset(FOUND, origin=origin)
+    return properties_to_dataset(FOUND, {}, origin=origin)
 
 
 def level():
@@ -177,23 +179,16 @@ def test_properties_alone_are_a_page(tmp_path):
     assert "construction strain: no step beds the rope in" in html
 
 
-def test_a_property_of_a_step_that_knows_its_instruments_says_so_and_has_the_factor_of_both(ropes):
-    first = ropes[0]
-    level = next(test for test in first.tests if "dynamic_stiffness" in test.data)
-    known = level.data.assign(
-        dynamic_stiffness_standard_uncertainty=("specimen", np.array([900.0, 900.0])),
-        dynamic_stiffness_random_standard_uncertainty=("specimen", np.array([1.0, 1.0])),
-        dynamic_stiffness_uncertainty_contribution=(
-            ("uncertainty_component", "specimen"), np.array([[900.0, 900.0]]),
-        ),
-        uncertainty_source=("uncertainty_component", np.array(["tension_gain"])),
-    )  # fmt: skip
-    tests = tuple(replace(one, data=known) if one is level else one for one in first.tests)
-    table = property_table(replace(first, tests=tests))
-    by_name = [row[3] for row in texts(table) if row[0] == "dynamic stiffness"]
+def test_a_property_that_knows_its_instruments_says_so_and_has_the_factor_of_both(ropes):
+    (one,) = [one for one in FOUND["R-1"] if one.step == "D"]
+    cell = Component("tension_gain", "load cell")
+    known = replace(one, random_standard_uncertainty=1.0, contribution=np.array([900.0]))
+    origin = Origin("ropes", {"synthetic": "yes"}, [Source("Q.nc", "0" * 64, 12)],
+                    [Step("change in length", "made for a test")],
+                    json.dumps({"tests": {"R-1": ["D"]}}), "0", "reduction run")  # fmt: skip
+    made = properties_to_dataset({"R-1": (known,)}, {("R-1", "D"): (cell,)}, origin=origin)
+    (view,) = view_ropes(made, {}, "si")
     # the scatter of ten cycles is nothing beside the gain: 1.960 and not 2.262
-    assert by_name[0] == "1,000,000 ± 1,764"
-    assert table.remarks[-1].endswith(
-        "what all samples share, where a step knows it: tension gain."
-    )
-    assert "load-cell calibration" in property_table(first).remarks[-1]
+    assert texts(property_table(view))[0][3] == "1,000,000 ± 1,764"
+    assert property_table(view).remarks[-1].endswith("what all samples share: tension gain.")
+    assert "load-cell calibration" in property_table(ropes[0]).remarks[-1]
