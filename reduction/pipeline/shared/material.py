@@ -14,6 +14,7 @@ from reduction.record import Floats, areas_of
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.elastomer import elastomer_contributions
 from reduction.uncertainty.field import error_field
+from reduction.uncertainty.fieldlength import coefficient_errors
 from reduction.uncertainty.join import merged, stacked
 from reduction.uncertainty.points import section_contributions, stress_contributions, with_diameter
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
@@ -71,15 +72,22 @@ def _of_slack(
     found at less tension than is meant, and move by as much as the specimen stretches for it there.
     """
     component, relative = [], []
-    if errors.position_gain:
-        component.append(Component("position_gain", errors.position_instrument))
-        relative.append(errors.position_gain)
+    of_model = errors.strain_model or errors.specimen
+    for gain, owner in (
+        (errors.position_gain, Component("position_gain", errors.position_instrument)),
+        (errors.strain_gain, Component("strain_gain", of_model)),
+    ):
+        if gain:
+            component.append(owner)
+            relative.append(gain)
     name = next((one for one in _LENGTHS if one in model.coefficients), None)
-    if name is not None and model.covariance.size:
-        place = list(model.coefficients).index(name)
-        spread = np.sqrt(model.covariance[place, place]) / model.coefficients[name]
-        component.append(Component("relaxed_length", errors.strain_model or errors.specimen))
-        relative.append(-float(spread))
+    if name is not None:
+        # the errors of the tape that are in every strain of the test
+        by_tape = coefficient_errors(model)[list(model.coefficients).index(name)]
+        component += [
+            Component("strain_calibration", of_model, number) for number in range(by_tape.size)
+        ]
+        relative += [-float(one) / model.coefficients[name] for one in by_tape]
     history, slack = test.history, test.slack_strain
     left = {
         "slack_strain_at_unloading": None if slack is None else (slack.strain, slack.by_tension),
