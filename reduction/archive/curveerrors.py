@@ -9,7 +9,7 @@ import xarray as xr
 
 from reduction.archive.shared import components_of
 from reduction.compare.shared import SharedErrors, constant_errors
-from reduction.record import Floats
+from reduction.record import Bools, Floats
 
 __all__ = ["curve_errors_of"]
 
@@ -76,13 +76,20 @@ def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tupl
 
 def _errors(
     archive: xr.Dataset, strain: Floats, tension: Floats, of_error: Floats, slope: Floats,
-    there: np.ndarray,
+    there: Bools,
 ) -> SharedErrors:  # fmt: skip
     component = components_of(archive)
+    tension, slope, there = tension.copy(), slope.copy(), there.copy()
     kept = [k for k, row in enumerate(of_error) if np.any(row[there] != 0)]
     is_strain = np.array([component[k].source in _OF_STRAIN for k in kept], dtype=bool)
     rows = of_error[kept]
     known = np.where(there, rows, np.nan)
+    for own, other in ((0, 1), (1, 0)):
+        if not there[own].any():
+            # a first rise is alone; on the way back a lag has the other sign
+            way = np.array([-1.0 if component[k].source == "lag" else 1.0 for k in kept])
+            there[own], tension[own], slope[own] = there[other], tension[other], slope[other]
+            known[:, own] = way[:, None] * known[:, other]
     moved = -known / np.where(there, slope, np.nan)
     choice = is_strain[:, None, None]
     return SharedErrors(

@@ -243,6 +243,8 @@ def _notes(
         )
     if not measured.contribution.any():
         notes.append("no uncertainty of the calibration is stated: the test counts as unbiased")
+    elif not any(one.source.startswith("tension_") for one in measured.component):
+        notes.append("nothing is stated of the load cell: its scale and its zero count as exact")
     if agrees and judged.probability < LEAST_PROBABILITY:
         notes.append(
             f"no strain differs by more than U, but the shape of the difference is one that the "
