@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from reduction.campaign.csvlines import read_lines
+from reduction.campaign.files import file_inside
 from reduction.errors import LogError
 from reduction.record import SpliceMarks
 from reduction.units import scale_to_si
 
-__all__ = ["read_marks"]
+__all__ = ["pooled_marks", "read_marks"]
 
 _LENGTHS = ("near_toe", "far_toe", "far_thimble")
 _SUFFIXES = {"ft": "ft", "in": "inch", "m": "m", "mm": "mm", "cm": "cm"}
@@ -132,3 +134,31 @@ def read_marks(path: Path) -> dict[str, SpliceMarks]:
             reading_uncertainty=min(entry.decimals) / math.sqrt(12) * math.sqrt(2),
         )
     return marks
+
+
+def pooled_marks(
+    path: Path, names: Iterable[str], specimens: Iterable[str]
+) -> dict[str, SpliceMarks]:
+    """Return all marks of each specimen over the campaign, from every marks file it names."""
+    pooled: dict[str, SpliceMarks] = {}
+    for name in dict.fromkeys(names):
+        for specimen, marks in read_marks(path.parent / file_inside(path, name)).items():
+            if specimen not in specimens:
+                raise LogError(
+                    path.parent / name, "a mark names an unknown specimen", channel="specimen",
+                    found=repr(specimen), needed="one of " + ", ".join(specimens),
+                )  # fmt: skip
+            before = pooled.get(specimen)
+            if before is None:
+                pooled[specimen] = marks
+                continue
+            pooled[specimen] = replace(
+                before,
+                test=before.test + marks.test,
+                hold=before.hold + marks.hold,
+                near_toe=np.concatenate([before.near_toe, marks.near_toe]),
+                far_toe=np.concatenate([before.far_toe, marks.far_toe]),
+                far_thimble=np.concatenate([before.far_thimble, marks.far_thimble]),
+                reading_uncertainty=max(before.reading_uncertainty, marks.reading_uncertainty),
+            )
+    return pooled

@@ -8,24 +8,19 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NoReturn
 
 import numpy as np
 
-from reduction.campaign.cells import CODED, CellColumn, CellSheet, read_cells
+from reduction.campaign.cells import CellSheet, read_cells
+from reduction.campaign.runlevels import check_levels, coded_levels, is_of_mean
 from reduction.campaign.spec import ExperimentSpec, FactorSpec, ResponseSpec, response_unit
 from reduction.errors import DataError, LogError, SettingsError
 from reduction.record import Floats, freeze_arrays
-from reduction.units import scale_of_unit
 
 __all__ = ["RunSeries", "read_runs"]
 
 _LABELS = ("run", "run_order", "block", "specimen")
 _DUMMY = re.compile(r"dummy_\d+")
-_SHARE = re.compile(r"%\s*(RBS|MBS|MBL|of mean)")
-_OFF_PLAN = 1.0
-"""Coded distance of the mean of all runs from the centre of the plan, beyond which the
-levels are in another unit than the plan."""
 
 
 @dataclass(frozen=True)
@@ -99,69 +94,6 @@ def _declared(
     return factors, responses
 
 
-def _levels(
-    sheet: CellSheet, factor: FactorSpec, spec: ExperimentSpec | None, mean: Floats | None
-) -> tuple[CellColumn, Floats]:
-    """Column and coded levels of a factor."""
-    column = sheet.one(factor.name, "factor")
-    values = sheet.numbers(column)
-    is_coded = factor.levels is None or (spec is not None and spec.levels == CODED)
-    unit = column.unit or (CODED if is_coded else factor.unit)
-    if unit == CODED:
-        return column, values
-
-    def refuse(problem: str, needed: str) -> NoReturn:
-        raise SettingsError(
-            f"{sheet.path}:{sheet.first} [{column.header}]: {problem}", found=f"'{unit}'",
-            needed=needed,
-        )  # fmt: skip
-
-    if factor.levels is None:
-        refuse("a unit without the levels that are -1 and 1", "[factors] in a SPEC.toml")
-    axis, low, high = factor.axis(None if spec is None else spec.rated_break_strength)
-    basis = factor.levels.basis
-    share = _SHARE.fullmatch(unit)
-    if share is not None:
-        if basis != ("mean_tension" if share[1] == "of mean" else "rated_break_strength"):
-            refuse(f"{factor.name} is no such share in the plan", f"a unit as {factor.unit}")
-        strength = spec.rated_break_strength if spec is not None and axis == "N" else None
-        found = values / 100 * (1.0 if strength is None else strength)
-    else:
-        try:
-            si_unit, by, offset = scale_of_unit(unit)
-        except SettingsError as error:
-            refuse(error.problem, error.needed or "")
-        found = by * values + offset
-        if basis == "mean_tension" and si_unit == "N" and mean is not None:
-            found = found / mean
-        elif si_unit != axis:
-            beside = "" if basis == "absolute" else ", or rated_break_strength in [experiment]"
-            refuse(f"unit '{unit}' does not fit {factor.name}", f"such as {factor.unit}{beside}")
-    coded: Floats = (found - (low + high) / 2) / ((high - low) / 2)
-    return column, coded
-
-
-def _is_of_mean(factor: FactorSpec) -> bool:
-    return factor.levels is not None and factor.levels.basis == "mean_tension"
-
-
-def _check_plan(
-    sheet: CellSheet, column: CellColumn, name: str, coded: Floats, *, stated: bool
-) -> None:
-    """Refuse levels that lie beside the plan: those of another unit."""
-    known = coded[np.isfinite(coded)]
-    if known.size and abs(known.mean()) > _OFF_PLAN:
-        raise DataError(
-            f"{sheet.path}:{sheet.row[0]} [{column.header}]: the levels of {name} lie beside the "
-            "plan",
-            found=f"{known.min():.4g} to {known.max():.4g} coded",
-            needed="about -1 to 1",
-            hint='Coded levels under [factors] in units need levels = "coded" in [experiment].'
-            if stated
-            else "Levels in units need a SPEC.toml with [factors].",
-        )
-
-
 def _labels(sheet: CellSheet, name: str) -> tuple[str, ...] | None:
     found = sheet.named(name)
     return found[0].cells if found else None
@@ -212,10 +144,10 @@ def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
     axes = [factor.axis(strength) for factor in factors]
     mean: Floats | None = None
     # an amplitude that is a share of the mean comes after the mean
-    for place in sorted(range(len(factors)), key=lambda index: _is_of_mean(factors[index])):
+    for place in sorted(range(len(factors)), key=lambda index: is_of_mean(factors[index])):
         factor = factors[place]
-        column, coded[:, place] = _levels(sheet, factor, spec, mean)
-        _check_plan(sheet, column, factor.name, coded[:, place], stated=factor.levels is not None)
+        column, coded[:, place] = coded_levels(sheet, factor, spec, mean)
+        check_levels(sheet, column, factor.name, coded[:, place], stated=factor.levels is not None)
         used.add(column.header)
         unit, low, high = axes[place]
         if factor.name == "mean_tension" and unit == "N":

@@ -1,4 +1,4 @@
-"""Tables of outcomes without a log: strength, exposure, life, and lines that go slack."""
+"""Tables of outcomes without a log: strength, exposure and life."""
 
 from __future__ import annotations
 
@@ -6,12 +6,9 @@ from collections.abc import Callable, Sequence
 from math import isfinite
 
 from reduction.outcomes.groups import Group
-from reduction.outcomes.life_product import SnapLevels
 from reduction.outcomes.life_rows import fatigue_rows, load_life_rows
 from reduction.outcomes.row import Row
 from reduction.outcomes.rows import exposure_rows, strength_rows
-from reduction.outcomes.series import load_series
-from reduction.outcomes.snap import summarise_snap_loading
 from reduction.report.htmltable import (
     NOT_GIVEN,
     Cell,
@@ -28,14 +25,7 @@ from reduction.report.outcomeview import OutcomeView, group_names
 from reduction.report.style import Shown, shown
 from reduction.report.uncertainty import expand, plus_minus
 
-__all__ = [
-    "exposure_table",
-    "fatigue_table",
-    "load_life_table",
-    "snap_sentences",
-    "snap_table",
-    "strength_table",
-]
+__all__ = ["exposure_table", "fatigue_table", "load_life_table", "strength_table"]
 
 _PERCENT = Shown("%", 100.0)
 _NUMBER = Shown("1", 1.0)
@@ -43,8 +33,6 @@ _SCATTER = "scatter between the tests of a group"
 _FIT = "scatter of the tests about the fit"
 _NOT_IN_IT = "calibration of the machine"
 _BOUNDS = "Intervals hold 95 %, two-sided."
-_SNAP = "Upper bound of the share that fails by then, where all survived; one-sided, 95 %."
-
 _Column = tuple[str, Callable[[Row], Cell]]
 
 
@@ -262,61 +250,3 @@ def load_life_table(view: OutcomeView) -> Table | None:
         " were stopped as lower bounds. Loads over the rated break strength.",
         load_life_rows(view.outcomes), columns, view, held=_FIT, reason="life_reason",
     )  # fmt: skip
-
-
-def _snaps(view: OutcomeView) -> list[tuple[str, SnapLevels]]:
-    """Levels of each group whose line goes slack in its cycles, with its name."""
-    found = [one for one in load_series(view.outcomes) if (one.minimum_load_ratio <= 0).any()]
-    names = group_names([one.group for one in found], view.units)
-    return [
-        (
-            name,
-            summarise_snap_loading(
-                one.peak_load_ratio, one.minimum_load_ratio, one.cycles, one.is_suspended
-            ),
-        )
-        for name, one in zip(names, found, strict=True)
-    ]
-
-
-def snap_table(view: OutcomeView) -> Table | None:
-    """Return what each level of peak load did to lines that go slack."""
-    rows = [
-        [
-            words(name),
-            number(levels.peak_load_ratio[place], _PERCENT, digits=3),
-            count(float(levels.n_failed[place])),
-            count(float(levels.n_suspended[place])),
-            number(levels.mean_cycles[place], digits=4),
-            number(levels.least_cycles[place], digits=4),
-            number(levels.most_cycles[place], digits=4),
-            number(levels.failed_share_high[place], _PERCENT, digits=2),
-        ]
-        for name, levels in _snaps(view)
-        for place in range(levels.peak_load_ratio.size)
-    ]
-    if not rows:
-        return None
-    return make_table(
-        "Lines that go slack in each cycle, by level of peak load.",
-        (
-            "group", "peak load [% of rated break strength]", "failed", "stopped",
-            "mean of the failed [1]", "shortest [1]", "longest [1]", "share failing, at most [%]",
-        ),
-        rows, synthetic=view.is_synthetic, remarks=[_SNAP],
-    )  # fmt: skip
-
-
-def snap_sentences(view: OutcomeView) -> list[str]:
-    """Return between which loads failures begin, and what speaks against a sharp load."""
-    sentences = []
-    for name, levels in _snaps(view):
-        low, high = (_PERCENT.factor * end for end in (levels.threshold_low, levels.threshold_high))
-        known = [f"no failure up to {low:.3g} %"] if low == low else []
-        known += [f"the first at {high:.3g} %"] if high == high else []
-        sentences.append(
-            f"{name}: {', '.join(known)} of the rated break strength, of lines that go slack in"
-            " each cycle. These are loads of the tests, and no safe load."
-        )
-        sentences += [f"{name}: {note}." for note in levels.notes]
-    return sentences

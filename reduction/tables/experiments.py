@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from reduction.tables.table import Table
+from reduction.tables.ofexperiments import RUN, table_of_experiments
+from reduction.tables.stiffness import STIFFNESS_TABLES
+from reduction.tables.surfaces import SURFACE_TABLES
 from reduction.vocabulary import RESPONSES
 
 __all__ = ["EXPERIMENT_TABLES"]
 
-
-def _table(
-    name: str, dims: tuple[str, ...], variables: tuple[str, ...], needs: tuple[str, ...]
-) -> Table:
-    return Table(name, dims, variables, needs, product="experiments")
-
-
-_RUN = ("run_name", "run_specimen")
-
 EXPERIMENT_TABLES = (
-    _table(
+    table_of_experiments(
         "experiments",
         ("experiment",),
         (
@@ -31,17 +24,17 @@ EXPERIMENT_TABLES = (
         ),
         ("experiment_kind",),
     ),
-    _table(
+    table_of_experiments(
         "factors",
         ("experiment", "factor"),
         ("factor_name", "factor_low", "factor_high", "factor_unit"),
         ("factor_low",),
     ),
-    _table(
+    table_of_experiments(
         "runs",
         ("experiment", "run"),
         (
-            *_RUN,
+            *RUN,
             "run_block",
             "run_frequency",
             "run_mean_tension",
@@ -57,17 +50,17 @@ EXPERIMENT_TABLES = (
         ),
         ("run_is_there",),
     ),
-    _table(
+    table_of_experiments(
         "run_levels",
         ("experiment", "run", "factor"),
-        (*_RUN, "factor_name", "run_plan", "run_coded_level", "run_level", "factor_unit"),
+        (*RUN, "factor_name", "run_plan", "run_coded_level", "run_level", "factor_unit"),
         ("run_plan",),
     ),
-    _table(
+    table_of_experiments(
         "run_responses",
         ("experiment", "response", "run"),
         (
-            *_RUN,
+            *RUN,
             "unit",
             "response_measured",
             "response_fitted",
@@ -79,250 +72,15 @@ EXPERIMENT_TABLES = (
         ),
         ("response_measured", "response_fitted"),
     ),
-    _table(
-        "surfaces",
-        ("experiment", "response", "term"),
-        (
-            "term_name",
-            "unit",
-            "response_coefficient",
-            "response_coefficient_random_standard_uncertainty",
-            "response_t",
-            "response_p_value",
-            "response_term_degrees_of_freedom",
-            "term_error",
-            "response_coefficient_engineering",
-            "coefficient_engineering_unit",
-            "response_reduced_is_kept",
-            "response_reduced_coefficient",
-            "response_reduced_coefficient_engineering",
-        ),
-        ("response_coefficient",),
-    ),
-    _table(
-        "shared_errors_surfaces",
-        ("experiment", "response", "uncertainty_component", "term"),
-        (
-            "uncertainty_source",
-            "uncertainty_source_of",
-            "uncertainty_source_number",
-            "term_name",
-            "unit",
-            "response_coefficient_uncertainty_contribution",
-            "response_coefficient_engineering_uncertainty_contribution",
-            "coefficient_engineering_unit",
-        ),
-        ("response_coefficient_uncertainty_contribution",),
-    ),
-    _table(
-        "surface_quality",
-        ("experiment", "response"),
-        (
-            "unit",
-            "response_transform",
-            "response_transform_exponent",
-            "response_transform_exponent_low",
-            "response_transform_exponent_high",
-            "response_n_runs",
-            "response_refusal",
-            "response_sigma",
-            "response_degrees_of_freedom",
-            "response_r2",
-            "response_adjusted_r2",
-            "response_predicted_r2",
-            "response_full_aicc",
-            "response_reduced_aicc",
-            "response_reduced_sigma",
-            "response_overall_f",
-            "response_overall_p_value",
-            "response_printed_f",
-            "response_lack_of_fit_f",
-            "response_lack_of_fit_p_value",
-            "response_lack_of_fit_refusal",
-            "response_probability_plot_correlation",
-            "response_stationary_kind",
-            "response_stationary_value",
-            "response_stationary_point_is_inside",
-            "response_stationary_refusal",
-            "response_block_standard_deviation",
-            "response_block_at_boundary",
-        ),
-        ("response_n_runs",),
-    ),
-    _table(
-        "anova",
-        ("experiment", "response", "anova_row"),
-        (
-            "anova_source",
-            "unit",
-            "response_anova_degrees_of_freedom",
-            "response_anova_sum_of_squares",
-            "response_anova_mean_square",
-            "response_anova_f",
-            "response_anova_p_value",
-            "anova_error_term",
-        ),
-        ("response_anova_degrees_of_freedom",),
-    ),
-    _table(
-        "stationary_points",
-        ("experiment", "response", "factor"),
-        (
-            "factor_name",
-            "response_stationary_point",
-            "response_stationary_point_engineering",
-            "factor_unit",
-        ),
-        ("response_stationary_point",),
-    ),
-    _table(
-        "eigenvalues",
-        ("experiment", "response", "direction", "factor"),
-        ("unit", "response_eigenvalue", "factor_name", "response_eigenvector"),
-        ("response_eigenvector",),
-    ),
-    _table(
-        "surface_points",
-        ("experiment", "response", "point"),
-        (
-            "point_name",
-            "point_kind",
-            "response_unit",
-            "response_point_value",
-            "response_point_mean_value",
-            *(
-                f"response_point_{kind}_{end}"
-                for kind in ("confidence", "prediction", "simultaneous")
-                for end in ("low", "high")
-            ),
-            "interval_confidence",
-            "response_point_variance_factor",
-            "response_point_is_above_leverage",
-        ),
-        ("response_point_value",),
-    ),
-    _table(
-        "point_levels",
-        ("experiment", "point", "factor"),
-        ("point_name", "factor_name", "point_coded_level", "point_level", "factor_unit"),
-        ("point_coded_level",),
-    ),
-    _table(
-        "ridge",
-        ("experiment", "response", "ridge_direction", "ridge_radius", "factor"),
-        (
-            "factor_name",
-            "response_ridge_coded_level",
-            "response_ridge_level",
-            "factor_unit",
-            "response_unit",
-            "response_ridge_value",
-            "response_ridge_simultaneous_low",
-            "response_ridge_simultaneous_high",
-            "interval_confidence",
-        ),
-        ("response_ridge_coded_level",),
-    ),
-    _table(
-        "blocks",
-        ("experiment", "response", "block"),
-        ("block_name", "unit", "response_block_effect"),
-        ("response_block_effect",),
-    ),
-    _table(
-        "screening",
-        ("experiment", "response", "plan_column"),
-        (
-            "plan_column_name",
-            "unit",
-            "response_effect",
-            "response_effect_t",
-            "response_effect_p_value",
-            "response_effect_is_significant",
-            "response_minimum_significant_effect",
-            "response_simultaneous_minimum_effect",
-            "response_mean",
-            "response_effect_refusal",
-            "response_effect_size",
-            "response_effect_half_normal_quantile",
-        ),
-        ("effect_is_there",),
-    ),
-    _table(
-        "aliases",
-        ("experiment", "interaction", "plan_column"),
-        ("interaction_factor", "interaction_other_factor", "plan_column_name", "effect_alias"),
-        ("effect_alias",),
-    ),
-    _table(
-        "stiffness_forms",
-        ("experiment", "stiffness_form"),
-        (
-            "stiffness_equation",
-            "stiffness_n_coefficients",
-            "stiffness_mean_load_low",
-            "stiffness_mean_load_high",
-            "stiffness_confidence",
-            "stiffness_sigma",
-            "stiffness_degrees_of_freedom",
-            "stiffness_r2",
-            "stiffness_adjusted_r2",
-            "stiffness_predicted_r2",
-            "stiffness_prediction_sum_of_squares",
-            "stiffness_aicc",
-            "stiffness_refusal",
-        ),
-        ("stiffness_n_coefficients",),
-    ),
-    _table(
-        "stiffness_coefficients",
-        ("experiment", "stiffness_form", "stiffness_term"),
-        (
-            "stiffness_coefficient_name",
-            "stiffness_coefficient_unit",
-            "stiffness_coefficient",
-            "stiffness_coefficient_low",
-            "stiffness_coefficient_high",
-            "stiffness_p_value",
-        ),
-        ("stiffness_coefficient",),
-    ),
-    _table(
-        "stiffness_runs",
-        ("experiment", "stiffness_form", "run"),
-        (*_RUN, "stiffness_fitted", "stiffness_residual"),
-        ("stiffness_fitted",),
-    ),
-    _table(
-        "single_time",
-        ("experiment",),
-        (
-            "single_time_exponent",
-            "single_time_exponent_low",
-            "single_time_exponent_high",
-            "single_time_p_value_one_time",
-            "single_time_p_value_inverse_frequency",
-            "single_time_degrees_of_freedom",
-            "single_time_frequency_ratio",
-            "single_time_ratio",
-            "single_time_ratio_low",
-            "single_time_ratio_high",
-            "single_time_loss_exponent",
-            "single_time_loss_exponent_low",
-            "single_time_loss_exponent_high",
-            "single_time_confidence",
-            "single_time_tolerance",
-            "single_time_verdict",
-        ),
-        ("single_time_degrees_of_freedom",),
-    ),
-    _table(
+    *SURFACE_TABLES,
+    *STIFFNESS_TABLES,
+    table_of_experiments(
         "cautions",
         ("caution",),
         ("experiment=caution_experiment", "caution_kind", "caution_hint", "caution_runs"),
         ("caution",),
     ),
-    _table(
+    table_of_experiments(
         "experiment_notes",
         ("note",),
         ("experiment=note_experiment", "note_stage"),
