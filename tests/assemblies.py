@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from reduction.lookup.assembly import Tether
 from reduction.lookup.composite import composite_curve
 from reduction.lookup.pieces import CurvePiece
+from reduction.lookup.tethers import Tether
 from reduction.strain.model import StrainModel
 
 

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from reduction.archive.stepwise import STEP_MASKS
+from reduction.archive.pieceparts import keeps_shared, parts_of
+from reduction.archive.steppieces import pieces_of_weights
 from reduction.archive.strainmodel import strain_model_of
 from reduction.errors import DataError, SettingsError
-from reduction.lookup.pieces import CurvePiece, PieceBranch, piece_of_steps, pieces_of_branches
+from reduction.lookup.pieces import CurvePiece, PieceBranch, pieces_of_branches
 from reduction.lookup.source import PieceSource
-from reduction.lookup.staticpiece import mean_piece, piece_of_pull
-from reduction.moduli.stepwise import StepwiseResult
+from reduction.lookup.staticpiece import piece_of_pull
 from reduction.strain.model import StrainModel
 
 __all__ = ["pieces_of_test", "source_of_tests", "specimens_of"]
@@ -53,15 +52,17 @@ def pieces_of_test(
     """
     place = specimens_of(dataset).index(specimen)
     if "secant_modulus" in dataset and "step" in dataset.sizes:
-        return _of_steps(_steps(dataset), branch, name)
+        return pieces_of_weights(dataset, branch, name)
     pieces: tuple[CurvePiece, ...] = ()
     if "branch_tension" in dataset:
+        random, shared = parts_of(dataset, "branch_tension", place, of="tension")
         pieces += pieces_of_branches(
             dataset["strain_bin"].values,
             dataset["branch_tension"].values[place],
-            dataset["branch_tension_standard_uncertainty"].values[place],
+            random,
             name=name,
             branch=branch,
+            shared=shared,
         )
     if branch == "descending":
         return pieces
@@ -69,63 +70,21 @@ def pieces_of_test(
         strain = dataset["quasi_static_strain"].values[place]
         if np.count_nonzero(np.isfinite(strain)) > 1:
             # the first rise of a slow pull is the pull
-            spread = dataset["quasi_static_strain_standard_uncertainty"].values[place]
-            return (
-                *pieces,
-                piece_of_pull(strain, dataset["tension_grid"].values, spread, name=name),
-            )
+            random, shared = parts_of(dataset, "quasi_static_strain", place, of="strain")
+            grid = dataset["tension_grid"].values
+            return (*pieces, piece_of_pull(strain, grid, random, name=name, shared=shared))
     if "branch_tension_first_loading" in dataset:
+        random, shared = parts_of(dataset, "branch_tension_first_loading", place, of="tension")
         pieces += pieces_of_branches(
             dataset["first_loading_strain_bin"].values,
             dataset["branch_tension_first_loading"].values[place],
-            dataset["branch_tension_first_loading_standard_uncertainty"].values[place],
+            random,
             name=name,
             branch="ascending",
             kind="first-loading",
+            shared=shared,
         )
     return pieces
-
-
-def _of_steps(steps: StepwiseResult, branch: PieceBranch, name: str) -> tuple[CurvePiece, ...]:
-    if branch != "mean":
-        return (piece_of_steps(steps, name=name, branch=branch),)
-    up = piece_of_steps(steps, name=name)
-    try:
-        return (mean_piece(up, piece_of_steps(steps, name=name, branch="descending")),)
-    except DataError:
-        # weights were never taken off: the way up stands for the mean, and says so by its branch
-        return (up,)
-
-
-def _steps(dataset: xr.Dataset) -> StepwiseResult:
-    flags = dataset["step_flag"].values
-
-    def number(name: str) -> float:
-        return float(dataset[name].values)
-
-    def series(name: str) -> Any:
-        return np.array(dataset[name].values)
-
-    return StepwiseResult(
-        clock=tuple(dataset["clock"].values.astype(str).tolist()),
-        time=series("time"),
-        tension=series("tension"),
-        length=series("gauge_length"),
-        eye_to_eye_length=series("eye_to_eye_length"),
-        printed_strain=series("printed_strain"),
-        strain=series("strain"),
-        branch=series("branch"),
-        gauge_length=number("relaxed_gauge_length"),
-        gauge_length_standard_uncertainty=number("relaxed_gauge_length_standard_uncertainty"),
-        is_inconsistent=(flags & STEP_MASKS["length_and_elongation_disagree"]) > 0,
-        is_creep=(flags & STEP_MASKS["creep"]) > 0,
-        interval_strain=series("interval_strain"),
-        interval_modulus=series("interval_modulus"),
-        interval_modulus_standard_uncertainty=series("interval_modulus_standard_uncertainty"),
-        interval_branch=series("interval_branch"),
-        secant_modulus=series("secant_modulus"),
-        secant_modulus_standard_uncertainty=series("secant_modulus_standard_uncertainty"),
-    )
 
 
 def source_of_tests(
@@ -166,6 +125,7 @@ def source_of_tests(
     pieces: list[CurvePiece] = []
     piece_sources: list[str] = []
     notes = [f"of other specimens: {', '.join(others)}"] if others else []
+    alone: list[str] = []
     for one in own:
         test = str(one.attrs.get("test", "")) if one_campaign else _id(one)
         whole = str(one.attrs.get("part_of", ""))
@@ -177,6 +137,7 @@ def source_of_tests(
             notes.append(f"{test} ({one.attrs.get('test_kind', 'unknown')}) has no {branch} curve")
             continue
         pieces += found
+        alone += [] if keeps_shared(one) else [test]
         piece_sources += [_said(one)] * len(found)
         place = specimens_of(one).index(specimen)
         slips = int(one["n_slips"].values[place]) if "n_slips" in one else 0
@@ -187,6 +148,11 @@ def source_of_tests(
             f"no test of '{specimen}' gives a {branch} curve of tension over strain",
             found=", ".join(f"{_id(one)} ({one.attrs.get('test_kind', '')})" for one in own),
             needed="cycles, a first rise, weights or a slow pull",
+        )
+    if alone:
+        notes.append(
+            f"{', '.join(alone)}: what is shared with other tests, as a load cell, is not kept "
+            "apart: all that is known of the uncertainty counts as that of the piece alone"
         )
     models = [strain_model_of(one, specimens_of(one).index(specimen)) for one in own]
     known = [model for model in models if model is not None]

@@ -13,10 +13,10 @@ from reduction.campaign.faults import in_toml
 from reduction.campaign.quantities import Number, TableReader
 from reduction.campaign.toml import read_toml
 from reduction.errors import SettingsError
-from reduction.lookup.assembly import SeriesPart
-from reduction.lookup.composite import CompositeRule
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.pieces import PieceBranch, PieceKind
 from reduction.lookup.splices import StatedSplices
+from reduction.lookup.tethers import SeriesPart
 from reduction.pipeline.deployed import WorkingLevel
 
 __all__ = [

@@ -9,9 +9,10 @@ import numpy as np
 
 from reduction.campaign.assemblyspec import AssemblyCase, load_assembly_case
 from reduction.campaign.faults import in_toml
+from reduction.cli.assemblydocument import assembly_document
 from reduction.cli.composite import PAGE, table_format
 from reduction.cli.compositesource import piece_source
-from reduction.cli.numbers import plain, short, table_of
+from reduction.cli.numbers import short, table_of
 from reduction.cli.outcome import Outcome
 from reduction.errors import DataError, ReductionError
 from reduction.export.fromassembly import assembly_table
@@ -41,7 +42,7 @@ def assemble_spec(path: Path, *, out: Path | None, outcome: Outcome) -> None:
         else:
             export_table(assembly_table(line), form, out, units=units)
         outcome.say(f"written: {out}")
-    outcome.answer(_document(line) | {"out": None if out is None else str(out)})
+    outcome.answer(assembly_document(line) | {"out": None if out is None else str(out)})
 
 
 def deployed_line(path: Path) -> DeployedLine:
@@ -155,11 +156,13 @@ def _show(line: DeployedLine, outcome: Outcome, system: UnitSystem) -> None:
     equal = line.is_equal
     table = table_of(
         f"length [{length}]", f"tension [{force}]", f"standard uncertainty [{force}]",
+        f"of it shared [{force}]",
         f"EA, +- 5 % [{force}]", f"EA, local [{force}]",
         f"a tether [{force}]" if equal else f"greatest, least [{force}]",
         "its strain [%]" if equal else "strains [%]", "remark", texts=0,
     )  # fmt: skip
     tension = assembly.tension
+    shared = per_newton * assembly.shared_standard_uncertainty
     rows = np.searchsorted(tension, np.linspace(0.0, tension[-1], _ROWS))
     for place in np.unique(np.clip(rows, 0, tension.size - 1)):
         load, strain = assembly.tether_tension[:, place], assembly.tether_strain[:, place]
@@ -167,6 +170,7 @@ def _show(line: DeployedLine, outcome: Outcome, system: UnitSystem) -> None:
             short(per_metre * float(assembly.total_length[place])),
             short(per_newton * float(tension[place])),
             short(per_newton * float(assembly.standard_uncertainty[place]), 3),
+            short(float(shared[place]), 3),
             short(per_newton * float(deployed.secant_spring_constant[place]), 4),
             short(per_newton * float(deployed.apparent_spring_constant[place]), 4),
             _pair(per_newton * load, equal=equal),
@@ -234,69 +238,3 @@ def _show_working(number: int, state: WorkingState, outcome: Outcome, system: Un
             f"{per_newton * float(state.sharing.greatest_load):.4g} {force} at the mean"
         )
     outcome.say(told + ("" if point.is_tested else "; NOT TESTED there"))
-
-
-def _document(line: DeployedLine) -> dict[str, Any]:
-    """What ``--json`` says, in SI."""
-    deployed, assembly = line.deployed, line.deployed.assembly
-    return {
-        "name": line.name,
-        "n_tethers": assembly.n_tethers,
-        "free_length": plain(np.array(deployed.free_length)),
-        "slack_length": plain(assembly.slack_length),
-        "total_length": plain(assembly.total_length),
-        "tension": plain(assembly.tension),
-        "tension_standard_uncertainty": plain(assembly.standard_uncertainty),
-        "strain": plain(deployed.strain),
-        "apparent_spring_constant": plain(deployed.apparent_spring_constant),
-        "secant_spring_constant": plain(deployed.secant_spring_constant),
-        "tether_length": plain(assembly.tether_length),
-        "tether_tension": plain(assembly.tether_tension),
-        "tether_strain": plain(assembly.tether_strain),
-        "is_tested": plain(assembly.is_tested),
-        "is_join": plain(assembly.is_join),
-        "is_moved": plain(assembly.is_moved),
-        "units": {
-            **dict.fromkeys(
-                ("free_length", "slack_length", "total_length", "tether_length", "peak_length",
-                 "minimum_length"), "m",
-            ),
-            **dict.fromkeys(
-                ("tension", "tension_standard_uncertainty", "apparent_spring_constant",
-                 "secant_spring_constant",
-                 "tether_tension", "mean_tension", "peak_tension", "minimum_tension",
-                 "peak_tether_tension", "minimum_tether_tension", "greatest_load", "least_load",
-                 "tension_at_slack"), "N",
-            ),
-            **dict.fromkeys(
-                ("strain", "tether_strain", "load_share", "peak_share", "minimum_share"), "1"
-            ),
-            "stiffness": "N m-1",
-        },
-        "working": [_state_document(state) for state in deployed.working],
-        "sources": [line.splices, *line.source.sources],
-        "notes": [*deployed.notes, *line.curve.notes, *line.source.notes],
-        "synthetic": line.source.is_synthetic,
-    }  # fmt: skip
-
-
-def _state_document(state: WorkingState) -> dict[str, Any]:
-    names = (
-        "mean_tension", "peak_tension", "minimum_tension", "total_length", "peak_length",
-        "minimum_length", "stiffness", "apparent_spring_constant", "tether_tension",
-        "peak_tether_tension", "minimum_tether_tension", "load_share", "peak_share",
-        "minimum_share", "is_tested",
-    )  # fmt: skip
-    sharing = None if state.sharing is None else {
-        name: plain(getattr(state.sharing, name))
-        for name in ("greatest_load", "least_load", "tension_at_slack")
-    }  # fmt: skip
-    return {
-        "given": state.level.quantity,
-        **{name: plain(getattr(state.point, name)) for name in names},
-        "tension_standard_uncertainty": state.standard_uncertainty,
-        "secant_spring_constant": state.secant_spring_constant,
-        "is_moved": state.is_moved,
-        "tether_strain": plain(state.strain),
-        "sharing": sharing,
-    }

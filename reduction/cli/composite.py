@@ -14,13 +14,16 @@ from reduction.cli.outcome import Outcome
 from reduction.errors import SettingsError
 from reduction.export.fromcomposite import composite_table, ranges_of
 from reduction.export.write import export_table
-from reduction.lookup.composite import CompositeCurve, CompositeRule
+from reduction.lookup.composite import CompositeCurve
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.pieces import PieceBranch
 from reduction.lookup.source import PieceSource, compose, used_of
+from reduction.record import Floats
 from reduction.report.curvepage import write_composite_page
+from reduction.uncertainty.product import Component
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["PAGE", "compose_tests", "table_format"]
+__all__ = ["PAGE", "compose_tests", "contributions", "table_format"]
 
 _ROWS = 24
 _SHOWN = 1e-3
@@ -80,12 +83,14 @@ def _show(source: PieceSource, curve: CompositeCurve, outcome: Outcome, system: 
     doubt = f"; DOUBTFUL: {curve.doubt}" if curve.doubt else ""
     outcome.say(f"{composite_table(source, curve).title}{made}{doubt}")
     table = table_of(
-        "strain [%]", f"tension [{unit}]", f"standard uncertainty [{unit}]", "piece", "remark",
+        "strain [%]", f"tension [{unit}]", f"standard uncertainty [{unit}]",
+        f"of it shared [{unit}]", "piece", "remark",
         texts=0,
     )  # fmt: skip
     ends = np.flatnonzero(np.diff(curve.is_gap)) + 1
     some = np.linspace(0, curve.strain.size - 1, _ROWS).round().astype(int)
     is_moved = np.abs(np.nan_to_num(curve.monotone_change)) > _SHOWN * curve.tension
+    shared = factor * curve.shared_standard_uncertainty
     for place in np.union1d(ends, some):
         flags = [
             word
@@ -101,6 +106,7 @@ def _show(source: PieceSource, curve: CompositeCurve, outcome: Outcome, system: 
             short(100 * float(curve.strain[place]), 4),
             short(factor * float(curve.tension[place])),
             short(factor * float(curve.standard_uncertainty[place]), 3),
+            short(float(shared[place]), 3),
             curve.piece_words[curve.piece[place]] if curve.piece[place] >= 0 else "-",
             ", ".join(flags),
         )
@@ -111,6 +117,14 @@ def _show(source: PieceSource, curve: CompositeCurve, outcome: Outcome, system: 
         outcome.say(f"note: {text}")
     for text in source.sources:
         outcome.say(f"source: {text}")
+
+
+def contributions(component: Sequence[Component], rows: Floats) -> list[dict[str, Any]]:
+    """What each shared error adds to a curve, signed, as ``--json`` says it."""
+    return [
+        {"source": one.source, "of": one.of, "number": one.number, "contribution": plain(row)}
+        for one, row in zip(component, rows, strict=True)
+    ]
 
 
 def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -> dict[str, Any]:
@@ -126,9 +140,14 @@ def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -
         "strain": plain(curve.strain),
         "tension": plain(curve.tension),
         "tension_standard_uncertainty": plain(curve.standard_uncertainty),
+        "tension_random_standard_uncertainty": plain(curve.random_standard_uncertainty),
+        "tension_shared_standard_uncertainty": plain(curve.shared_standard_uncertainty),
+        "tension_uncertainty_contributions": contributions(curve.component, curve.contribution),
         "piece": [curve.piece_words[one] if one >= 0 else None for one in curve.piece],
         "units": {
             "strain": "1", "tension": "N", "tension_standard_uncertainty": "N",
+            "tension_random_standard_uncertainty": "N",
+            "tension_shared_standard_uncertainty": "N", "tension_uncertainty_contributions": "N",
             "joins": "1", "gaps": "1", "moved": "1", "monotone_change": "N",
             "between_pieces": "1",
         },

@@ -13,7 +13,7 @@ from reduction.archive.open import open_archive
 from reduction.archive.pieces import source_of_tests, specimens_of
 from reduction.archive.products import archives_of_tests
 from reduction.errors import SettingsError
-from reduction.lookup.composite import CompositeRule
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.pieces import PieceBranch, PieceKind
 from reduction.lookup.source import PieceSource
 from reduction.published.linesource import published_sources

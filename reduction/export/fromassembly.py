@@ -39,8 +39,16 @@ def assembly_table(line: DeployedLine) -> ValueTable:
         TableColumn("total_length", "m", "end to end", np.array(assembly.total_length)),
         TableColumn("tension", "N", "of the assembly", np.array(assembly.tension)),
         TableColumn(
-            "tension_standard_uncertainty", "N", "of the curve, at one length",
-            np.array(assembly.standard_uncertainty),
+            "tension_standard_uncertainty", "N", "of the curve, at one length: of both parts "
+            "that follow", np.array(assembly.standard_uncertainty),
+        ),
+        TableColumn(
+            "tension_random_standard_uncertainty", "N", "of the curve by itself",
+            np.array(assembly.random_standard_uncertainty),
+        ),
+        TableColumn(
+            "tension_shared_standard_uncertainty", "N", "of what its tests share with each other "
+            "and with other tests, as a load cell", np.array(assembly.shared_standard_uncertainty),
         ),
         TableColumn(
             "strain", "1", "of the length at which the assembly goes slack",

@@ -75,8 +75,18 @@ def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
             TableColumn("strain", "1", "nominal strain", np.array(curve.strain)),
             TableColumn("tension", "N", "tension", np.array(curve.tension)),
             TableColumn(
-                "tension_standard_uncertainty", "N", "of the pieces, of what is between them, and "
-                "of what making the curve rise has moved", np.array(curve.standard_uncertainty),
+                "tension_standard_uncertainty", "N", "of both parts that follow",
+                np.array(curve.standard_uncertainty),
+            ),
+            TableColumn(
+                "tension_random_standard_uncertainty", "N", "of the pieces by themselves, of what "
+                "is between them, and of what making the curve rise has moved",
+                np.array(curve.random_standard_uncertainty),
+            ),
+            TableColumn(
+                "tension_shared_standard_uncertainty", "N", "of what the tests share with each "
+                "other and with other tests, as a load cell",
+                np.array(curve.shared_standard_uncertainty),
             ),
             TableColumn("piece", "", "with the greatest weight; none in a gap", piece),
             TableColumn(

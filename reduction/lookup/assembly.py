@@ -23,77 +23,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.checks import as_positive
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.composite import CompositeCurve
+from reduction.lookup.tethers import SeriesPart, Tether
 from reduction.record import Bools, Floats, freeze_arrays
-from reduction.strain.inverse import position_by_model, with_free_length
-from reduction.strain.model import StrainModel
+from reduction.strain.inverse import position_by_model
+from reduction.uncertainty.combine import combined_standard_uncertainty
+from reduction.uncertainty.join import stacked
+from reduction.uncertainty.product import Component, Contributions
 
-__all__ = ["AssemblyCurve", "SeriesPart", "Tether", "assemble", "equal_tethers", "unequal_tethers"]
+__all__ = ["AssemblyCurve", "assemble"]
 
 # nodes of tension beside those of the curve: denser near slack, where splices stretch fastest
 _N_NODES = 400
 _APART = 1e-9
 """Share of the range of lengths that two nodes are apart."""
-
-
-@dataclass(frozen=True)
-class Tether:
-    """A tether with its splices.
-
-    Parameters
-    ----------
-    curve : CompositeCurve
-        Tension against strain of the free length. [SI]
-    model : StrainModel
-        How strain and tension give its length, thimble to thimble: the strain correction.
-    """
-
-    curve: CompositeCurve
-    model: StrainModel
-
-
-@dataclass(frozen=True)
-class SeriesPart:
-    """A part in line with the tethers.
-
-    Parameters
-    ----------
-    name : str
-        Chain, bridle, swivel, wire ...
-    length : float
-        Without tension. [m]
-    spring_constant : float
-        EA, force per unit strain; infinite where it is rigid. [N]
-    curve : CompositeCurve or None
-        In place of a spring constant.
-    """
-
-    name: str
-    length: float
-    spring_constant: float = float("inf")
-    curve: CompositeCurve | None = None
-
-    def __post_init__(self) -> None:
-        """Refuse a part that is no part."""
-        if not self.length >= 0:
-            raise SettingsError(
-                f"{self.name} has no length", found=f"{self.length:g} m", needed="zero or above"
-            )
-        if not self.spring_constant > 0:
-            raise SettingsError(
-                f"the spring constant of {self.name} is not positive",
-                found=f"{self.spring_constant:g} N",
-                needed="above zero",
-            )
-
-    def length_at(self, tension: ArrayLike) -> Floats:
-        """Length [m] at a tension [N]; NaN beyond a curve."""
-        load = np.asarray(tension, dtype=np.float64)
-        if self.curve is not None:
-            return np.asarray(self.length * (1 + self.curve.strain_at(load)))
-        return np.asarray(self.length * (1 + load / self.spring_constant))
 
 
 @dataclass(frozen=True)
@@ -105,7 +49,14 @@ class AssemblyCurve:
     total_length, tension : ndarray
         End to end, both rising; the first is where the assembly goes slack, at zero. [m], [N]
     standard_uncertainty : ndarray
-        Of the tension at one length: that of the curves, which all tethers share. [N]
+        Of the tension at one length: that of the curves, which all tethers share; both parts that
+        follow, together. [N]
+    random_standard_uncertainty : ndarray
+        Of the curves by themselves. [N]
+    component : tuple of Component, length n_components
+        Errors that the curves share with others.
+    contribution : ndarray, shape (n_components, n)
+        What each of them adds to the tension at one length, signed. [N]
     tether_length : ndarray
         Thimble to thimble, one for all. [m]
     tether_tension : ndarray, shape (n_tethers, n)
@@ -124,6 +75,9 @@ class AssemblyCurve:
     total_length: Floats
     tension: Floats
     standard_uncertainty: Floats
+    random_standard_uncertainty: Floats
+    component: tuple[Component, ...]
+    contribution: Floats
     tether_length: Floats
     tether_tension: Floats
     tether_strain: Floats
@@ -141,6 +95,11 @@ class AssemblyCurve:
         """Tethers side by side."""
         return int(self.tether_tension.shape[0])
 
+    @property
+    def shared_standard_uncertainty(self) -> Floats:
+        """Of the tension by what is shared with others, all errors together. [N]."""
+        return np.asarray(np.sqrt(np.sum(self.contribution**2, axis=0)))
+
     def tension_at(self, total_length: ArrayLike) -> Floats:
         """Tension [N] at a length [m]; zero where it is slack, NaN beyond the curves."""
         at = np.asarray(total_length, dtype=np.float64)
@@ -151,6 +110,14 @@ class AssemblyCurve:
         at = np.asarray(tension, dtype=np.float64)
         return np.interp(at, self.tension, self.total_length, left=np.nan, right=np.nan)
 
+    def uncertainty_at(self, total_length: float) -> tuple[float, float, float]:
+        """Standard uncertainty of the tension [N] at a length [m]: both parts, random, shared."""
+        random, *rows = (
+            float(np.interp(total_length, self.total_length, one))
+            for one in (self.random_standard_uncertainty, *self.contribution)
+        )
+        return float(np.hypot(random, np.linalg.norm(rows))), random, float(np.linalg.norm(rows))
+
     def loads_at(self, tension: ArrayLike) -> Floats:
         """Load of each tether [N] at a tension of the assembly [N], shape (n_tethers, ...)."""
         at = np.asarray(tension, dtype=np.float64)
@@ -159,73 +126,6 @@ class AssemblyCurve:
             for row in self.tether_tension
         ]
         return np.stack(rows)
-
-
-def equal_tethers(tether: Tether, n_tethers: int) -> tuple[Tether, ...]:
-    """Return tethers that are all alike.
-
-    Parameters
-    ----------
-    tether : Tether
-        One of them.
-    n_tethers : int
-        How many. [1]
-
-    Returns
-    -------
-    tethers : tuple of Tether
-        The same one again and again.
-
-    Raises
-    ------
-    SettingsError
-        If there are none.
-
-    Notes
-    -----
-    Assemblies of [1]_ have one, four and six (sec. 2.3.2).
-
-    Examples
-    --------
-    See `assemble`.
-    """
-    if n_tethers < 1:
-        raise SettingsError("an assembly has tethers", found=str(n_tethers), needed="1 or more")
-    return (tether,) * n_tethers
-
-
-def unequal_tethers(tether: Tether, free_length: ArrayLike) -> tuple[Tether, ...]:
-    """Return tethers of one material and one kind of splice, cut to lengths of their own.
-
-    Parameters
-    ----------
-    tether : Tether
-        As it was tested.
-    free_length : array_like, shape (n_tethers,)
-        Relaxed, splice toe to splice toe. [m]
-
-    Returns
-    -------
-    tethers : tuple of Tether
-        In that order.
-
-    Raises
-    ------
-    DataError
-        If a length is not positive, or the strain method knows no splice apart.
-
-    Notes
-    -----
-    The shortest carries most; a load that all share equally is that of equal lengths.
-
-    Examples
-    --------
-    See `reduction.lookup.working.worst_sharing`.
-    """
-    lengths = np.atleast_1d(as_positive("free_length", free_length))
-    return tuple(
-        Tether(tether.curve, with_free_length(tether.model, float(length))) for length in lengths
-    )
 
 
 def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> AssemblyCurve:
@@ -256,7 +156,9 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
     ([1]_, sec. 2.3.2: a swivel has to turn, or the tethers do not share).  A part is straight at
     zero tension.  The splices stretch by the tension they carry, as in the test: the length is
     the inverse of the strain correction.  The uncertainty is that of the curve, which equal
-    tethers share in full; the splice law's and the tolerance of the lengths are not in it.
+    tethers share in full; curves that differ share what their tests do, by its sign, and are
+    independent in the rest.  That of the splices, of the tolerance of the lengths and of parts in
+    line is not in it.
 
     Examples
     --------
@@ -264,6 +166,8 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
 
     >>> from reduction.lookup.composite import composite_curve
     >>> from reduction.lookup.pieces import CurvePiece
+    >>> from reduction.lookup.tethers import equal_tethers
+    >>> from reduction.strain.model import StrainModel
     >>> at = np.linspace(0.1, 2.0, 20)
     >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
     >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
@@ -274,9 +178,9 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
     if not tethers:
         raise SettingsError("an assembly has tethers", found="none", needed="1 or more")
     own = [_lengths(one) for one in tethers]
-    begin = min(length[0] for length, *_ in own)
-    end = min(length[-1] for length, *_ in own)
-    last = max(length[0] for length, *_ in own)
+    begin = min(one.length[0] for one in own)
+    end = min(one.length[-1] for one in own)
+    last = max(one.length[0] for one in own)
     if last >= end:
         raise DataError(
             "a tether is at the end of its curve before another one is taut",
@@ -284,11 +188,12 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
             needed=f"above {last:.4g} m",
             hint="Their lengths differ by more than their stretch.",
         )
-    nodes = np.unique(np.concatenate([length for length, *_ in own]))
+    nodes = np.unique(np.concatenate([one.length for one in own]))
     nodes = nodes[(nodes >= begin) & (nodes <= end)]
-    load = np.stack([np.interp(nodes, length, force, left=0.0) for length, force, *_ in own])
-    stretch = np.stack([np.interp(nodes, length, strain, left=0.0) for length, _, strain, _ in own])
-    spread = sum(np.interp(nodes, length, doubt, left=0.0) for length, *_, doubt in own)
+    load = np.stack([one.at(nodes, one.tension) for one in own])
+    stretch = np.stack([one.at(nodes, one.strain) for one in own])
+    spread = _random(tethers, np.stack([one.at(nodes, one.random) for one in own]))
+    shared = stacked([one.shared_at(nodes) for one in own])
     pairs = list(zip(tethers, stretch, strict=True))
     tested = ~np.any([_has(one.curve, one.curve.is_gap, row) for one, row in pairs], axis=0)
     joined = np.any([_has(one.curve, one.curve.is_join, row) for one, row in pairs], axis=0)
@@ -304,11 +209,16 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
     total, nodes, tension = total[kept], nodes[kept], tension[kept]
     # compliance in line takes its share of what the tension is wrong by at one length
     stiffness = np.gradient(tension, total) / np.gradient(tension, nodes)
-    slack = np.interp([length[0] for length, *_ in own], nodes, total)
+    slack = np.interp([one.length[0] for one in own], nodes, total)
+    random = spread[kept] * stiffness
+    moved_by = shared.values["tension"].sum(axis=1)[:, kept] * stiffness
     return AssemblyCurve(
         total_length=total,
         tension=tension,
-        standard_uncertainty=np.asarray(spread)[kept] * stiffness,
+        standard_uncertainty=combined_standard_uncertainty(moved_by, random),
+        random_standard_uncertainty=random,
+        component=shared.component,
+        contribution=moved_by,
         tether_length=nodes,
         tether_tension=load[:, kept],
         tether_strain=stretch[:, kept],
@@ -319,8 +229,38 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
     )
 
 
-def _lengths(tether: Tether) -> tuple[Floats, Floats, Floats, Floats]:
-    """Length, tension, strain, and uncertainty of the tension at one length, on nodes."""
+@dataclass(frozen=True)
+class _Loaded:
+    """A tether on nodes of its tension; what is random and ``moved`` is of that at one length."""
+
+    length: Floats
+    tension: Floats
+    strain: Floats
+    random: Floats
+    component: tuple[Component, ...]
+    moved: Floats
+
+    def at(self, length: Floats, values: Floats) -> Floats:
+        """Values at lengths; zero where it is slack."""
+        return np.interp(length, self.length, values, left=0.0)
+
+    def shared_at(self, length: Floats) -> Contributions:
+        """Contributions to ``tension`` at lengths."""
+        rows = np.array([self.at(length, row) for row in self.moved])
+        return Contributions(self.component, {"tension": rows.reshape(-1, length.size)})
+
+
+def _random(tethers: Sequence[Tether], spread: Floats) -> Floats:
+    """What is not shared with other curves: in full by tethers of one curve, else as squares."""
+    curves = [id(one.curve) for one in tethers]
+    of_curves = [
+        spread[[own == curve for own in curves]].sum(axis=0) for curve in dict.fromkeys(curves)
+    ]
+    return np.asarray(np.sqrt(np.sum(np.square(of_curves), axis=0)))
+
+
+def _lengths(tether: Tether) -> _Loaded:
+    """Length, strain, and uncertainty of the tension at one length, on nodes of tension."""
     curve = tether.curve
     fine = curve.tension[-1] * np.linspace(0.0, 1.0, _N_NODES) ** 2
     force = np.union1d(curve.tension, fine)
@@ -336,10 +276,13 @@ def _lengths(tether: Tether) -> tuple[Floats, Floats, Floats, Floats]:
             needed="a length that rises",
         )
     free = position_by_model(tether.model, strain=strain, tension=np.zeros(force.size))
-    of_curve = np.interp(strain, curve.strain, curve.standard_uncertainty)
     # splices take their share of what the curve is wrong by at one length
     share = np.gradient(free, force) / np.gradient(length, force)
-    return length, force, strain, of_curve * share
+    random, *rows = (
+        np.interp(strain, curve.strain, one) * share
+        for one in (curve.random_standard_uncertainty, *curve.contribution)
+    )
+    return _Loaded(length, force, strain, random, curve.component, np.array(rows))
 
 
 def _has(curve: CompositeCurve, flags: Bools, strain: Floats) -> Bools:

@@ -14,8 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import isotonic_regression
 
+from reduction.lookup.betweenpieces import beside_loops, between_pieces, variance_apart
 from reduction.lookup.pieces import CurvePiece, PieceKind
 from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.uncertainty.join import stacked
+from reduction.uncertainty.product import Component
 
 __all__ = ["Blend", "blend_pieces"]
 
@@ -38,7 +41,13 @@ class Blend:
     Parameters
     ----------
     strain, tension, variance : ndarray
-        Nodes that a piece reaches, the rising curve [N], its variance [N2].
+        Nodes that a piece reaches, the rising curve [N], its variance but for what is shared [N2].
+    component : tuple of Component, length n_components
+        Errors that pieces share.
+    contribution : ndarray, shape (n_components, n)
+        What each of them adds to the rising curve, signed. [N]
+    variance_apart : ndarray
+        By which a piece may lie off the curve: without what all pieces share. [N2]
     change : ndarray
         Of the rising curve from the weighted mean. [N]
     piece : ndarray of int
@@ -57,6 +66,9 @@ class Blend:
     strain: Floats
     tension: Floats
     variance: Floats
+    component: tuple[Component, ...]
+    contribution: Floats
+    variance_apart: Floats
     change: Floats
     piece: Integers
     is_covered: Bools
@@ -106,6 +118,9 @@ def blend_pieces(
     say where that one reaches, and what it differs by from it there is in its uncertainty beyond,
     a straight line between the strains where that is known.  Other kinds hand over inside.
 
+    What pieces share is in their mean by its sign, and has no say in how they are weighted as far
+    as all of them have it; the curve that rises has the same share of it.
+
     Examples
     --------
     >>> at = np.array([0.5, 1.0])
@@ -115,32 +130,40 @@ def blend_pieces(
     """
     strain, is_covered = _grid(pieces, n_points)
     tension, variance, fade = _on_grid(pieces, strain, taper)
+    shared = stacked([one.shared_at(strain) for one in pieces])
+    rows = shared.values["tension"] * (fade > 0)
+    apart = variance_apart(pieces, strain, tension)
     simple = (fade * tension).sum(axis=0) / fade.sum(axis=0)
-    between = _between(pieces, tension, variance, fade > 0)
-    apart = _beside_loops(pieces, strain, tension, fade > 0)
+    between = between_pieces(pieces, tension, variance, rows, fade > 0)
+    beside = beside_loops(pieces, strain, tension, fade > 0)
     is_first = np.array([one.kind == "first-loading" for one in pieces])
     # of the kind of each piece: rises from slack differ by far more than cycles do
     own_kind = np.nan_to_num([between[one.kind] for one in pieces])[:, None]
-    shared = np.hypot(own_kind, is_first[:, None] * np.nan_to_num(apart)) * simple
-    weight = fade / np.maximum(variance + shared**2, (_LEAST_UNCERTAINTY * simple) ** 2)
+    differs = np.hypot(own_kind, is_first[:, None] * np.nan_to_num(beside)) * simple
+    least = (_LEAST_UNCERTAINTY * simple) ** 2
+    weight = fade / np.maximum(variance + apart + differs**2, least)
     total = weight.sum(axis=0)
     share = weight / total
     mean = (share * tension).sum(axis=0)
     middle = (share[:, 1:] + share[:, :-1]) / 2
-    least = _least_slopes(strain, tension, mean, middle, is_covered, least_slope)
-    rising = _rising(strain, mean, total * _widths(strain, is_covered), least)
+    slopes = _least_slopes(strain, tension, mean, middle, is_covered, least_slope)
+    rising = _rising(strain, mean, total * _widths(strain, is_covered), slopes)
     off = (share * (tension - mean) ** 2).sum(axis=0)
     own = (share * variance).sum(axis=0)
+    own += np.maximum(off, (share * differs**2).sum(axis=0)) + (rising - mean) ** 2
     return Blend(
         strain=strain,
         tension=rising,
-        variance=own + np.maximum(off, (share * shared**2).sum(axis=0)) + (rising - mean) ** 2,
+        variance=own,
+        component=shared.component,
+        contribution=(share * rows).sum(axis=1) * (rising / mean),
+        variance_apart=own + (share * apart).sum(axis=0),
         change=rising - mean,
         piece=share.argmax(axis=0),
         is_covered=is_covered,
         is_join=is_covered & ((middle > _NO_SAY).sum(axis=0) > 1),
         between_pieces=between,
-        beside_loops=float(apart.max()),
+        beside_loops=float(beside.max()),
         farthest=np.where(share > _NO_SAY, np.abs(tension - rising), 0.0).max(axis=0),
     )
 
@@ -177,7 +200,7 @@ def _on_grid(
         depth = np.minimum(at - one.strain[0], one.strain[-1] - at)
         depth /= one.strain[-1] - one.strain[0]
         tension[row, inside] = np.interp(at, one.strain, one.tension)
-        variance[row, inside] = np.interp(at, one.strain, one.standard_uncertainty) ** 2
+        variance[row, inside] = np.interp(at, one.strain, one.random_standard_uncertainty) ** 2
         full = np.minimum(depth / taper, 1.0)
         fade[row, inside] = full * (1 - over[inside]) + _LEAST_WEIGHT
         alone = np.minimum(depth / _HAND_OVER, 1.0)
@@ -192,46 +215,6 @@ def _on_grid(
             )
             fade[row, hidden] = _LEAST_WEIGHT**2
     return tension, variance, fade
-
-
-def _beside_loops(
-    pieces: Sequence[CurvePiece], strain: Floats, tension: Floats, known: Bools
-) -> Floats:
-    """Relative difference of first loadings to the kinds before them; NaN where never known."""
-    own = np.array([one.kind == "first-loading" for one in pieces])
-    before = np.cumsum(own) == 0
-    both = known[own].any(axis=0) & known[before].any(axis=0)
-    if not both.any():
-        return np.full(strain.size, np.nan)
-    # tension is zero where a piece is not
-    first, other = (
-        tension[rows][:, both].sum(axis=0) / known[rows][:, both].sum(axis=0)
-        for rows in (own, before)
-    )
-    return np.asarray(np.interp(strain, strain[both], 2 * np.abs(first - other) / (first + other)))
-
-
-def _between(
-    pieces: Sequence[CurvePiece], tension: Floats, variance: Floats, known: Bools
-) -> dict[PieceKind, float]:
-    """Relative deviation between pieces of each kind, by pairs, less their own variance."""
-    found = {one.kind: 0.0 for one in pieces}
-    count = dict.fromkeys(found, 0)
-    for first, one in enumerate(pieces):
-        for second in range(first + 1, len(pieces)):
-            both = known[first] & known[second]
-            if pieces[second].kind != one.kind or np.count_nonzero(both) < 2:
-                continue
-            level = (tension[first, both] + tension[second, both]) / 2
-            apart = (tension[first, both] - tension[second, both]) ** 2
-            own = variance[first, both] + variance[second, both]
-            # two draws of one deviation are apart by twice its variance
-            found[one.kind] += float((((apart - own) / level**2) / 2).sum())
-            count[one.kind] += int(np.count_nonzero(both))
-    return {
-        kind: float(np.sqrt(max(sum_, 0.0) / count[kind])) if count[kind] else float("nan")
-        for kind, sum_ in found.items()
-    }
 
 
 def _widths(strain: Floats, is_covered: Bools) -> Floats:

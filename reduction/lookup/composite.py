@@ -5,9 +5,9 @@ The curve y is the one that rises and is nearest to all pieces T_i:
 .. math:: \min_y \int \sum_i w_i(\varepsilon)\,(y - T_i)^2\,d\varepsilon, \quad
    y' \ge b\,\min_i T_i', \qquad w_i = \frac{h_i\,g_i}{u_i^2 + (s\,\bar T)^2}
 
-u_i is the uncertainty of a piece (type A), s the relative deviation between pieces of its kind
-where they overlap, h_i falls to zero towards the ends of a piece, and g_i hands over to pieces
-of a kind that goes before.  Without the constraint the answer is the weighted mean.
+u_i is the uncertainty of a piece but for what all of them share, s the relative deviation between
+pieces of its kind where they overlap, h_i falls to zero towards the ends of a piece, and g_i hands
+over to pieces of a kind that goes before.  Without the constraint the answer is the weighted mean.
 
 References
 ----------
@@ -20,75 +20,26 @@ References
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.blend import Blend, blend_pieces
-from reduction.lookup.pieces import CurvePiece, PieceKind
+from reduction.errors import DataError
+from reduction.lookup.blend import blend_pieces
+from reduction.lookup.compositerule import CompositeRule
+from reduction.lookup.compositewords import doubt_of, notes_of
+from reduction.lookup.pieces import CurvePiece
 from reduction.lookup.product import LineCurve
 from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.uncertainty.combine import combined_standard_uncertainty
+from reduction.uncertainty.product import Component
 
-__all__ = ["CompositeCurve", "CompositeRule", "composite_curve", "composite_line_curve"]
+__all__ = ["CompositeCurve", "composite_curve", "composite_line_curve"]
 
-_KINDS: tuple[PieceKind, ...] = ("cyclic", "static", "first-loading")
 _MOVED = 1e-9
-_FAR = 2.0
-_LITTLE = 0.03
 _TANGENT_NODES = 5
-
-
-@dataclass(frozen=True)
-class CompositeRule:
-    """How pieces become one curve.
-
-    Parameters
-    ----------
-    precedence : tuple of str
-        Kinds, the one that counts first where it exists; kinds that are not named are not used.
-    taper : float
-        Share of a piece, at each end, over which its weight falls to zero; 0.5 makes the weight
-        a triangle over the whole piece.
-    least_slope : float
-        Share b of the least slope of the pieces there, below which that of the curve may not
-        fall: 0 lets it run level where pieces fall, 1 keeps every slope and moves levels more.
-    n_points : int
-        Of the grid over all pieces; ends of pieces are added.
-    """
-
-    precedence: tuple[PieceKind, ...] = _KINDS
-    taper: float = 0.5
-    least_slope: float = 0.5
-    n_points: int = 401
-
-    def __post_init__(self) -> None:
-        """Refuse a rule that cannot be followed."""
-        if not self.precedence or set(self.precedence) - set(_KINDS):
-            raise SettingsError(
-                "the precedence names no kind of piece",
-                found=", ".join(self.precedence) or "nothing",
-                needed="of " + ", ".join(_KINDS),
-            )
-        if len(set(self.precedence)) < len(self.precedence):
-            raise SettingsError(
-                "the precedence names a kind twice", found=", ".join(self.precedence)
-            )
-        if not 0 < self.taper <= 0.5:
-            raise SettingsError(
-                "the taper is a share of a piece", found=f"{self.taper:g}", needed="above 0, to 0.5"
-            )
-        if not 0 <= self.least_slope <= 1:
-            raise SettingsError(
-                "the least slope is a share of that of the pieces",
-                found=f"{self.least_slope:g}",
-                needed="0 to 1",
-            )
-        if self.n_points < 2:
-            raise SettingsError("a grid has two points", found=str(self.n_points))
 
 
 @dataclass(frozen=True)
@@ -100,7 +51,14 @@ class CompositeCurve:
     strain, tension : ndarray, shape (n,)
         [1], [N]
     standard_uncertainty : ndarray, shape (n,)
-        Of the pieces, of their disagreement, and of what making them rise has moved. [N]
+        Both parts that follow, together. [N]
+    random_standard_uncertainty : ndarray, shape (n,)
+        Of the pieces by themselves, of their disagreement, and of what making them rise has moved.
+        [N]
+    component : tuple of Component, length n_components
+        Errors that pieces share with each other, and with other curves.
+    contribution : ndarray, shape (n_components, n)
+        What each of them adds to the tension, signed. [N]
     piece : ndarray of int, shape (n,)
         Index of the piece with the greatest weight; -1 where there is none.
     is_join, is_gap, is_moved : ndarray of bool, shape (n - 1,)
@@ -123,6 +81,9 @@ class CompositeCurve:
     strain: Floats
     tension: Floats
     standard_uncertainty: Floats
+    random_standard_uncertainty: Floats
+    component: tuple[Component, ...]
+    contribution: Floats
     piece: Integers
     is_join: Bools
     is_gap: Bools
@@ -137,6 +98,11 @@ class CompositeCurve:
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze_arrays(self)
+
+    @property
+    def shared_standard_uncertainty(self) -> Floats:
+        """Of the tension by what is shared with others, all errors together. [N]."""
+        return np.asarray(np.sqrt(np.sum(self.contribution**2, axis=0)))
 
     def tension_at(self, strain: ArrayLike) -> Floats:
         """Tension [N] at a strain [1]; zero where it is slack, NaN beyond the last node."""
@@ -179,8 +145,8 @@ def composite_curve(
 
     Notes
     -----
-    *Overlap.*  Pieces of one kind are blended.  Their type A uncertainties are far smaller than
-    what is between them (another state of the rubber), so s decides, and it is one number of a
+    *Overlap.*  Pieces of one kind are blended.  Their own uncertainties are far smaller than what
+    is between them (another state of the rubber), so s decides, and it is one number of a
     kind: the weights are continuous, and so is the mean.
 
     *Monotony.*  Isotonic regression ([2]_) with the weight of all pieces there, of the mean less
@@ -193,7 +159,9 @@ def composite_curve(
 
     *Uncertainty.*  That of a mixture: the mean variance of the pieces, with the greater of their
     variance there and (s T)^2, and the square of the change.  It does not fall with the number
-    of pieces, since they are not draws of one state ([1]_, Figure 35).
+    of pieces, since they are not draws of one state ([1]_, Figure 35).  What pieces share (a load
+    cell) is averaged by its sign, error by error, and added as squares in the end; s is judged
+    without it.
 
     Examples
     --------
@@ -221,6 +189,7 @@ def composite_curve(
     strain = np.concatenate([[0.0], blend.strain])
     tension = np.concatenate([[0.0], blend.tension])
     variance = np.concatenate([[0.0], blend.variance])
+    rows = np.pad(blend.contribution, ((0, 0), (1, 0)))
     is_gap = np.concatenate([[True], ~blend.is_covered])
     gaps = np.flatnonzero(is_gap)
     doubt = _doubt(strain, tension, variance, gaps)
@@ -231,10 +200,15 @@ def composite_curve(
     def of_intervals(flags: Bools) -> Bools:
         return np.insert(flags, gaps, flags[gaps])
 
+    random = np.sqrt(with_middles(variance, doubt))
+    moved_by = np.insert(rows, gaps + 1, (rows[:, gaps] + rows[:, gaps + 1]) / 2, axis=1)
     return CompositeCurve(
         strain=with_middles(strain, (strain[gaps] + strain[gaps + 1]) / 2),
         tension=with_middles(tension, (tension[gaps] + tension[gaps + 1]) / 2),
-        standard_uncertainty=np.sqrt(with_middles(variance, doubt)),
+        standard_uncertainty=combined_standard_uncertainty(moved_by, random),
+        random_standard_uncertainty=random,
+        component=blend.component,
+        contribution=moved_by,
         piece=np.insert(np.concatenate([[-1], blend.piece]), gaps + 1, -1),
         is_join=of_intervals(np.concatenate([[False], blend.is_join])),
         is_gap=of_intervals(is_gap),
@@ -247,23 +221,8 @@ def composite_curve(
         ),
         piece_names=tuple(one.name for one in used),
         piece_words=tuple(one.words for one in used),
-        doubt=_far_off(blend),
-        notes=_notes(used, rule, blend, moved),
-    )
-
-
-def _far_off(blend: Blend) -> str:
-    """Where the curve is not among its pieces by its own uncertainty, in words."""
-    # near slack a little strain is any share of the tension
-    told = blend.farthest > _LITTLE * blend.tension[-1]
-    share = told * blend.farthest / np.sqrt(blend.variance + _MOVED * blend.tension**2)
-    worst = int(np.argmax(share))
-    if share[worst] <= _FAR:
-        return ""
-    far = float(blend.farthest[worst])
-    return (
-        f"up to {share[worst]:.3g} standard uncertainties from a piece: {far:.4g} N "
-        f"({far / blend.tension[worst]:.1%}) at strain {blend.strain[worst]:.4g}"
+        doubt=doubt_of(blend),
+        notes=notes_of(used, rule, blend, moved),
     )
 
 
@@ -288,64 +247,6 @@ def _slopes(strain: Floats, tension: Floats, first: Integers, last: Integers) ->
     """Slope between pairs of nodes; NaN where they are one."""
     apart = np.where(last > first, strain[last] - strain[first], np.nan)
     return (tension[last] - tension[first]) / apart
-
-
-def _notes(
-    pieces: Sequence[CurvePiece], rule: CompositeRule, blend: Blend, moved: Bools
-) -> tuple[str, ...]:
-    named = Counter((one.kind, one.branch, one.name) for one in pieces)
-    used = ", ".join(
-        f"{name} ({kind}, {branch}" + (f", in {count} parts)" if count > 1 else ")")
-        for (kind, branch, name), count in named.items()
-    )
-    strain, change = blend.strain, blend.change
-    notes = [
-        f"tension against strain by {' before '.join(rule.precedence)}, blended over "
-        f"{rule.taper:g} of each piece at its ends: {used}",
-        f"a straight line from zero to strain {strain[0]:.4g}, where the first piece begins",
-    ]
-    notes += [
-        f"no piece between strain {strain[gap]:.4g} and {strain[gap + 1]:.4g}: a straight line"
-        for gap in np.flatnonzero(~blend.is_covered)
-    ]
-    between = {kind: one for kind, one in blend.between_pieces.items() if not np.isnan(one)}
-    if not between:
-        notes.append("no two pieces of one kind overlap: what is between them is not known")
-    notes += [
-        f"{kind} pieces differ by {one:.1%} of tension where they overlap"
-        for kind, one in between.items()
-    ]
-    if not np.isnan(blend.beside_loops):
-        notes.append(
-            f"first loadings differ by up to {blend.beside_loops:.1%} from what goes before them: "
-            "this is in their uncertainty where they stand alone"
-        )
-    if moved.any():
-        share = change / blend.tension
-        worst = int(np.argmax(np.abs(change)))
-        notes.append(
-            f"pieces fall where they hand over: {moved.mean():.0%} of the nodes were moved so that "
-            f"the curve is nowhere softer than {rule.least_slope:g} of the softest piece there, by "
-            f"{np.sqrt(np.mean(change**2)):.4g} N rms, most by {change[worst]:+.4g} N "
-            f"({share[worst]:+.1%}) at strain {strain[worst]:.4g}"
-        )
-        # of all tension: near slack a share says nothing
-        off = float(np.sqrt(np.sum(change**2) / np.sum(blend.tension**2)))
-        apart = next(iter(between.values()), np.inf)
-        if off > apart:
-            several = len({one.kind for one in pieces}) > 1
-            notes.append(
-                f"the curve is {off:.1%} off the mean of its pieces, which differ by {apart:.1%} "
-                "where they overlap: "
-                + (
-                    "they are no pieces of one curve, as loops of a rope and its slow pull are "
-                    "none; name the kinds that are wanted"
-                    if several
-                    else "they hand over between tests in other states; name the tests that are "
-                    "wanted"
-                )
-            )
-    return tuple(notes)
 
 
 def composite_line_curve(curve: CompositeCurve) -> LineCurve:
@@ -382,5 +283,5 @@ def composite_line_curve(curve: CompositeCurve) -> LineCurve:
     return LineCurve(
         "tension", "strain", float(curve.strain[first]), float(curve.strain[-1]),
         at=curve.strain, value=curve.tension, standard_uncertainty=curve.standard_uncertainty,
-        notes=curve.notes,
+        component=curve.component, contribution=curve.contribution, notes=curve.notes,
     )  # fmt: skip

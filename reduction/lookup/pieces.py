@@ -1,4 +1,4 @@
-"""Pieces of a tension-strain curve, from cyclic windows, first pulls and static tests.
+"""Pieces of a tension-strain curve, from cyclic windows and first pulls.
 
 References
 ----------
@@ -9,7 +9,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -18,15 +18,14 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_finite, as_increasing, as_same_shape
 from reduction.errors import DataError, SettingsError
 from reduction.moduli.product import ModulusCurves
-from reduction.moduli.stepwise import StepwiseResult
 from reduction.record import Bools, Floats, freeze_arrays
-from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
+from reduction.uncertainty.product import Component, Contributions
+from reduction.vocabulary import BRANCH_NAMES
 
 __all__ = [
     "CurvePiece",
     "PieceBranch",
     "PieceKind",
-    "piece_of_steps",
     "pieces_of_branches",
     "pieces_of_curves",
 ]
@@ -53,8 +52,13 @@ class CurvePiece:
         Rising, above zero. [1]
     tension : ndarray, shape (n,)
         Above zero. [N]
-    standard_uncertainty : ndarray, shape (n,)
-        Of the tension, type A; zero where not known. [N]
+    random_standard_uncertainty : ndarray, shape (n,)
+        Of the tension, by what is of this piece alone: scatter of its cycles, readings; zero where
+        not known. [N]
+    component : tuple of Component, length n_components
+        Errors that the piece shares with others: of its load cell, its crosshead, its marks.
+    contribution : ndarray, shape (n_components, n)
+        What each of them adds to the tension, signed. [N]
     """
 
     name: str
@@ -62,7 +66,9 @@ class CurvePiece:
     branch: PieceBranch
     strain: Floats
     tension: Floats
-    standard_uncertainty: Floats
+    random_standard_uncertainty: Floats
+    component: tuple[Component, ...] = ()
+    contribution: Floats = field(default_factory=lambda: np.empty((0, 1)))
 
     @property
     def words(self) -> str:
@@ -73,7 +79,7 @@ class CurvePiece:
         """Check that it is a curve, and make the arrays read-only."""
         freeze_arrays(self)
         as_same_shape(
-            strain=self.strain, tension=self.tension, uncertainty=self.standard_uncertainty
+            strain=self.strain, tension=self.tension, uncertainty=self.random_standard_uncertainty
         )
         as_increasing(f"strain of {self.name}", self.strain)
         as_finite(f"tension of {self.name}", self.tension)
@@ -85,13 +91,27 @@ class CurvePiece:
                 found=f"strain {self.strain[0]:.4g}, tension {self.tension.min():.4g} N",
                 needed="strain and tension above zero",
             )
-        as_finite(f"uncertainty of {self.name}", self.standard_uncertainty)
-        if (self.standard_uncertainty < 0).any():
+        as_finite(f"uncertainty of {self.name}", self.random_standard_uncertainty)
+        if (self.random_standard_uncertainty < 0).any():
             raise DataError(
                 f"an uncertainty of {self.name} is negative",
-                found=f"{self.standard_uncertainty.min():.4g} N",
+                found=f"{self.random_standard_uncertainty.min():.4g} N",
                 needed="zero or above",
             )
+        rows = (len(self.component), self.strain.size)
+        if self.component and self.contribution.shape != rows:
+            raise DataError(
+                f"contributions to {self.name} do not fit its errors and points",
+                found=f"shape {self.contribution.shape}",
+                needed=f"{rows}",
+            )
+        as_finite(f"contributions to {self.name}", self.contribution)
+
+    def shared_at(self, strain: Floats) -> Contributions:
+        """Contributions to ``tension`` [N] at strains [1]; beyond an end those of the end."""
+        rows = [np.interp(strain, self.strain, row) for row in self.contribution]
+        table = np.array(rows).reshape(len(self.component), strain.size)
+        return Contributions(self.component, {"tension": table})
 
 
 def _runs(known: Bools) -> list[tuple[int, int]]:
@@ -104,11 +124,12 @@ def _runs(known: Bools) -> list[tuple[int, int]]:
 def pieces_of_branches(
     strain: ArrayLike,
     tension: ArrayLike,
-    standard_uncertainty: ArrayLike,
+    random_standard_uncertainty: ArrayLike,
     *,
     name: str,
     branch: PieceBranch = "mean",
     kind: Literal["cyclic", "first-loading"] = "cyclic",
+    shared: Contributions | None = None,
 ) -> tuple[CurvePiece, ...]:
     """Tension of both branches on one grid of strain, as an archive holds it, as pieces.
 
@@ -116,7 +137,7 @@ def pieces_of_branches(
     ----------
     strain : array_like, shape (n,)
         Rising. [1]
-    tension, standard_uncertainty : array_like, shape (2, n)
+    tension, random_standard_uncertainty : array_like, shape (2, n)
         Ascending, then descending; NaN where not known. [N]
     name : str
         Of the pieces.
@@ -124,6 +145,8 @@ def pieces_of_branches(
         A first rise has only the first one.
     kind : {"cyclic", "first-loading"}, optional
         What the curves are.
+    shared : Contributions, optional
+        To ``tension``, shape (n_components, 2, n); NaN where nothing is known adds nothing. [N]
 
     Returns
     -------
@@ -140,7 +163,9 @@ def pieces_of_branches(
     Notes
     -----
     The mean branch runs through the middle of the loop ([1]_, Figure 21): it is neither way of
-    the loop, and has no tangent modulus that was measured.  Points that are slack are left out.
+    the loop, and has no tangent modulus that was measured.  What both branches share is in their
+    mean as it is, by its sign; what scatters is less by the root of 2.  Points that are slack are
+    left out.
 
     Examples
     --------
@@ -152,22 +177,36 @@ def pieces_of_branches(
     if kind == "first-loading" and branch != "ascending":
         raise SettingsError("a first rise only rises", found=branch, needed="branch = ascending")
     grid = as_increasing("strain", strain)
-    load, spread = as_same_shape(tension=tension, standard_uncertainty=standard_uncertainty)
+    load, spread = as_same_shape(
+        tension=tension, random_standard_uncertainty=random_standard_uncertainty
+    )
     if load.shape != (2, grid.size):
         raise DataError(
             "tension is not that of two branches on the grid of strain",
             found=f"shape {load.shape}",
             needed=f"(2, {grid.size})",
         )
+    known_errors = shared or Contributions((), {"tension": np.empty((0, 2, grid.size))})
+    moved = np.nan_to_num(known_errors.values["tension"])
     if branch == "mean":
         level, uncertainty = load.mean(axis=0), np.hypot(spread[0], spread[1]) / 2
+        rows = moved.mean(axis=1)
     else:
         row = BRANCH_NAMES.index(branch)
-        level, uncertainty = load[row], spread[row]
+        level, uncertainty, rows = load[row], spread[row], moved[:, row]
     with np.errstate(invalid="ignore"):
         known = np.isfinite(uncertainty) & (level > 0) & (grid > 0)
     return tuple(
-        CurvePiece(name, kind, branch, grid[low:high], level[low:high], uncertainty[low:high])
+        CurvePiece(
+            name,
+            kind,
+            branch,
+            grid[low:high],
+            level[low:high],
+            uncertainty[low:high],
+            known_errors.component,
+            rows[:, low:high],
+        )
         for low, high in _runs(known)
     )
 
@@ -217,52 +256,3 @@ def pieces_of_curves(
         branch=branch,
         kind=kind,
     )
-
-
-def piece_of_steps(
-    steps: StepwiseResult, *, name: str, branch: Literal["ascending", "descending"] = "ascending"
-) -> CurvePiece:
-    r"""One branch of a static test as a piece.
-
-    .. math:: u(T) = T \, u(E_s) / E_s
-
-    Parameters
-    ----------
-    steps : StepwiseResult
-        Weights and lengths. [SI]
-    name : str
-        Of the piece.
-    branch : {"ascending", "descending"}, optional
-        Weights added or taken off.
-
-    Returns
-    -------
-    piece : CurvePiece
-        Rows that contradict themselves, and rows that do not rise in strain, are left out.
-
-    Raises
-    ------
-    DataError
-        If fewer than two rows are left.
-
-    Notes
-    -----
-    The relative uncertainty is that of the secant modulus E_s: of the weight and of the reading
-    of the length (type A).  Table 4 of [1]_ has a row of each kind that is left out.
-
-    Examples
-    --------
-    See `tests/unit/test_lookup_pieces.py`, which reads Table 4 of [1]_.
-    """
-    kept = (steps.branch == BRANCH_VALUES[branch]) & ~steps.is_inconsistent
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = steps.secant_modulus_standard_uncertainty / steps.secant_modulus
-    order = np.flatnonzero(kept & (steps.strain > 0) & (steps.tension > 0))
-    order = order[np.argsort(steps.strain[order], kind="stable")]
-    strain = steps.strain[order]
-    order = order[np.concatenate([[True], np.diff(strain) > 0])[: strain.size]]
-    tension = steps.tension[order]
-    return CurvePiece(
-        name, "static", branch, steps.strain[order], tension,
-        np.nan_to_num(share[order] * tension),
-    )  # fmt: skip

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from reduction.errors import DataError
-from reduction.lookup.composite import CompositeCurve, CompositeRule, composite_curve
+from reduction.lookup.composite import CompositeCurve, composite_curve
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.pieces import CurvePiece, PieceBranch
 from reduction.strain.model import StrainModel
 

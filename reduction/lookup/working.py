@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.errors import DataError, SettingsError
-from reduction.lookup.assembly import AssemblyCurve, SeriesPart, Tether, assemble, unequal_tethers
+from reduction.lookup.assembly import AssemblyCurve, assemble
 from reduction.lookup.loads import cycle_loads
+from reduction.lookup.tethers import SeriesPart, Tether, unequal_tethers
 from reduction.record import Bools, Floats, freeze_arrays
 
 __all__ = ["LoadSharing", "WorkingPoint", "working_point", "worst_sharing"]

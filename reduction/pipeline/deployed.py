@@ -9,17 +9,11 @@ from typing import Literal
 import numpy as np
 
 from reduction.errors import DataError
-from reduction.lookup.assembly import (
-    AssemblyCurve,
-    SeriesPart,
-    Tether,
-    assemble,
-    equal_tethers,
-    unequal_tethers,
-)
+from reduction.lookup.assembly import AssemblyCurve, assemble
 from reduction.lookup.composite import CompositeCurve
 from reduction.lookup.source import PieceSource
 from reduction.lookup.splices import deployed_model
+from reduction.lookup.tethers import SeriesPart, Tether, equal_tethers, unequal_tethers
 from reduction.lookup.working import LoadSharing, WorkingPoint, working_point, worst_sharing
 from reduction.record import Floats, freeze_arrays
 from reduction.strain.model import StrainModel
@@ -47,7 +41,9 @@ class WorkingState:
     """An assembly at one working level.
 
     ``strain`` is that of the free length of each tether, shape (n_tethers,) [1];
-    ``standard_uncertainty`` that of the tension at this length [N]; ``secant_spring_constant`` is
+    ``standard_uncertainty`` that of the tension at this length [N], of which
+    ``random_standard_uncertainty`` is of the curve by itself and ``shared_standard_uncertainty`` of
+    what its tests share with others [N]; ``secant_spring_constant`` is
     EA over the cycle, or over 5 % of the length to each side where it has no amplitude [N];
     ``is_moved`` is of the tangent there; ``sharing`` is there where the lengths have a
     tolerance.
@@ -57,6 +53,8 @@ class WorkingState:
     point: WorkingPoint
     strain: Floats
     standard_uncertainty: float
+    random_standard_uncertainty: float
+    shared_standard_uncertainty: float
     secant_spring_constant: float
     is_moved: bool
     sharing: LoadSharing | None
@@ -233,15 +231,16 @@ def _state(
             parts=parts,
         )
     at = float(point.total_length)
+    both, random, shared = assembly.uncertainty_at(at)
     return WorkingState(
         level=level,
         point=point,
         strain=np.array(
             [np.interp(at, assembly.total_length, row) for row in assembly.tether_strain]
         ),
-        standard_uncertainty=float(
-            np.interp(at, assembly.total_length, assembly.standard_uncertainty)
-        ),
+        standard_uncertainty=both,
+        random_standard_uncertainty=random,
+        shared_standard_uncertainty=shared,
         secant_spring_constant=(
             float(point.apparent_spring_constant)
             if level.tension_amplitude

@@ -16,9 +16,10 @@ composite curve carries as its uncertainty: 14 to 18 %.
 import numpy as np
 import pytest
 
-from reduction.lookup.assembly import SeriesPart, Tether, assemble, equal_tethers
+from reduction.lookup.assembly import assemble
 from reduction.lookup.composite import composite_curve
 from reduction.lookup.pieces import CurvePiece
+from reduction.lookup.tethers import SeriesPart, Tether, equal_tethers
 from reduction.lookup.working import working_point, worst_sharing
 from reduction.strain.model import StrainModel
 

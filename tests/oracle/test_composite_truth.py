@@ -13,7 +13,8 @@ import pandas as pd
 import pytest
 
 from reduction.cycles.find import find_cycles
-from reduction.lookup.composite import CompositeRule, composite_curve
+from reduction.lookup.composite import composite_curve
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.cyclepiece import piece_of_cycles
 from reduction.lookup.pieces import CurvePiece, pieces_of_curves
 from reduction.moduli.tangent import tangent_curves
@@ -71,7 +72,9 @@ def both(specimen, branch, **rule):
             )
             pieces.append(piece)
             truths.append(
-                CurvePiece(test, "cyclic", branch, piece.strain, load, piece.standard_uncertainty)
+                CurvePiece(
+                    test, "cyclic", branch, piece.strain, load, piece.random_standard_uncertainty
+                )
             )
     return [composite_curve(one, rule=CompositeRule(**rule)) for one in (pieces, truths)]
 

@@ -19,7 +19,7 @@ from reduction.export.fromcomposite import line_from_composite
 from reduction.export.fromlookup import line_from_lookup
 from reduction.export.moordyn import moordyn_files
 from reduction.export.write import export_line
-from reduction.lookup.composite import CompositeRule
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.line import look_up
 from reduction.lookup.source import compose
 from reduction.published.linesource import published_sources

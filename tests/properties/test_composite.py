@@ -4,7 +4,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.lookup.composite import CompositeRule, composite_curve
+from reduction.lookup.composite import composite_curve
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.pieces import CurvePiece
 
 KINDS = ("cyclic", "static", "first-loading")
@@ -77,7 +78,7 @@ def test_tension_in_another_unit_is_the_same_curve(pieces, unit):
     other = [
         CurvePiece(
             one.name, one.kind, one.branch, one.strain, unit * one.tension,
-            unit * one.standard_uncertainty,
+            unit * one.random_standard_uncertainty,
         )
         for one in pieces
     ]  # fmt: skip

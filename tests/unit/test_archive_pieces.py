@@ -6,7 +6,7 @@ import xarray as xr
 
 from reduction.archive.pieces import pieces_of_test, source_of_tests, specimens_of
 from reduction.errors import DataError, SettingsError
-from reduction.lookup.composite import CompositeRule
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.source import compose, used_of
 
 BINS = np.array([0.5, 0.6, 0.7, 0.8])
@@ -14,6 +14,11 @@ COEFFICIENTS = {
     "relaxed_free_length": 2.5, "relaxed_splice_length": 1.2, "splice_compliance": 1e-3,
     "splice_exponent": 0.8,
 }  # fmt: skip
+
+NOT_APART = (
+    "what is shared with other tests, as a load cell, is not kept apart: all that is known of the "
+    "uncertainty counts as that of the piece alone"
+)
 
 
 def cyclic(test="T-1", order=1, specimens=("new",), factor=1.0, coefficients=None, **more):
@@ -89,7 +94,7 @@ def test_a_slow_pull_is_static_and_its_first_rise_is_not_taken_twice():
     (found,) = pieces_of_test(pull(), "new", branch="mean", name="Q")
     assert (found.kind, found.branch) == ("static", "ascending")
     assert found.tension == pytest.approx([100, 200, 300])
-    assert found.standard_uncertainty == pytest.approx([1.0] * 3)
+    assert found.random_standard_uncertainty == pytest.approx([1.0] * 3)
     assert pieces_of_test(pull(), "new", branch="descending", name="Q") == ()
 
 
@@ -121,12 +126,71 @@ def weights(branch):
     )
 
 
+def with_cell(dataset, name, table, random, sources=("tension_gain", "lag")):
+    """The same archive with rows of shared errors to one curve, of half the random part."""
+    dims = dataset[name].dims
+    one = "uncertainty_component"
+    return dataset.assign(
+        {
+            f"{name}_uncertainty_contribution": ((one, *dims), table),
+            f"{name}_random_standard_uncertainty": (dims, random),
+            "uncertainty_source": (one, list(sources)),
+            "uncertainty_source_of": (one, ["cell A"] * len(sources)),
+            "uncertainty_source_number": (one, np.zeros(len(sources), dtype=int)),
+        }
+    )
+
+
+def test_both_branches_of_a_test_share_the_gain_of_its_cell_and_not_its_scatter():
+    plain = cyclic()
+    load = plain["branch_tension"].values
+    lag = np.broadcast_to(np.array([-2.0, 2.0])[:, None], load.shape[1:])[None]
+    found = with_cell(
+        plain, "branch_tension", np.stack([0.1 * load, lag]), np.full(load.shape, 0.4)
+    )
+    pieces = pieces_of_test(found, "new", branch="mean", name="T-1")
+    mean, first = pieces
+    assert [(one.source, one.of) for one in mean.component] == [
+        ("tension_gain", "cell A"), ("lag", "cell A"),
+    ]  # fmt: skip
+    assert mean.contribution == pytest.approx(np.stack([0.1 * mean.tension, np.zeros(4)]))
+    assert mean.random_standard_uncertainty == pytest.approx(np.full(4, 0.4 / np.sqrt(2)))
+    # the first rise of this archive has none: its whole uncertainty is its own
+    assert first.component == ()
+    assert first.random_standard_uncertainty == pytest.approx(np.ones(3))
+    assert source_of_tests([found], "new", branch="mean").notes == ()
+
+
+def test_a_slow_pull_and_weights_bring_what_they_share():
+    plain = pull()
+    strain = plain["quasi_static_strain"].values
+    found = with_cell(
+        plain,
+        "quasi_static_strain",
+        -0.01 * strain[None],
+        np.full(strain.shape, 1e-5),
+        ["tension_gain"],
+    )
+    (piece,) = pieces_of_test(found, "new", branch="mean", name="Q")
+    assert piece.contribution == pytest.approx(0.01 * piece.tension[None])
+    assert piece.random_standard_uncertainty == pytest.approx([0.1] * 3)
+    plain = weights([1, 1, 1, 1, 2, 2])
+    slope = plain["secant_modulus"].values
+    found = with_cell(
+        plain, "secant_modulus", np.stack([0.01 * slope, 0.05 * slope]), 0.002 * slope,
+        ["tension_gain", "diameter"],
+    )  # fmt: skip
+    (mean,) = pieces_of_test(found, "new", branch="mean", name="S")
+    assert [one.source for one in mean.component] == ["tension_gain"]
+    assert mean.contribution == pytest.approx(0.01 * mean.tension[None])
+
+
 def test_weights_give_either_branch_and_the_mean_where_both_were_read():
     found = weights([1, 1, 1, 1, 2, 2])
     (up,) = pieces_of_test(found, "new", branch="ascending", name="S")
     assert (up.kind, up.strain.tolist()) == ("static", [0.5, 1.0, 1.5])
     assert up.tension == pytest.approx([50, 100, 150])
-    assert up.standard_uncertainty == pytest.approx([0.5, 1.0, 1.5])
+    assert up.random_standard_uncertainty == pytest.approx([0.5, 1.0, 1.5])
     (mean,) = pieces_of_test(found, "new", branch="mean", name="S")
     assert mean.branch == "mean"
     assert mean.tension == pytest.approx(90 * mean.strain)
@@ -153,6 +217,7 @@ def test_what_is_left_out_is_said():
     found = source_of_tests(tests, "new", branch="mean")
     assert {one.name for one in found.pieces} == {"T-1", "T-2"}
     assert set(found.notes) == {
+        f"T-1, T-2: {NOT_APART}",
         "T-1-end is left out: it is a part of T-1",
         "held (relaxation) has no mean curve",
         "T-2: a splice slipped 2 times, and its strains hold the slip",
@@ -189,7 +254,7 @@ def test_archives_without_the_specimen_are_passed_over():
     assert specimens_of(xr.Dataset()) == ()
     found = source_of_tests(tests, "new", branch="mean")
     assert {one.name for one in found.pieces} == {"T-1"}
-    assert found.notes == ("of other specimens: c/T-2",)
+    assert found.notes == ("of other specimens: c/T-2", f"T-1: {NOT_APART}")
 
 
 def test_one_test_twice_is_refused():

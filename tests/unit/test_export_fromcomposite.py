@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from reduction.export.fromcomposite import composite_table, line_from_composite, ranges_of
-from reduction.lookup.composite import CompositeRule
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.pieces import CurvePiece
 from reduction.lookup.source import PieceSource, compose
 

@@ -3,13 +3,8 @@ import pytest
 from assemblies import RUBBER, curve_of, spring
 
 from reduction.errors import DataError, SettingsError
-from reduction.lookup.assembly import (
-    SeriesPart,
-    Tether,
-    assemble,
-    equal_tethers,
-    unequal_tethers,
-)
+from reduction.lookup.assembly import assemble
+from reduction.lookup.tethers import SeriesPart, Tether, equal_tethers, unequal_tethers
 from reduction.strain.model import StrainModel
 
 

@@ -2,11 +2,8 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError, SettingsError
-from reduction.lookup.composite import (
-    CompositeRule,
-    composite_curve,
-    composite_line_curve,
-)
+from reduction.lookup.composite import composite_curve, composite_line_curve
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.line import look_up
 from reduction.lookup.pieces import CurvePiece
 from reduction.lookup.product import LineSource

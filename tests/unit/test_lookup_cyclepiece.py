@@ -20,7 +20,7 @@ def test_cycles_can_be_chosen_and_give_the_tension_of_their_law():
     assert last.tension == pytest.approx(80 * last.strain**2 - 4, abs=0.12)
     assert mean.tension == pytest.approx(85 * mean.strain**2 - 2, abs=0.12)
     # 50 samples of 0.1 N in a bin
-    assert np.median(one.standard_uncertainty) == pytest.approx(0.1 / np.sqrt(50), rel=0.15)
+    assert np.median(one.random_standard_uncertainty) == pytest.approx(0.1 / np.sqrt(50), rel=0.15)
 
 
 def test_too_few_samples_are_refused():

@@ -6,15 +6,13 @@ import pytest
 
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.composite import composite_curve
-from reduction.lookup.pieces import (
-    CurvePiece,
-    piece_of_steps,
-    pieces_of_branches,
-    pieces_of_curves,
-)
+from reduction.lookup.pieces import CurvePiece, pieces_of_branches, pieces_of_curves
+from reduction.lookup.staticpiece import piece_of_steps
 from reduction.moduli.product import ModulusCurves
 from reduction.moduli.stepwise import reduce_stepwise
 from reduction.record import StepReadings
+from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
+from reduction.uncertainty.weights import stepwise_contributions
 
 TABLE_4 = Path(__file__).parents[1] / "golden" / "whoi_2005_10_table_4.csv"
 INCH, LBF = 0.0254, 4.4482216152605
@@ -53,7 +51,7 @@ def test_static_branches_of_table_4_leave_the_row_out_that_contradicts_itself():
     assert down.tension / LBF == pytest.approx([51, 97, 119, 141, 163, 185])  # without 74 lb
     # 0.02 in on 3.2 to 12.9 in of elongation, and the tension goes with it by the secant
     share = 0.02 / (6.125 * up.strain)
-    assert up.standard_uncertainty / up.tension == pytest.approx(share, rel=0.05)
+    assert up.random_standard_uncertainty / up.tension == pytest.approx(share, rel=0.05)
 
 
 def test_the_static_test_alone_gives_85_pounds_at_a_stretch_of_100_percent_within_3_percent():
@@ -72,7 +70,7 @@ def test_a_gap_parts_a_branch_into_pieces_and_slack_is_left_out():
 def test_the_mean_of_both_branches_stands_where_both_do():
     (found,) = pieces_of_curves(curves([10, 20, 30], [np.nan, 16, 28]), 0, name="T")
     assert found.tension.tolist() == [18, 29]
-    assert found.standard_uncertainty == pytest.approx(np.sqrt(2) / 2)
+    assert found.random_standard_uncertainty == pytest.approx(np.sqrt(2) / 2)
 
 
 def test_a_first_rise_has_one_branch():
@@ -97,6 +95,59 @@ def test_what_is_no_curve_is_refused(strain, tension, spread, message):
     arrays = [np.array(one, dtype=float) for one in (strain, tension, spread)]
     with pytest.raises(DataError, match=message):
         CurvePiece("T", "cyclic", "mean", *arrays)
+
+
+CELL, CLOCK = Component("tension_gain", "cell"), Component("lag", "clock")
+
+
+def test_the_mean_of_two_branches_keeps_a_gain_whole_and_loses_a_lag():
+    """A gain is in both branches with one sign, a lag with two; scatter is less by a root of 2."""
+    load = np.array([[10.0, 20.0, 30.0], [6.0, 18.0, 30.0]])
+    rows = np.stack([0.1 * load, np.array([[-1.0] * 3, [1.0] * 3])])
+    shared = Contributions((CELL, CLOCK), {"tension": rows})
+    at = [0.1, 0.2, 0.3]
+    given = {"name": "T", "shared": shared}
+    (mean,) = pieces_of_branches(at, load, np.ones((2, 3)), **given)
+    assert mean.contribution[0] == pytest.approx(0.1 * mean.tension)
+    assert mean.contribution[1] == pytest.approx(np.zeros(3))
+    assert mean.random_standard_uncertainty == pytest.approx(np.full(3, np.sqrt(2) / 2))
+    (down,) = pieces_of_branches(at, load, np.ones((2, 3)), branch="descending", **given)
+    assert down.component == (CELL, CLOCK)
+    assert down.contribution[1] == pytest.approx(np.ones(3))
+
+
+def test_a_point_of_which_nothing_shared_is_known_stays_in_the_piece():
+    rows = np.full((1, 2, 3), 0.5)
+    rows[0, 0, 1] = np.nan
+    shared = Contributions((CELL,), {"tension": rows})
+    load = [[10.0, 20.0, 30.0]] * 2
+    (up,) = pieces_of_branches(
+        [0.1, 0.2, 0.3], load, np.ones((2, 3)), name="T", branch="ascending", shared=shared
+    )
+    assert up.contribution.tolist() == [[0.5, 0.0, 0.5]]
+
+
+def test_contributions_have_to_fit_the_piece():
+    at = np.array([0.1, 0.2])
+    with pytest.raises(
+        DataError, match="contributions to T do not fit.*found shape .1, 3.; needed"
+    ):
+        CurvePiece("T", "cyclic", "mean", at, at, 0 * at, (CELL,), np.ones((1, 3)))
+
+
+def test_weights_that_are_heavier_than_they_say_move_the_static_piece_and_a_diameter_does_not():
+    steps = table_4()
+    area = np.pi / 4 * INCH**2
+    errors = InstrumentErrors("1997", tension_gain=0.01, diameter=0.02 * INCH)
+    up = piece_of_steps(steps, name="1997", shared=stepwise_contributions(steps, errors, area=area))
+    rows = {one.source: row for one, row in zip(up.component, up.contribution, strict=True)}
+    assert rows["tension_gain"] == pytest.approx(0.01 * up.tension)
+    assert "diameter" not in rows
+    # a longer gauge length is less strain at one tension: the chord has more tension at one strain
+    relative = steps.gauge_length_standard_uncertainty / steps.gauge_length
+    assert rows["gauge_length"] == pytest.approx(
+        up.tension * (1 + up.strain) / up.strain * relative
+    )
 
 
 def test_branches_have_to_fit_their_grid():

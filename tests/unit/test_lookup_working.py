@@ -3,7 +3,8 @@ import pytest
 from assemblies import RUBBER, spring
 
 from reduction.errors import DataError, SettingsError
-from reduction.lookup.assembly import SeriesPart, assemble, equal_tethers, unequal_tethers
+from reduction.lookup.assembly import assemble
+from reduction.lookup.tethers import SeriesPart, equal_tethers, unequal_tethers
 from reduction.lookup.working import working_point, worst_sharing
 
 

@@ -5,7 +5,7 @@ import pytest
 from assemblies import DRIVEN, RUBBER
 
 from reduction.errors import DataError
-from reduction.lookup.assembly import SeriesPart
+from reduction.lookup.tethers import SeriesPart
 from reduction.pipeline.deployed import WorkingLevel, deploy
 from reduction.strain.inverse import position_by_model
 from reduction.strain.model import StrainModel

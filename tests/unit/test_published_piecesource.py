@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.lookup.composite import CompositeRule
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.source import compose
 from reduction.published.piecesource import published_piece_sources
 
@@ -34,7 +34,7 @@ def test_loads_at_the_ends_of_the_segments_are_those_of_table_6(tether):
             at = float(row[f"strain_{end}"])
             assert np.interp(at, one.strain, one.tension) / LBF == pytest.approx(load), row
             seen += 1
-        assert one.standard_uncertainty / LBF == pytest.approx(
+        assert one.random_standard_uncertainty / LBF == pytest.approx(
             np.full(one.strain.size, 0.288675), rel=1e-4
         )
     assert seen == {"new": 14, "used": 20}[tether]

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from assemblies import DRIVEN
 
-from reduction.lookup.assembly import SeriesPart
-from reduction.lookup.composite import CompositeRule
+from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.pieces import CurvePiece
 from reduction.lookup.source import PieceSource, compose
+from reduction.lookup.tethers import SeriesPart
 from reduction.pipeline.deployed import DeployedLine, WorkingLevel, deploy
 from reduction.report.curvepage import write_assembly_page, write_composite_page
 from reduction.report.figures.curves import draw_assembly, draw_composite, draw_stiffness

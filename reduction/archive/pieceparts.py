@@ -1,0 +1,66 @@
+"""Uncertainty of a curve of an archive in two parts: its own, and what it shares with others."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.shared import components_of
+from reduction.record import Floats
+from reduction.uncertainty.product import Contributions
+
+__all__ = ["keeps_shared", "parts_of"]
+
+_ROWS = "_uncertainty_contribution"
+_CURVES = (
+    "branch_tension",
+    "branch_tension_first_loading",
+    "quasi_static_strain",
+    "secant_modulus",
+)
+
+
+def keeps_shared(dataset: xr.Dataset) -> bool:
+    """Whether an archive keeps shared errors of its curves apart from what is their own."""
+    return any(f"{name}{_ROWS}" in dataset for name in _CURVES)
+
+
+def parts_of(
+    dataset: xr.Dataset, name: str, specimen: int | None = None, *, of: str
+) -> tuple[Floats, Contributions | None]:
+    """Both parts of the uncertainty of one curve of an archive.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An archive of a reduced test.
+    name : str
+        Of the curve.
+    specimen : int, optional
+        Its place, where the curve has one a specimen.
+    of : str
+        What the contributions are called.
+
+    Returns
+    -------
+    random : ndarray, shape (...)
+        Standard uncertainty of the curve by itself; all of it, where the archive keeps the shared
+        part not apart. [unit of the curve]
+    shared : Contributions or None
+        Errors that touch it; None where the archive keeps none apart. [unit of the curve]
+    """
+    rows = dataset.get(f"{name}{_ROWS}")
+    whole = f"{name}_standard_uncertainty"
+    own = np.asarray(
+        dataset[whole if rows is None else f"{name}_random_standard_uncertainty"].values
+    )
+    random = own if specimen is None else own[specimen]
+    if rows is None:
+        return random, None
+    table = np.array(rows.values if specimen is None else rows.values[:, specimen])
+    # an archive names the errors of all its specimens and quantities
+    touched = np.nan_to_num(table).any(axis=tuple(range(1, table.ndim)))
+    component = tuple(
+        one for one, kept in zip(components_of(dataset), touched, strict=True) if kept
+    )
+    return random, Contributions(component, {of: table[touched]})
