@@ -23,7 +23,8 @@ def law_experiment(laws, *, noise=1e-4, transforms=(), coded=CODED):
     """Return a Box-Behnken experiment whose responses are laws of the coded levels.
 
     ``laws`` maps a response to a function of frequency, mean tension and tension amplitude,
-    each coded; the levels are reached exactly, and the noise is a share of the first value.
+    each coded; ``coded`` are the levels as reached, exactly the plan's where they are left out,
+    and the noise is a share of the first value.
     """
     plain = surface_experiment()
     rng = np.random.default_rng(7)
@@ -38,7 +39,7 @@ def law_experiment(laws, *, noise=1e-4, transforms=(), coded=CODED):
         run_names=plain.runs.names, transforms=[*["none"] * len(laws), *bent.values()],
     )  # fmt: skip
     runs = replace(
-        plain.runs, coded_plan=coded, level=level, response=response,
+        plain.runs, coded_plan=CODED, level=level, response=response,
         response_standard_uncertainty=np.abs(response) * 1e-3,
     )  # fmt: skip
     return replace(

@@ -16,8 +16,7 @@ from reduction.lookup.linesurface import LineSurface
 from reduction.lookup.product import LineSource
 from reduction.record import Floats
 from reduction.surface.product import ResponseSurfaces
-from reduction.surface.terms import model_matrix
-from reduction.surface.variance import variance_factor
+from reduction.surface.tested import greatest_leverage
 from reduction.uncertainty.product import Component
 from reduction.vocabulary import RESPONSES, quantity
 
@@ -37,8 +36,6 @@ _TEXTS = {
     "construction": "specimen_construction",
     "condition": "specimen_condition",
 }
-_ON_PLAN = 0.3
-"""Coded distance from the plan of a run that a machine with poor control still meets."""
 _NUMBERS = ("diameter", "linear_density", "wet_linear_density")
 
 
@@ -163,9 +160,6 @@ def _surface(
     plan: Floats,
 ) -> LineSurface:
     covariance = fitted.covariance_factor[fitted.pattern[index]]
-    used = fitted.is_used[fitted.pattern[index]]
-    reached = fitted.coded[used]
-    runs = model_matrix(_tested(reached, plan[: len(used)][used]), fitted.exponents)
     n_terms = len(fitted.exponents)
     notes = [] if name == response else [f"from the surface of {name}, brought back"]
     component, rows = shared
@@ -185,24 +179,12 @@ def _surface(
         covariance_factor=np.array(covariance[:n_terms, :n_terms]),
         sigma=float(fitted.sigma[index]),
         degrees_of_freedom=float(fitted.degrees_of_freedom[index]),
-        greatest_leverage=float(
-            np.max(variance_factor(runs, covariance[:n_terms, :n_terms]), initial=0.0)
-        ),
+        greatest_leverage=float(greatest_leverage(fitted, plan)[index]),
         exponent=float(fitted.transform_exponent[index]),
         component=component,
         contribution=rows,
         notes=tuple(notes),
     )
-
-
-def _tested(reached: Floats, plan: Floats) -> Floats:
-    """Coded levels that count as tested: those reached, and those of the plan beside them.
-
-    A planned level is no farther from its run than the run is from its plan: that scatter of the
-    machine is no reason to call the level untested.  Of a run that went elsewhere it says nothing.
-    """
-    is_near = np.all(np.abs(reached - plan) <= _ON_PLAN, axis=1)
-    return np.concatenate([reached, plan[is_near]])
 
 
 def _one_strength(dataset: xr.Dataset, row: int) -> float:

@@ -34,7 +34,7 @@ def point_values(surfaces: ResponseSurfaces, plan: Floats) -> Values:
     """
     points = plan_points(plan)
     found = evaluate_surfaces(
-        surfaces, points.coded, units="coded", confidence=_CONFIDENCE, outside="flag"
+        surfaces, points.coded, units="coded", confidence=_CONFIDENCE, outside="flag", plan=plan
     )
     values: Values = {
         "interval_confidence": np.array(found.confidence),

@@ -21,11 +21,11 @@ from reduction.lookup.scatter import interval_between_lines
 from reduction.lookup.surface import evaluate_surface
 from reduction.lookup.told import design_values
 from reduction.record import Bools, Floats
+from reduction.surface.tested import ABOVE_LEVERAGE
 from reduction.vocabulary import quantity as quantity_of
 
 __all__ = ["values_of_surface"]
 
-_LEVERAGE = 1 + 1e-9
 _RUN = "one more run of the same lines"
 _SURFACE = "the surface of these lines"
 
@@ -107,7 +107,7 @@ def values_of_surface(
     inside = points.is_inside.reshape(shape)
     if extrapolate == "refuse" and not inside.all():
         _refuse_outside(line, surface, columns, inside)
-    untested = points.leverage.reshape(shape) > _LEVERAGE * surface.greatest_leverage
+    untested = points.leverage.reshape(shape) > ABOVE_LEVERAGE * surface.greatest_leverage
     value = points.value.reshape(shape)
     low, high = span("low", np.minimum), span("high", np.maximum)
     surface_low, surface_high = span("surface_low", np.minimum), span("surface_high", np.maximum)

@@ -26,6 +26,7 @@ from reduction.record import Bools, Floats, freeze_arrays
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import box_behnken
 from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.surface.tested import is_within_levels
 from reduction.surface.transform import back_transform
 from reduction.surface.variance import variance_factor
 from reduction.workers import run_blocks
@@ -33,8 +34,6 @@ from reduction.workers import run_blocks
 __all__ = ["SurfacePoints", "evaluate_surface", "sigma_from_r2"]
 
 _BLOCK = 16_384
-_EDGE = 1e-9
-"""Rounding of the change of units, by which a point on the edge may lie outside."""
 _BOTH_SIDES = 0.975
 _NORMAL = 1.96
 
@@ -114,7 +113,7 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
     factor = _t_factor(surface)
     # a level in round shares of a strength may lie beyond the one that is printed in whole units
     rounded = surface.rounding if surface.rounding.size else np.zeros(surface.low.size)
-    edge = 1 + _EDGE + 2 * rounded / (surface.high - surface.low)
+    allowed = 2 * rounded / (surface.high - surface.low)
 
     def fill(block: slice) -> None:
         coded = coded_from_engineering(given[block], low=surface.low, high=surface.high)
@@ -137,7 +136,7 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
         ):
             out[name][block] = values
         out["leverage"][block] = leverage
-        inside[block] = np.all(np.abs(coded) <= edge, axis=1)
+        inside[block] = is_within_levels(coded, allowed=allowed)
 
     run_blocks(fill, [slice(start, start + _BLOCK) for start in range(0, size, _BLOCK)])
     if surface.exponent != 1:

@@ -9,16 +9,16 @@ import numpy as np
 
 from reduction.record import Bools, Floats
 from reduction.report.experimentview import ExperimentView
-from reduction.surface.bands import evaluate_surfaces
+from reduction.surface.bands import SurfaceValues, evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
+from reduction.surface.tested import greatest_leverage
 from reduction.vocabulary import RESPONSES
 
 __all__ = [
     "HELD",
-    "THIN",
     "Planes",
     "extremes_in_box",
-    "greatest_leverage",
+    "leverage_ratio",
     "make_planes",
     "negative_inside",
     "runs_on_plane",
@@ -28,9 +28,6 @@ POINTS = 31
 """Points along each side of a plane: finer is not seen, and makes the page heavy."""
 HELD = (-1.0, 0.0, 1.0)
 """Coded levels of the held factor, one plane each. [1]"""
-THIN = 1.02
-"""Leverage over the greatest of a run from which a point is marked: where runs reached their
-levels not quite, the very edges of the plan would be marked by a hair. [1]"""
 _MOST_POINTS = 20000
 _NEAR = 0.5
 """A run belongs to a plane where its held factor is nearer to it than to the next one. [1]"""
@@ -51,8 +48,8 @@ class Planes:
     value : ndarray, shape (n_responses, 3, n_points, n_points)
         Rows are y; on the scale of the response itself. [unit of the response]
     leverage_ratio : ndarray, shape (n_responses, 3, n_points, n_points)
-        Leverage over the greatest of a run: above 1 the runs say less than at the worst of
-        them. [1]
+        Leverage over the greatest of a tested level: above 1 the runs say less than at the
+        worst of them. [1]
     """
 
     across: tuple[int, int]
@@ -79,8 +76,15 @@ def make_planes(view: ExperimentView, surfaces: ResponseSurfaces) -> Planes | No
     points[..., across[1]] = side[:, None]
     at = evaluate_surfaces(surfaces, points.reshape(-1, len(names)), units="coded", outside="flag")
     shape = (len(surfaces.response_names), *points.shape[:3])
-    ratio = at.variance_factor / greatest_leverage(surfaces)[:, None]
+    ratio = leverage_ratio(view, surfaces, at)
     return Planes((across[0], across[1]), held, side, at.value.reshape(shape), ratio.reshape(shape))
+
+
+def leverage_ratio(view: ExperimentView, surfaces: ResponseSurfaces, at: SurfaceValues) -> Floats:
+    """Leverage of points over the greatest of a tested level, shape (n_responses, n_points)."""
+    plan = view.array("run_plan")[:, : len(view.factors)]
+    ratio: Floats = at.variance_factor / greatest_leverage(surfaces, plan)[:, None]
+    return ratio
 
 
 def runs_on_plane(view: ExperimentView, planes: Planes, level: float) -> Bools:
@@ -115,12 +119,3 @@ def negative_inside(surfaces: ResponseSurfaces) -> dict[str, tuple[float, Floats
         for index, name in enumerate(surfaces.response_names)
         if name in RESPONSES and least[index] < 0
     }
-
-
-def greatest_leverage(surfaces: ResponseSurfaces) -> Floats:
-    """Largest leverage of a run that was used, by response."""
-    known = np.isfinite(surfaces.coded).all(axis=1)
-    at_runs = evaluate_surfaces(surfaces, surfaces.coded[known], units="coded", outside="flag")
-    used = surfaces.is_used[surfaces.pattern][:, known] & np.isfinite(at_runs.variance_factor)
-    greatest: Floats = np.max(at_runs.variance_factor, axis=1, where=used, initial=-np.inf)
-    return np.where(used.any(axis=1), greatest, np.nan)

@@ -31,13 +31,11 @@ from reduction.surface.coding import coded_from_engineering, engineering_from_co
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.rows import times
 from reduction.surface.terms import model_matrix
+from reduction.surface.tested import ABOVE_LEVERAGE, greatest_leverage, is_within_levels
 from reduction.surface.transform import back_transform, retransformed_mean
 from reduction.surface.variance import variance_factor
 
 __all__ = ["SurfaceValues", "evaluate_surfaces"]
-
-_EDGE = 1e-9
-"""Rounding of the change of units, by which a point on the edge may lie outside."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +103,7 @@ def evaluate_surfaces(
     units: Literal["engineering", "coded"] = "engineering",
     confidence: float = 0.95,
     outside: Literal["refuse", "flag"] = "refuse",
+    plan: ArrayLike | None = None,
 ) -> SurfaceValues:
     r"""Value of every surface at every point, with three kinds of interval.
 
@@ -120,6 +119,8 @@ def evaluate_surfaces(
         Of each interval. [1]
     outside : {'refuse', 'flag'}
         What to do with a point beyond the levels of the plan.
+    plan : array_like, shape (n_runs, n_factors), optional
+        Coded levels as planned: those that a run came near count as tested too. [1]
 
     Returns
     -------
@@ -168,7 +169,7 @@ def evaluate_surfaces(
         )
     limits = {"low": surfaces.low, "high": surfaces.high}
     coded = asked if units == "coded" else coded_from_engineering(asked, **limits)
-    is_inside = np.asarray((np.abs(coded) <= 1 + _EDGE).all(axis=1))
+    is_inside = is_within_levels(coded)
     if outside == "refuse" and not is_inside.all():
         _refuse(surfaces, coded, int(np.flatnonzero(~is_inside)[0]), int((~is_inside).sum()))
 
@@ -179,7 +180,7 @@ def evaluate_surfaces(
         pattern=np.arange(len(surfaces.covariance_factor)),
     )
     factor = of_pattern[surfaces.pattern]
-    greatest = _greatest_leverage(surfaces)[surfaces.pattern]
+    greatest = greatest_leverage(surfaces, plan)
     fitted = times(surfaces.coefficient, terms.T)
     sigma = np.where(surfaces.reason == 0, surfaces.sigma, np.nan)[:, None]
     freedom = np.min(surfaces.term_degrees_of_freedom, axis=1)
@@ -212,26 +213,11 @@ def evaluate_surfaces(
         prediction_interval=interval(student * np.sqrt(sigma**2 + between**2 + deviation**2)),
         simultaneous_interval=interval(scheffe * deviation),
         is_inside=is_inside,
-        above_leverage=is_inside & (factor > greatest[:, None] * (1 + _EDGE)),
+        above_leverage=is_inside & (factor > ABOVE_LEVERAGE * greatest[:, None]),
         degrees_of_freedom=freedom,
         confidence=confidence,
         notes=_notes(surfaces),
     )
-
-
-def _greatest_leverage(surfaces: ResponseSurfaces) -> Floats:
-    """Largest variance factor of a run that was used, shape (n_patterns,)."""
-    known = np.isfinite(surfaces.coded).all(axis=1)
-    terms = model_matrix(surfaces.coded[known], surfaces.exponents)
-    n_patterns = len(surfaces.covariance_factor)
-    factor = variance_factor(
-        np.broadcast_to(terms, (n_patterns, *terms.shape)),
-        surfaces.covariance_factor,
-        pattern=np.arange(n_patterns),
-    )
-    used = surfaces.is_used[:, known] & np.isfinite(factor)
-    greatest: Floats = np.max(factor, axis=1, where=used, initial=-np.inf)
-    return np.where(used.any(axis=1), greatest, np.nan)
 
 
 def _refuse(surfaces: ResponseSurfaces, coded: Floats, row: int, count: int) -> None:

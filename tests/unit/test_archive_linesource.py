@@ -7,7 +7,6 @@ from scipy import stats
 
 from reduction.archive.linecurves import CURVES
 from reduction.archive.linesource import (
-    _tested,
     line_of_experiment,
     line_of_test,
     specimens_of,
@@ -75,12 +74,6 @@ def test_every_level_of_the_plan_is_tested_and_a_corner_is_not(surfaces):
         at = dict(zip(line.factor_names, points.T, strict=True))
         found = look_up(line, "relaxation_time", **at)
         assert set(found.is_untested.tolist()) == {is_untested}
-
-
-def test_a_run_that_went_elsewhere_leaves_its_plan_untested():
-    reached = np.array([[0.9, 0.0], [0.6, -1.0]])
-    plan = np.array([[1.0, 0.0], [1.0, -1.0]])
-    assert _tested(reached, plan).tolist() == [*reached.tolist(), [1.0, 0.0]]
 
 
 def test_a_response_that_was_asked_for_on_a_scale_is_read_from_that_scale(surfaces):

@@ -20,9 +20,10 @@ from reduction.report.figure import Figure, Trace, axis, line, make_figure, plai
 from reduction.report.figures.surfaces import base_response, scale_words
 from reduction.report.htmltable import number_text
 from reduction.report.style import COLOURS, plot_text
-from reduction.report.surfacegrid import THIN, greatest_leverage
+from reduction.report.surfacegrid import leverage_ratio
 from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
+from reduction.surface.tested import ABOVE_LEVERAGE
 
 __all__ = ["draw_cube"]
 
@@ -52,8 +53,8 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
     if not np.isfinite(value).any():
         return []
     place = _projected(grid)
-    ratio = at.variance_factor[index] / greatest_leverage(surfaces)[index]
-    data = [*_edges(), *_cube_points(place, value, ratio > THIN)]
+    ratio = leverage_ratio(view, surfaces, at)[index]
+    data = [*_edges(), *_cube_points(place, value, ratio > ABOVE_LEVERAGE)]
     ends = [
         f"{in_words(view.factors[k])} {number_text(view.levels(k)[0], 3)} to"
         f" {number_text(view.levels(k)[2], 3)} {view.factor_units[k].unit}"

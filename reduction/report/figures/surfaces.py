@@ -17,9 +17,10 @@ from reduction.report.experimentview import ExperimentView, in_words, response_u
 from reduction.report.figure import Figure, Trace, axis, make_figure, plain_numbers
 from reduction.report.htmltable import number_text
 from reduction.report.style import COLOURS, faded, plot_text
-from reduction.report.surfacegrid import HELD, THIN, Planes, runs_on_plane
+from reduction.report.surfacegrid import HELD, Planes, runs_on_plane
 from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
+from reduction.surface.tested import ABOVE_LEVERAGE
 from reduction.vocabulary import RESPONSES
 
 __all__ = ["base_response", "draw_contours", "draw_surface", "scale_words"]
@@ -112,7 +113,7 @@ def draw_contours(
                 },
             }
         ]  # fmt: skip
-        is_thin = bool((ratio > THIN).any())
+        is_thin = bool((ratio > ABOVE_LEVERAGE).any())
         if is_thin:
             data.append(_thin_region(x, y, ratio))
         on_plane = runs_on_plane(view, planes, level)
@@ -233,6 +234,6 @@ def _thin_region(x: Floats, y: Floats, ratio: Floats) -> Trace:
         "type": "contour", "name": "runs say little", "showlegend": False, "showscale": False,
         "x": plain_numbers(x), "y": plain_numbers(y),
         "z": [plain_numbers(row, 3) for row in ratio], "hoverinfo": "skip",
-        "contours": {"type": "constraint", "operation": "<", "value": THIN},
+        "contours": {"type": "constraint", "operation": "<", "value": ABOVE_LEVERAGE},
         "fillcolor": faded("#555555", 0.38), "line": {"color": _INK, "width": 1.5, "dash": "dash"},
     }  # fmt: skip
