@@ -22,7 +22,11 @@ from reduction.product import ReducedTest, TestDescription
 from reduction.record import Record, Specimen, SpliceMarks
 from reduction.settings import ReductionSettings
 from reduction.strain.fit import fit_strain_model
-from reduction.uncertainty.combine import combined_standard_uncertainty, coverage_factor
+from reduction.uncertainty.combine import (
+    combined_standard_uncertainty,
+    coverage_factor,
+    effective_degrees_of_freedom,
+)
 from reduction.uncertainty.product import InstrumentErrors
 
 FREE, SPLICES, COMPLIANCE, EXPONENT = 2.55, 1.19, 0.4 / 900**0.85, 0.85
@@ -206,7 +210,9 @@ def table(found: dict[str, list[Found]]) -> str:
     for name, rows in found.items():
         value, truth, random, shared, freedom = np.array([row[1:] for row in rows]).T
         total = combined_standard_uncertainty(shared[None], random)
-        factor = coverage_factor(total, random, freedom)
+        factor = coverage_factor(
+            effective_degrees_of_freedom(random, freedom, contribution=shared[None])
+        )
         error = (value - truth) / total
         known = np.isfinite(error)
         held = np.abs(error[known]) <= factor[known]

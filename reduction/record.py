@@ -131,6 +131,13 @@ class Specimen:
         return float(np.mean(self.diameter))
 
     @property
+    def diameter_scatter(self) -> float:
+        """Standard uncertainty of the mean diameter by its readings; NaN of one alone. [m]."""
+        if len(self.diameter) < 2:
+            return float("nan")
+        return float(np.std(self.diameter, ddof=1) / np.sqrt(len(self.diameter)))
+
+    @property
     def area(self) -> float:
         """Cross-sectional area at zero tension (WHOI-2005-10, eq. 2). [m2]."""
         return pi * self.mean_diameter**2 / 4

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from reduction.archive.shared import components_of
+from reduction.archive.freedom import random_freedom
+from reduction.archive.shared import SHARED_OF_CHANNELS, components_of
 from reduction.errors import ArchiveError, SettingsError
+from reduction.moduli.interpolation import curve_at
 from reduction.record import Floats
 from reduction.uncertainty.budget import Budget, budget_of
 from reduction.uncertainty.product import Component
@@ -18,7 +19,6 @@ from reduction.uncertainty.product import Component
 __all__ = [
     "all_budgets",
     "budget_from_archive",
-    "degrees_of_freedom",
     "place_name",
     "quantities_with_budget",
 ]
@@ -28,23 +28,17 @@ _RANDOM = "_random_standard_uncertainty"
 # what a user calls a dimension; no quantity has two of one name
 _CALLED = {"branch_name": "branch", "strain_bin": "strain", "first_loading_strain_bin": "strain",
            "ratio_strain_bin": "strain"}  # fmt: skip
-# one of them is a regression on samples, of which there are hundreds
-_OF_SAMPLES = frozenset({
-    "cycle", "selected_cycle", "hold", "held_pair", "slip", "step", "interval", "tension_grid",
-    "break_share", "pull_term", "strain_level", "elastomer_parameter",
-    "comparison_point",
-})  # fmt: skip
-_LINES = ("_per_decade", "_per_cycle", "_change", "_drift")
 _ROUNDING = 1e-9
 _ON_AN_AXIS = ("strain_bin", "first_loading_strain_bin", "ratio_strain_bin")
 
 
 def quantities_with_budget(archive: xr.Dataset) -> tuple[str, ...]:
-    """Names of what an archive keeps the shared errors of."""
+    """Names of the numbers that an archive keeps the shared errors of; channels are none."""
     return tuple(
         str(name).removesuffix(_CONTRIBUTION)
         for name in archive.variables
         if str(name).endswith(_CONTRIBUTION)
+        and str(name).removesuffix(_CONTRIBUTION) not in SHARED_OF_CHANNELS
     )
 
 
@@ -64,8 +58,8 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
         Of the vocabulary, as the archive names it; without ``test_`` the mean of the test is
         meant where the archive keeps only that.
     at : mapping of str to str
-        Place along each dimension by label, number, or strain; one with a single entry may be
-        left out.
+        Place along each dimension by label, number, or strain, between bins too; one with a
+        single entry may be left out.
 
     Returns
     -------
@@ -94,17 +88,20 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
             f"{name} does not vary with {', '.join(strange)}",
             needed="--at " + ", ".join(map(place_name, dims)),
         )
-    place = {dim: _place(archive, dim, at.get(place_name(dim), at.get(dim))) for dim in dims}
-    number = float(variable.isel(place))
-    if not np.isfinite(number):
+    asked = {dim: at.get(place_name(dim), at.get(dim)) for dim in dims}
+    place = {dim: _place(archive, dim, text) for dim, text in asked.items()}
+    on_axis = [text for dim, text in asked.items() if dim in _ON_AN_AXIS and text is not None]
+    strain = float(on_axis[0]) if on_axis else None
+    if not np.isfinite(_at(archive, variable, place, strain)):
+        shown = {dim: _shown(_label(archive, dim, index)) for dim, index in place.items()}
+        if strain is not None:
+            shown |= {dim: f"{strain:.6g}" for dim in dims if dim in _ON_AN_AXIS}
         raise ArchiveError(
             f"there is no {name} there",
-            found=", ".join(
-                f"{place_name(dim)}={_shown(_label(archive, dim, place[dim]))}" for dim in dims
-            ),
+            found=", ".join(f"{place_name(dim)}={text}" for dim, text in shown.items()),
             needed=_where_known(archive, variable, place),
         )
-    return _budget_at(archive, name, place)
+    return _budget_at(archive, name, place, strain)
 
 
 def all_budgets(archive: xr.Dataset, quantity: str) -> list[Budget]:
@@ -132,54 +129,52 @@ def all_budgets(archive: xr.Dataset, quantity: str) -> list[Budget]:
     ]
 
 
-def degrees_of_freedom(archive: xr.Dataset, name: str) -> Floats:
-    """Degrees of freedom of the random part of a quantity.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Of a reduced test, or of experiments.
-    name : str
-        As the archive names it.
-
-    Returns
-    -------
-    freedom : ndarray, in the shape of the quantity or a single number
-        Of the regression where it is a coefficient, infinite where it is one on samples; else
-        cycles less one, or two for a line over them, of those that reach the number or of all
-        after the break-in; at least 1. [1]
-    """
-    base = name.removesuffix("_engineering").removesuffix("_coefficient")
-    terms = f"{base}_term_degrees_of_freedom"
-    if terms in archive:
-        return np.asarray(archive[terms].values, dtype=np.float64)
-    if f"{name}_count" in archive:
-        return np.maximum(np.asarray(archive[f"{name}_count"].values, dtype=np.float64) - 1, 1.0)
-    if name in archive and _OF_SAMPLES & set(map(str, archive[name].dims)):
-        return np.asarray(np.inf)
-    settings = json.loads(str(archive.attrs.get("settings") or "{}"))
-    break_in = settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0)
-    fitted = 2.0 if name.endswith(_LINES) else 1.0
-    return np.asarray(max(archive.sizes.get("cycle", 0) - break_in - fitted, 1.0))
-
-
-def _budget_at(archive: xr.Dataset, name: str, place: Mapping[str, int]) -> Budget:
+def _budget_at(
+    archive: xr.Dataset, name: str, place: Mapping[str, int], strain: float | None = None
+) -> Budget:
+    """Budget of one number; with a strain it is read between bins, as a look-up reads it."""
     variable = archive[name]
-    rows = archive[f"{name}{_CONTRIBUTION}"].isel(place).values
+    contribution = archive[f"{name}{_CONTRIBUTION}"]
+    freedom = np.broadcast_to(random_freedom(archive, name), variable.shape)
+
+    def read(values: xr.DataArray) -> Floats:
+        return _at(archive, values, place, strain)
+
     components = components_of(archive, place.get("experiment"))
+    rows = read(contribution)
     found: dict[Component, float] = {
         one: float(value) for one, value in zip(components, rows, strict=False) if value != 0
     }
-    freedom = np.broadcast_to(degrees_of_freedom(archive, name), variable.shape)
+    labels = {dim: str(_label(archive, dim, index)) for dim, index in place.items()}
+    if strain is not None:
+        labels |= {dim: f"{strain:.6g}" for dim in place if dim in _ON_AN_AXIS}
+    few = read(xr.DataArray(1 / freedom, dims=variable.dims))
     return budget_of(
         name,
         str(variable.attrs.get("units", "")),
-        float(variable.isel(place)),
+        float(read(variable)),
         found,
-        random=float(archive[f"{name}{_RANDOM}"].isel(place)),
-        degrees_of_freedom=float(freedom[tuple(place[str(dim)] for dim in variable.dims)]),
-        place={dim: str(_label(archive, dim, index)) for dim, index in place.items()},
+        random=float(read(archive[f"{name}{_RANDOM}"])),
+        degrees_of_freedom=float(np.divide(1, few, out=np.array(np.inf), where=few > 0)),
+        place=labels,
     )
+
+
+def _at(
+    archive: xr.Dataset, values: xr.DataArray, place: Mapping[str, int], strain: float | None
+) -> Floats:
+    """Values at a place, shape (n_components,) or (); between bins where a strain is given."""
+    axis = next((dim for dim in place if dim in _ON_AN_AXIS), None)
+    if strain is None or axis is None:
+        return np.asarray(values.isel(place).values, dtype=np.float64)
+    curves = values.isel({dim: index for dim, index in place.items() if dim != axis}).values
+    bins = archive[axis].values
+    spacing = float(np.min(np.diff(bins), initial=np.inf))
+    flat = [
+        curve_at(strain, bins, row, spacing=spacing if np.isfinite(spacing) else None)
+        for row in curves.reshape(-1, bins.size)
+    ]
+    return np.array(flat).reshape(curves.shape[:-1])
 
 
 def _where_known(archive: xr.Dataset, variable: xr.DataArray, place: Mapping[str, int]) -> str:
@@ -190,8 +185,8 @@ def _where_known(archive: xr.Dataset, variable: xr.DataArray, place: Mapping[str
     if not known.size:
         return "another place: there is none at any " + place_name(dim)
     if dim in _ON_AN_AXIS:
-        bounds = _bounds(archive, dim)
-        ends = f"{bounds[known[0], 0]:.4g} to {bounds[known[-1], 1]:.4g}"
+        middle = archive[dim].values[known]
+        ends = f"{middle[0]:.4g} to {middle[-1]:.4g}"
         return f"{place_name(dim)} {ends}"
     labels = [str(_label(archive, dim, int(index))) for index in known]
     return f"{place_name(dim)} " + ", ".join(labels[:12]) + (", ..." if len(labels) > 12 else "")
@@ -217,28 +212,19 @@ def _place(archive: xr.Dataset, dim: str, text: str | None) -> int:
             needed=f'--at "{place_name(dim)}=..." ({shown})',
         )
     if dim in _ON_AN_AXIS:
-        return _bin(archive, dim, float(text))
+        return _nearest(archive, dim, float(text))
     if text not in labels:
         raise SettingsError(f"there is no {place_name(dim)} '{text}'", needed=shown)
     return labels.index(text)
 
 
-def _bounds(archive: xr.Dataset, dim: str) -> Floats:
-    """Ends of bins; of a ratio, whose bins are those that two tests share, about their middles."""
-    if f"{dim}_bounds" in archive:
-        return np.asarray(archive[f"{dim}_bounds"].values)
-    middle = archive[dim].values
-    # a strain just between two of them is in one of them
-    half = np.min(np.diff(middle), initial=np.inf) / 2 * (1 + _ROUNDING)
-    return np.stack([middle - half, middle + half], axis=1)
-
-
-def _bin(archive: xr.Dataset, dim: str, strain: float) -> int:
-    bounds = _bounds(archive, dim)
-    inside = np.flatnonzero((bounds[:, 0] <= strain) & (strain <= bounds[:, 1]))
-    if inside.size == 0:
+def _nearest(archive: xr.Dataset, dim: str, strain: float) -> int:
+    """Bin whose middle is nearest; nothing is read beyond the first and the last."""
+    middle = np.asarray(archive[dim].values, dtype=np.float64)
+    rounding = _ROUNDING * float(np.max(np.abs(middle)))
+    if not middle.min() - rounding <= strain <= middle.max() + rounding:
         raise SettingsError(
             f"{place_name(dim)} has no bin at {strain:g}",
-            needed=f"{bounds.min():.4g} to {bounds.max():.4g}",
+            needed=f"{middle.min():.4g} to {middle.max():.4g}",
         )
-    return int(inside[0])
+    return int(np.argmin(np.abs(middle - strain)))

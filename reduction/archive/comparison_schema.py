@@ -22,8 +22,17 @@ from __future__ import annotations
 
 from itertools import chain
 
-from reduction.archive.reasons import BOUND, CRITERION, NO_YES, PART, SETTING, SPREAD, STATISTIC
-from reduction.archive.shared import COMPONENT
+from reduction.archive.reasons import (
+    BOUND,
+    CRITERION,
+    NO_YES,
+    OF_UNCERTAINTY,
+    PART,
+    SETTING,
+    SPREAD,
+    STATISTIC,
+)
+from reduction.archive.shared import COMPONENT, FREEDOM
 from reduction.archive.variable import Variable, companion, count, flag, label, measured, stated
 
 __all__ = ["COMPARISON_SCHEMA"]
@@ -66,6 +75,7 @@ COMPARISON_SCHEMA: dict[str, Variable] = {
         label("uncertainty_source", (COMPONENT,)),
         label("uncertainty_source_of", (COMPONENT,)),
         count("uncertainty_source_number", (COMPONENT,)),
+        stated(FREEDOM, (COMPONENT,), OF_UNCERTAINTY),
         measured("measured_tension", _T),
         [
             companion("measured_tension", "_random_standard_uncertainty", _T),

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.archive.reasons import BOUND, CRITERION, NO_YES, SETTING, SPREAD
+from reduction.archive.reasons import BOUND, CRITERION, NO_YES, OF_UNCERTAINTY, SETTING, SPREAD
 from reduction.archive.values import Values, numbers, texts
 from reduction.archive.variable import Variable, count, flag, label, measured, stated
 from reduction.moduli.product import ElastomerFit, ModulusCurves, Ratio, Segments
@@ -40,7 +40,7 @@ CURVE_ROWS: tuple[Variable, ...] = tuple(
         stated("strain_window", (), SETTING),
         measured("tangent_modulus", _B, "_count", "_minimum", "_maximum", "_scatter"),
         measured("tangent_modulus_untrimmed", _B),
-        measured("branch_tension", _B),
+        measured("branch_tension", _B, "_count"),
         measured("tangent_modulus_by_cycle", _BC),
         measured("tangent_modulus_first_loading", _F),
         measured("branch_tension_first_loading", _F),
@@ -59,6 +59,7 @@ CURVE_ROWS: tuple[Variable, ...] = tuple(
         measured("modulus_ratio", _R),
         stated("modulus_ratio_low", _R, BOUND),
         stated("modulus_ratio_high", _R, BOUND),
+        stated("modulus_ratio_degrees_of_freedom", _R, OF_UNCERTAINTY),
         flag("modulus_ratio_is_different", _R, NO_YES),
     )
 )
@@ -84,8 +85,10 @@ def curve_values(curves: ModulusCurves) -> Values:
     values: Values = {
         item.name: getattr(curves, item.name)
         for item in fields(curves)
-        if item.name not in ("window", "notes")
+        if item.name not in ("window", "notes", "branch_tension_count")
     }
+    if curves.branch_tension_count is not None:
+        values["branch_tension_count"] = curves.branch_tension_count
     return values | {
         "branch_name": texts(BRANCH_NAMES),
         "strain_window": np.array(curves.window),
@@ -138,6 +141,9 @@ def ratio_values(ratios: Sequence[Ratio]) -> Values:
         "modulus_ratio_standard_uncertainty": stacked("ratio_standard_uncertainty"),
         "modulus_ratio_low": stacked("ratio_low"),
         "modulus_ratio_high": stacked("ratio_high"),
+        "modulus_ratio_degrees_of_freedom": np.stack(
+            [np.broadcast_to(one.degrees_of_freedom, one.ratio.shape) for one in ratios]
+        ),
         "modulus_ratio_is_different": stacked("is_different"),
     }
 

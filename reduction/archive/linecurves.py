@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
+from reduction.archive.freedom import random_freedom
+from reduction.archive.shared import components_of
 from reduction.lookup.line import Branch
 from reduction.lookup.product import LineCurve
-from reduction.record import Floats
+from reduction.record import Bools
 
 __all__ = ["CURVES", "curves_of_specimen"]
 
@@ -16,6 +20,7 @@ _OVER_TENSION = {
     "quasi_static_spring_constant": ("quasi_static_spring_constant", "mean_tension"),
     "quasi_static_strain": ("strain", "tension"),
 }
+_Parts = dict[str, Any]  # fields of `LineCurve` that say how well it is known
 CURVES = (*_OVER_STRAIN, *_OVER_TENSION)
 """Variables of a reduced test that are looked up as curves."""
 
@@ -47,7 +52,6 @@ def curves_of_specimen(dataset: xr.Dataset, place: int) -> tuple[LineCurve, ...]
 
 
 def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
-    spread = f"{name}_standard_uncertainty"
     strain = dataset["strain_bin"].values
     curves = []
     branches: tuple[Branch, Branch] = ("ascending", "descending")
@@ -67,12 +71,7 @@ def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
                 high=float(at[-1]),
                 at=np.array(at),
                 value=np.array(value[seen]),
-                standard_uncertainty=np.array(dataset[spread].values[place, index][seen])
-                if spread in dataset
-                else np.empty(0),
-                degrees_of_freedom=_freedom(dataset, name, (place, index))[seen]
-                if spread in dataset
-                else np.empty(0),
+                **_uncertainty(dataset, name, (place, index), seen),
                 spread_of="the mean over the cycles of this one test",
                 gaps=np.stack([at[missing], at[missing + 1]], axis=1),
                 branch=branch,
@@ -84,18 +83,29 @@ def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
     return curves
 
 
-def _freedom(dataset: xr.Dataset, name: str, place: tuple[int, int]) -> Floats:
-    """Of Welch and Satterthwaite: cycles less one, and many for what does not scatter."""
+def _uncertainty(dataset: xr.Dataset, name: str, place: tuple[int, ...], seen: Bools) -> _Parts:
+    """Uncertainty of a curve where it was seen, by its parts; nothing where the archive has none.
+
+    Without parts, as in older archives, all of it counts as of this curve alone.
+    """
+    if f"{name}_standard_uncertainty" not in dataset:
+        return {}
     spread = np.asarray(dataset[f"{name}_standard_uncertainty"].values[place], dtype=np.float64)
-    stored, counted = f"{name}_random_standard_uncertainty", "tangent_modulus_count"
-    if counted not in dataset:
-        return np.full(spread.shape, np.inf)
-    cycles = np.maximum(np.asarray(dataset[counted].values[place], dtype=np.float64) - 1, 1.0)
-    if stored not in dataset:
-        return cycles
-    random = np.asarray(dataset[stored].values[place], dtype=np.float64)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(random > 0, cycles * (spread / random) ** 4, np.inf)
+    freedom = np.broadcast_to(random_freedom(dataset, name), dataset[name].shape)[place]
+    found: _Parts = {
+        "standard_uncertainty": spread[seen],
+        "degrees_of_freedom": np.array(freedom[seen]),
+    }
+    stored = dataset.get(f"{name}_uncertainty_contribution")
+    if stored is None:
+        return found
+    rows = np.nan_to_num(np.moveaxis(stored.values, 0, -1)[place].T)[:, seen]
+    touched = np.flatnonzero(rows.any(axis=1))
+    component = components_of(dataset)
+    return found | {
+        "component": tuple(component[row] for row in touched),
+        "contribution": rows[touched],
+    }
 
 
 def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
@@ -105,6 +115,7 @@ def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
     coefficient = np.array(dataset["pull_strain_coefficient"].values[place])
     if not np.isfinite(coefficient).all():
         return []
+    everywhere = np.ones(dataset.sizes["tension_grid"], dtype=bool)
     return [
         LineCurve(
             quantity=name,
@@ -114,7 +125,7 @@ def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
             coefficient=coefficient,
             is_inverse_slope=name != "strain",
             at=np.array(dataset["tension_grid"].values),
-            standard_uncertainty=np.array(dataset[f"{stored}_standard_uncertainty"].values[place]),
+            **_uncertainty(dataset, stored, (place,), everywhere),
             spread_of="the curve of this one pull",
         )
         for stored, (name, variable) in _OVER_TENSION.items()

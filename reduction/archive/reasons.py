@@ -14,6 +14,7 @@ __all__ = [
     "MOVEMENT",
     "NO_YES",
     "OF_MARKS",
+    "OF_UNCERTAINTY",
     "PART",
     "READING",
     "SEE_PER_DECADE",
@@ -35,6 +36,7 @@ CHECK = "residual of a check"
 CRITERION = "criterion of a fit"
 STATISTIC = "a statistic of a test"
 SPREAD = "is itself a measure of spread"
+OF_UNCERTAINTY = "degrees of freedom of an uncertainty"
 PART = "is part of an uncertainty"
 MOVEMENT = "what the machine did; no number is made from it"
 OF_MARKS = "a reading at the marks: what they are known to is in the coefficients fitted to them"

@@ -12,8 +12,9 @@ from itertools import chain
 import numpy as np
 import xarray as xr
 
+from reduction.archive.reasons import OF_UNCERTAINTY
 from reduction.archive.values import Values, texts
-from reduction.archive.variable import Variable, companion, count, label
+from reduction.archive.variable import Variable, companion, count, label, stated
 from reduction.errors import ArchiveError
 from reduction.record import Floats
 from reduction.uncertainty.combine import combined_standard_uncertainty
@@ -21,7 +22,9 @@ from reduction.uncertainty.product import Component, Contributions
 
 __all__ = [
     "COMPONENT",
+    "FREEDOM",
     "SHARED",
+    "SHARED_OF_CHANNELS",
     "SHARED_ROWS",
     "component_values",
     "components_of",
@@ -30,6 +33,8 @@ __all__ = [
 ]
 
 COMPONENT = "uncertainty_component"
+FREEDOM = "uncertainty_source_degrees_of_freedom"
+"""Of each shared error; there where one of them is from a few readings."""
 _S = ("specimen",)
 _H = ("hold",)
 _G = ("specimen", "branch_name", "segment")
@@ -92,6 +97,12 @@ SHARED: dict[str, tuple[str, ...]] = {
     "modulus_ratio": ("comparison", "branch_name", "ratio_strain_bin"),
 }
 """Quantities whose contributions are kept, with their dimensions."""
+SHARED_OF_CHANNELS: dict[str, tuple[str, ...]] = {
+    "crosshead_position": (),
+    "crosshead_displacement": (),
+    **dict.fromkeys(("tension", "strain", "nominal_stress"), _S),
+}
+"""Channels: one contribution for all samples of a specimen, with its dimensions."""
 # the curve of one cycle has the shared error of the mean
 _ALIKE = {"tangent_modulus_by_cycle": "tangent_modulus"}
 
@@ -101,12 +112,13 @@ SHARED_ROWS: tuple[Variable, ...] = tuple(
         label("uncertainty_source", (COMPONENT,)),
         label("uncertainty_source_of", (COMPONENT,)),
         count("uncertainty_source_number", (COMPONENT,)),
+        stated(FREEDOM, (COMPONENT,), OF_UNCERTAINTY),
         *(
             (
                 companion(name, "_random_standard_uncertainty", dims),
                 companion(name, "_uncertainty_contribution", (COMPONENT, *dims)),
             )
-            for name, dims in SHARED.items()
+            for name, dims in (SHARED | SHARED_OF_CHANNELS).items()
         ),
     )
 )
@@ -141,7 +153,8 @@ def with_shared(
     ArchiveError
         If there are contributions to a quantity that has no variable for them.
     """
-    homeless = sorted(set(contributions.values) - set(SHARED)) if contributions else []
+    known = SHARED | SHARED_OF_CHANNELS
+    homeless = sorted(set(contributions.values) - set(known)) if contributions else []
     if homeless:
         raise ArchiveError(
             "the archive has no variable for contributions of shared errors",
@@ -157,6 +170,9 @@ def with_shared(
     for name, rows in contributions.values.items():
         if name not in values:
             continue  # of a stage that this test has not
+        if name in SHARED_OF_CHANNELS:
+            _combine_channel(found, name, rows)
+            continue
         if random is not None and name in random:
             found[f"{name}_standard_uncertainty"] = random[name]
         found[f"{name}_random_standard_uncertainty"] = _combine(found, name, rows)
@@ -171,12 +187,13 @@ def with_shared(
 
 def component_values(component: Sequence[Component]) -> Values:
     """Return the axis of the shared errors, and what each of them is."""
+    freedom = np.array([one.degrees_of_freedom for one in component], dtype=np.float64)
     return {
         COMPONENT: np.arange(1, len(component) + 1),
         "uncertainty_source": texts([one.source for one in component]),
         "uncertainty_source_of": texts([one.of for one in component]),
         "uncertainty_source_number": np.array([one.number for one in component]),
-    }
+    } | ({} if np.isinf(freedom).all() else {FREEDOM: freedom})
 
 
 def shared_contributions(archive: xr.Dataset, name: str, *place: int) -> dict[Component, float]:
@@ -213,9 +230,15 @@ def components_of(archive: xr.Dataset, experiment: int | None = None) -> list[Co
     names = ("uncertainty_source", "uncertainty_source_of", "uncertainty_source_number")
     columns = [archive[name].values for name in names]
     own = columns if experiment is None else [column[experiment] for column in columns]
+    kept = archive.get(FREEDOM)
+    known = np.full(len(own[0]), np.inf)
+    if kept is not None:
+        known = kept.values if experiment is None else kept.values[experiment]
+        # an experiment with fewer errors than another is filled up
+        known = np.where(np.isnan(known), np.inf, known)
     return [
-        Component(str(source), str(of), int(number))
-        for source, of, number in zip(*own, strict=True)
+        Component(str(source), str(of), int(number), float(freedom))
+        for source, of, number, freedom in zip(*own, known, strict=True)
     ]
 
 
@@ -228,3 +251,14 @@ def _combine(values: Values, name: str, rows: Floats) -> Floats:
     # where nothing is known of the shared part the random one still stands
     values[key] = combined_standard_uncertainty(np.nan_to_num(rows), random)
     return random
+
+
+def _combine_channel(values: Values, name: str, rows: Floats) -> None:
+    """Put both parts of a channel's uncertainty side by side: of a reading, of all samples."""
+    key = f"{name}_standard_uncertainty"
+    reading = np.asarray(values.get(key, np.full(rows.shape[1:], np.nan)), dtype=np.float64)
+    # what is not stated of a reading counts as zero where something else is stated
+    random = np.where(np.isnan(reading) & np.any(rows != 0, axis=0), 0.0, reading)
+    values[f"{name}_random_standard_uncertainty"] = random
+    values[f"{name}_uncertainty_contribution"] = rows
+    values[key] = combined_standard_uncertainty(rows, random)

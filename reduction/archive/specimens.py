@@ -21,7 +21,7 @@ def specimen_values(specimens: Sequence[Specimen]) -> Values:
     """Return what is known of each specimen before the test."""
     known = [one.mean_diameter if one.diameter else None for one in specimens]
     area = numbers([one.area if one.diameter else None for one in specimens])
-    spread = numbers([_of_readings(one.diameter) for one in specimens])
+    spread = numbers([one.diameter_scatter for one in specimens])
     return {
         "specimen": texts([one.name for one in specimens]),
         "specimen_kind": texts([one.kind for one in specimens]),
@@ -48,17 +48,11 @@ def specimen_values(specimens: Sequence[Specimen]) -> Values:
     }
 
 
-def _of_readings(diameter: Sequence[float]) -> float:
-    """Standard error of the mean; one reading shows none."""
-    if len(diameter) < 2:
-        return float("nan")
-    return float(np.std(diameter, ddof=1) / np.sqrt(len(diameter)))
-
-
 def random_of_section(specimens: Sequence[Specimen], contributions: Contributions) -> Values:
-    """Random part of diameters and areas where an uncertainty of the mean diameter is stated.
+    """Random part of diameters and areas: none where the error of the mean diameter is shared.
 
-    What is stated is of the mean of the readings: their scatter is in it.
+    What is stated is of the mean of the readings, and their scatter is in it; where nothing is
+    stated the scatter itself is the error that all numbers over the area share.
     """
     rows = contributions.values.get("diameter")
     if rows is None:

@@ -40,13 +40,14 @@ from reduction.archive.reasons import (
     CHECK,
     CRITERION,
     NO_YES,
+    OF_UNCERTAINTY,
     PART,
     SETTING,
     SPREAD,
     STATED,
     STATISTIC,
 )
-from reduction.archive.shared import COMPONENT
+from reduction.archive.shared import COMPONENT, FREEDOM
 from reduction.archive.variable import Variable, companion, count, flag, label, measured, stated
 from reduction.surface.product import STATIONARY_KINDS
 from reduction.vocabulary import RESPONSES, SURFACE_NAMES
@@ -209,6 +210,7 @@ _ROWS = chain(
     label("uncertainty_source", _U),
     label("uncertainty_source_of", _U),
     count("uncertainty_source_number", _U),
+    stated(FREEDOM, _U, OF_UNCERTAINTY),
     label("factor_name", _F),
     label("factor_unit", _F),
     stated("factor_low", _F, _PLAN),

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
+from reduction.record import Specimen
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.product import InstrumentErrors
 
@@ -18,19 +22,23 @@ def instruments_of(
     """Stated errors of each specimen, with the names by which tests share them.
 
     Tests share the load cell and the machine that they name in the same words, and a strain
-    model that was pooled over the campaign; marks of one test are its own.
+    model that was pooled over the campaign; marks of one test are its own.  A diameter of which
+    nothing is stated has the scatter of its readings.
     """
     plan = survey.plan
     return tuple(
-        campaign.uncertainty.of_channel(
-            model.specimen,
-            channel=number,
-            test=plan.log,
-            load_cell=plan.attributes.get("load_cell", ""),
-            machine=plan.attributes.get("machine", ""),
-            strain_model=f"{model.specimen}, marks of {plan.log}"
-            if model.marks_from == "this test"
-            else model.specimen,
+        _with_readings(
+            campaign.uncertainty.of_channel(
+                model.specimen,
+                channel=number,
+                test=plan.log,
+                load_cell=plan.attributes.get("load_cell", ""),
+                machine=plan.attributes.get("machine", ""),
+                strain_model=f"{model.specimen}, marks of {plan.log}"
+                if model.marks_from == "this test"
+                else model.specimen,
+            ),
+            campaign.specimens[model.specimen],
         )
         for number, model in enumerate(models, start=1)
     )
@@ -39,11 +47,22 @@ def instruments_of(
 def stepwise_instruments(campaign: Campaign, survey: Survey) -> tuple[InstrumentErrors, ...]:
     """Stated errors of a test with weights, which has no channels and no strain model."""
     return tuple(
-        campaign.uncertainty.of_channel(
-            name,
-            channel=number,
-            test=survey.plan.log,
-            load_cell=survey.plan.attributes.get("load_cell", "weights"),
+        _with_readings(
+            campaign.uncertainty.of_channel(
+                name,
+                channel=number,
+                test=survey.plan.log,
+                load_cell=survey.plan.attributes.get("load_cell", "weights"),
+            ),
+            campaign.specimens[name],
         )
         for number, name in enumerate(survey.plan.specimens, start=1)
     )
+
+
+def _with_readings(errors: InstrumentErrors, specimen: Specimen) -> InstrumentErrors:
+    """Give a diameter of which nothing is stated what its readings say of their mean."""
+    scatter = specimen.diameter_scatter
+    if errors.diameter or not np.isfinite(scatter) or scatter == 0:
+        return errors
+    return replace(errors, diameter=scatter, diameter_readings=len(specimen.diameter))

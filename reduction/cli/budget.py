@@ -112,6 +112,7 @@ def _document(budget: Budget, synthetic: bool) -> dict[str, object]:
         "coverage_factor": plain(budget.coverage_factor),
         "confidence": 0.95,
         "degrees_of_freedom": plain(budget.degrees_of_freedom),
+        "effective_degrees_of_freedom": plain(budget.effective_degrees_of_freedom),
         "sources": [
             {
                 "source": row.source,

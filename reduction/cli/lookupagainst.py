@@ -84,6 +84,8 @@ def _show(
         "these lines: the two surfaces, of the lines that were tested; the kinds, another line of "
         "each: with how lines differ among each other, where a source says it"
     )
+    for note in found.notes:
+        outcome.say(note)
     said_of_lines(outcome, (first, found.first), (second, found.second))
 
 
@@ -207,4 +209,5 @@ def _document(
         "line_known": of(found.is_line_known),
         "line_different": of(found.is_line_different),
         "inside": of(found.is_inside),
+        "notes": list(found.notes),
     }

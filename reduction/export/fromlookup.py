@@ -184,7 +184,7 @@ def _trusted(source: LineSource, curve: LineCurve) -> LineCurve:
 def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[str]]:
     """Strain and tension where both rise, and what was cut."""
     at = curve.at if curve.at.size else np.linspace(curve.low, curve.high, _POINTS)
-    value = evaluate_curve(curve, at)[0]
+    value = evaluate_curve(curve, at).value
     strain, tension = (value, at) if curve.quantity in _STRAIN else (at, value)
     if not (np.isfinite(strain).all() and np.isfinite(tension).all()):
         raise DataError(

@@ -1,9 +1,12 @@
 r"""Two lines at the same points: difference, ratio, and whether it is more than their intervals.
 
-The limits of a difference follow from those of the two values, each side on its own:
+The limits of a difference follow from those of the two values, each side on its own, less what
+errors that are known by name add to each; of those the difference alone counts, so that one load
+cell under both moves them together:
 
-.. math:: L = d - \sqrt{(b - l_b)^2 + (u_a - a)^2}, \qquad
-          U = d + \sqrt{(u_b - b)^2 + (a - l_a)^2}, \qquad d = b - a
+.. math:: L = d - \sqrt{(b - l_b)^2 + (u_a - a)^2 + 1.96^2 \textstyle\sum_k (c_{bk} - c_{ak})^2},
+          \qquad U = d + \sqrt{(u_b - b)^2 + (a - l_a)^2 +
+          1.96^2 \textstyle\sum_k (c_{bk} - c_{ak})^2}, \qquad d = b - a
 
 References
 ----------
@@ -11,6 +14,8 @@ References
    General Approach," Statistics in Medicine, vol. 27, no. 10, pp. 1693-1702, 2008.
 .. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
    R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.1, Tables 4, 5.
+.. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.2.2, F.1.2.3, G.4.1.
 """
 
 from __future__ import annotations
@@ -20,8 +25,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from reduction.errors import SettingsError
+from reduction.lookup.parts import End, own_half_width, shared_half_width, shared_of
 from reduction.lookup.product import DesignValues
 from reduction.record import Bools, Floats, freeze_arrays
+from reduction.uncertainty.combine import (
+    combined_standard_uncertainty,
+    coverage_factor,
+    effective_degrees_of_freedom,
+)
 
 __all__ = ["LineDifference", "compare_values"]
 
@@ -53,6 +64,8 @@ class LineDifference:
     is_different, is_test_different, is_kind_different, is_line_different : ndarray of bool
         Zero is not in the interval of the surfaces, of one more run, of the kinds, or of another
         line of each.
+    notes : tuple of str
+        How what both share was taken.
     """
 
     quantity: str
@@ -77,6 +90,7 @@ class LineDifference:
     is_test_different: Bools
     is_kind_different: Bools
     is_line_different: Bools
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -141,10 +155,12 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
             found=f"{first.value.shape}, {second.value.shape}", needed="one shape",
         )  # fmt: skip
     difference = second.value - first.value
-    surface_low, surface_high = _limits(first, second, "surface_low", "surface_high")
-    low, high = _limits(first, second, "low", "high")
-    kind_low, kind_high = _limits(first, second, "kind_low", "kind_high")
-    line_low, line_high = _limits(first, second, "line_low", "line_high")
+    shared = shared_of({"first": first, "second": second})
+    rows, of = shared.values["second"] - shared.values["first"], shared.degrees_of_freedom
+    surface_low, surface_high = _limits(first, second, rows, of, ("surface_low", "surface_high"))
+    low, high = _limits(first, second, rows, of, ("low", "high"))
+    kind_low, kind_high = _limits(first, second, rows, of, ("kind_low", "kind_high"))
+    line_low, line_high = _limits(first, second, rows, of, ("line_low", "line_high"))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.where(first.value != 0, second.value / first.value, np.nan)
     return LineDifference(
@@ -170,6 +186,7 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
         is_test_different=_apart(low, high),
         is_kind_different=_apart(kind_low, kind_high),
         is_line_different=_apart(line_low, line_high),
+        notes=_told(first, second),
     )
 
 
@@ -183,9 +200,60 @@ def _apart(low: Floats, high: Floats) -> Bools:
 
 
 def _limits(
-    first: DesignValues, second: DesignValues, low: str, high: str
+    first: DesignValues, second: DesignValues, rows: Floats, of: Floats, ends: tuple[End, End]
 ) -> tuple[Floats, Floats]:
-    difference = second.value - first.value
-    down = np.hypot(second.value - getattr(second, low), getattr(first, high) - first.value)
-    up = np.hypot(getattr(second, high) - second.value, first.value - getattr(first, low))
-    return np.asarray(difference - down), np.asarray(difference + up)
+    """Ends of an interval of the difference: what both share by its difference, the rest apart."""
+    difference = np.asarray(second.value - first.value)
+    if ends == ("surface_low", "surface_high") and _has_parts(first) and _has_parts(second):
+        half = _half_of_parts(first, second, rows, of)
+        return difference - half, difference + half
+    low, high = ends
+    shared = shared_half_width(rows)
+    down = _root(own_half_width(second, low), own_half_width(first, high), shared)
+    up = _root(own_half_width(second, high), own_half_width(first, low), shared)
+    return difference - down, difference + up
+
+
+def _root(*parts: Floats) -> Floats:
+    return np.asarray(np.sqrt(sum(one**2 for one in parts)))
+
+
+def _has_parts(one: DesignValues) -> bool:
+    return bool(one.random_standard_uncertainty.size)
+
+
+def _half_of_parts(first: DesignValues, second: DesignValues, rows: Floats, of: Floats) -> Floats:
+    """Half width by Student's t, where the random part of each and its freedom are known."""
+    own = np.stack([one.random_standard_uncertainty for one in (first, second)])
+    few = np.stack([one.random_degrees_of_freedom for one in (first, second)])
+    freedom = effective_degrees_of_freedom(
+        np.zeros(first.value.shape),
+        np.inf,
+        contribution=np.concatenate([own, rows]),
+        of_contribution=np.concatenate(
+            [few, np.broadcast_to(of.reshape(-1, *(1,) * first.value.ndim), rows.shape)]
+        ),
+    )
+    spread = combined_standard_uncertainty(np.concatenate([own, rows]), 0.0)
+    return np.asarray(coverage_factor(freedom) * spread)
+
+
+def _told(first: DesignValues, second: DesignValues) -> tuple[str, ...]:
+    """Say how what both share was taken, or that it is not known."""
+    without = [one for one in (first, second) if not one.component]
+    if len(without) == 2:
+        return (
+            "of neither is it known what it shares with the other, as a load cell: the intervals "
+            "are put together as independent",
+        )
+    if without:
+        which = "first" if without[0] is first else "second"
+        return (
+            f"of the {which} it is not known what it shares with the other: its interval counts as "
+            "independent",
+        )
+    both = set(first.component) & set(second.component)
+    if not both:
+        return ()
+    names = ", ".join(dict.fromkeys(f"{one.source} of {one.of}" for one in sorted(both)))
+    return (f"errors that both share count by their difference: {names}",)

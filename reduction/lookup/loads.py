@@ -214,7 +214,7 @@ def _one_tension(line: LineSource, given: Mapping[str, Floats], branch: str) -> 
         for curve in line.curves:
             if curve.quantity == "branch_tension" and curve.branch == branch:
                 # noise about zero is zero
-                return np.maximum(evaluate_curve(curve, given["strain"])[0], 0.0)
+                return np.maximum(evaluate_curve(curve, given["strain"]).value, 0.0)
     return np.asarray(np.nan)
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.special import stdtrit
 
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.curve import evaluate_curve
@@ -22,8 +21,6 @@ from reduction.record import Floats
 from reduction.vocabulary import quantity as quantity_of
 
 __all__ = ["values_of_curve"]
-
-_BOTH_SIDES = 0.975
 
 
 def values_of_curve(
@@ -56,7 +53,7 @@ def values_of_curve(
 
     Notes
     -----
-    The interval is Student's; between points its factor is on a straight line.
+    The interval is Student's, by the effective degrees of freedom of all parts.
 
     Examples
     --------
@@ -73,7 +70,8 @@ def values_of_curve(
             needed=f"levels of {curve.variable}",
         )
     at = given[curve.variable]
-    value, spread, inside = evaluate_curve(curve, at)
+    found = evaluate_curve(curve, at)
+    value, half, inside = found.value, found.half_width, found.is_inside
     if extrapolate == "refuse" and not inside.all():
         first = at.ravel()[np.flatnonzero(~inside.ravel())[0]]
         unit = _unit(curve.variable)
@@ -95,7 +93,6 @@ def values_of_curve(
                 if part
             ),
         )  # fmt: skip
-    half = _factor(curve, at) * spread
     nothing = np.full(at.shape, np.nan)
     return design_values(
         line,
@@ -105,6 +102,10 @@ def values_of_curve(
         untested=np.zeros(at.shape, dtype=bool),
         words=("", curve.spread_of if curve.standard_uncertainty.size else ""),
         more=(*((curve.range_note,) if curve.range_note else ()), *_joints(curve, at)),
+        component=curve.component,
+        contribution=found.contribution,
+        random_standard_uncertainty=found.random,
+        random_degrees_of_freedom=found.freedom,
         value=value,
         low=nothing,
         high=nothing,
@@ -121,14 +122,6 @@ def _unit(name: str) -> str:
     """Unit as it stands behind a number; a plain number has none."""
     unit = quantity_of(name).unit
     return "" if unit == "1" else f" {unit}"
-
-
-def _factor(curve: LineCurve, at: Floats) -> Floats:
-    """Half width of a 95 % interval over the standard uncertainty."""
-    if not curve.degrees_of_freedom.size:
-        return np.asarray(stdtrit(np.inf, _BOTH_SIDES))
-    factors = stdtrit(np.maximum(curve.degrees_of_freedom, 1.0), _BOTH_SIDES)
-    return np.interp(at, curve.at, factors)
 
 
 def _joints(curve: LineCurve, at: Floats) -> list[str]:

@@ -27,7 +27,9 @@ from reduction.uncertainty.product import Contributions
 
 __all__ = ["End", "own_half_width", "shared_half_width", "shared_of"]
 
-End = Literal["low", "high", "surface_low", "surface_high"]
+End = Literal[
+    "low", "high", "surface_low", "surface_high", "kind_low", "kind_high", "line_low", "line_high"
+]  # fmt: skip
 _NORMAL = 1.96
 
 
@@ -69,7 +71,7 @@ def own_half_width(found: DesignValues, end: End) -> Floats:
     ----------
     found : DesignValues
         As looked up.
-    end : {"low", "high", "surface_low", "surface_high"}
+    end : {"low", "high", "surface_low", "surface_high", "kind_low", ...}
         To which end.
 
     Returns

@@ -46,9 +46,9 @@ class LineCurve:
     at, value : ndarray, shape (n_points,)
         Points, rising; straight lines between them. [SI]
     standard_uncertainty : ndarray, shape (n_points,)
-        At the points, of a polynomial too; empty where not known. [SI]
+        At the points, of a polynomial too, of all errors; empty where not known. [SI]
     degrees_of_freedom : ndarray, shape (n_points,)
-        Of the uncertainty; empty where they are many, or not known. [1]
+        Of what is random in it; empty where they are many, or not known. [1]
     spread_of : str
         What the uncertainty is of, in words: there is none between tests in it.
     component : tuple of Component, length n_components
@@ -224,6 +224,8 @@ class DesignValues:
         Errors that the values share with others; none where nothing is known of any.
     contribution : ndarray, shape (n_components, ...)
         What each of them adds to the value, signed; in the intervals too. [unit]
+    random_standard_uncertainty, random_degrees_of_freedom : ndarray
+        What is of the value alone; empty where that is known as an interval only. [unit], [1]
     interval_of, surface_interval_of : str
         What ``low`` and ``high``, and ``surface_low`` and ``surface_high``, are of, in words;
         empty where there is no such interval.
@@ -257,6 +259,8 @@ class DesignValues:
     branch: Literal["", "ascending", "descending"] = ""
     component: tuple[Component, ...] = ()
     contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
+    random_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
+    random_degrees_of_freedom: Floats = field(default_factory=lambda: np.empty(0))
     interval_of: str = ""
     surface_interval_of: str = ""
 

@@ -24,6 +24,8 @@ from reduction.record import Floats
 __all__ = ["compare_curves", "compare_cycles"]
 
 _CONFIDENCE = 0.95
+_MANY = 1e9
+"""Degrees of freedom of hundreds of samples."""
 _TYPE_A = (
     "the interval holds what differs from cycle to cycle (type A); errors of area, calibration "
     "and splice strain that the two do not share are not in it"
@@ -73,7 +75,9 @@ def _spacing(curves: ModulusCurves) -> float:
 
 def _side(curves: ModulusCurves, specimen: int, name: str, strain: Floats) -> _Side:
     """Mean curve of one specimen at the strains of the axis."""
-    count = np.maximum(curves.tangent_modulus_count[specimen] - 1.0, 1.0)
+    cycles = curves.tangent_modulus_count[specimen]
+    # of one cycle the uncertainty is that of a regression on its samples
+    count = np.where(cycles > 1, cycles - 1.0, _MANY)
     series = (
         curves.tangent_modulus[specimen],
         curves.tangent_modulus_standard_uncertainty[specimen],

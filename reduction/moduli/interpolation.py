@@ -19,21 +19,23 @@ __all__ = ["curve_at"]
 
 
 def curve_at(
-    strain: ArrayLike, strain_bin: ArrayLike, values: ArrayLike, *, spacing: float
+    strain: ArrayLike, strain_bin: ArrayLike, values: ArrayLike, *, spacing: float | None
 ) -> Floats:
     """Values of a curve between its bins, by straight lines; nothing is extrapolated.
+
+    What is read at a strain anywhere, in a look-up, a budget, a table or a ratio, is read by this.
 
     Parameters
     ----------
     strain : array_like, shape (n,)
         Where the curve is wanted. [1]
     strain_bin : array_like, shape (n_bins,)
-        Bin centres, increasing. [1]
+        Bin centres, or other points of an axis, increasing. [1]
     values : array_like, shape (n_bins,)
         The curve, NaN where not supported. [SI]
-    spacing : float
+    spacing : float or None
         Distance of neighbouring bins; a gap wider than half as much again is not
-        bridged. [1]
+        bridged. None where any gap is. [1]
 
     Returns
     -------
@@ -61,6 +63,8 @@ def curve_at(
     bins, curve = bins[known], curve[known]
     if bins.size == 0:
         return np.full(wanted.shape, np.nan)
+    if spacing is None:
+        return np.interp(wanted, bins, curve, left=np.nan, right=np.nan)
     close = 1e-6 * spacing  # two grids of one width differ by rounding
     after = np.clip(np.searchsorted(bins, wanted - close), 0, bins.size - 1)
     before = np.clip(np.searchsorted(bins, wanted + close, side="right") - 1, 0, None)

@@ -49,6 +49,8 @@ class ModulusCurves:
         The same with the ends. [Pa]
     branch_tension, branch_tension_standard_uncertainty : ndarray, same shape
         Mean tension of the branch at the bin centre. [N]
+    branch_tension_count : ndarray of int, same shape, or None
+        Cycles in the means with the ends; None of a single rise. [1]
     selected_cycle : ndarray of int, shape (n_selected,)
         Numbers of the cycles whose curves are kept.
     tangent_modulus_by_cycle, tangent_modulus_by_cycle_standard_uncertainty : ndarray
@@ -72,6 +74,7 @@ class ModulusCurves:
     tangent_modulus_by_cycle: Floats
     tangent_modulus_by_cycle_standard_uncertainty: Floats
     notes: tuple[str, ...] = ()
+    branch_tension_count: Integers | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

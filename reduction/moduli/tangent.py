@@ -190,6 +190,7 @@ def tangent_curves(
         branch_tension_standard_uncertainty=np.stack(
             [one.tension.standard_uncertainty() for one in specimens]
         ),
+        branch_tension_count=np.stack([one.tension.count for one in specimens]).astype(np.int64),
         selected_cycle=groups.first[selected] + 1,
         tangent_modulus_by_cycle=by_cycle * per_area[..., None],
         tangent_modulus_by_cycle_standard_uncertainty=gain

@@ -6,7 +6,7 @@ import numpy as np
 
 from reduction.report.htmltable import Table, count, factors_of, make_table, measured, words
 from reduction.report.style import shown
-from reduction.report.uncertainty import MANY, expanded_of, plus_minus_of_tests
+from reduction.report.uncertainty import expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView
 
 __all__ = ["hold_table", "prony_table", "refusals"]
@@ -40,7 +40,7 @@ def hold_table(view: TestView) -> Table | None:
     ]
     for name, unit, label in quantities:
         values = view.array_like(name, start)
-        spread = expanded_of(view, name, start, freedom=MANY)
+        spread = expanded_of(view, name, start)
         if np.isfinite(values).any():
             columns.append(unit.label(label))
             for row, value, half, factor in zip(
@@ -83,7 +83,7 @@ def prony_table(view: TestView) -> Table | None:
     force, seconds = shown("tension", view.units), shown("time", view.units)
     end = view.array_like("long_time_tension", tension[:, 0])
     of_tension, of_time, of_end = (
-        expanded_of(view, name, values, freedom=MANY)
+        expanded_of(view, name, values)
         for name, values in (
             ("prony_tension", tension), ("prony_time", times), ("long_time_tension", end),
         )

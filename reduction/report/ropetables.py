@@ -23,7 +23,6 @@ from reduction.report.ropeview import RopeView, expanded_property, shared_by_pro
 from reduction.report.sources import in_order, source_words
 from reduction.report.style import Shown, shown
 from reduction.report.uncertainty import (
-    MANY,
     expanded_of,
     plus_minus,
     plus_minus_of_tests,
@@ -258,12 +257,7 @@ def _cell(test: TestView, place: int, name: str, unit: Shown | None) -> Cell:
     if test.data[name].dtype.kind == "i":
         return count(float(test.data[name].values[place]))
     values = np.asarray(test.data[name].values, dtype=np.float64)
-    freedom: float = MANY
-    if name.startswith("dynamic_stiffness"):
-        # a drift is a line over the cycles, the rest their mean
-        lost = 2 if name.endswith("_drift") else 1
-        freedom = max(float(test.data["dynamic_cycles"].values[place]) - lost, 1.0)
-    spread = expanded_of(test, name, values, freedom=freedom)
+    spread = expanded_of(test, name, values)
     return measured(
         float(values[place]), float(spread.half[place]), unit, factor=float(spread.factor[place])
     )

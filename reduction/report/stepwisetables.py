@@ -5,7 +5,7 @@ from __future__ import annotations
 from reduction.report.figures.stepwise import flagged_steps
 from reduction.report.htmltable import Table, factors_of, make_table, measured, number, words
 from reduction.report.style import shown
-from reduction.report.uncertainty import MANY, expanded_of, plus_minus_of_steps
+from reduction.report.uncertainty import expanded_of, plus_minus_of_steps
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_VALUES
 
@@ -56,7 +56,7 @@ def interval_table(view: TestView) -> Table | None:
     if strain is None or modulus is None:
         return None
     percent, stress = shown("strain", view.units), shown("stress", view.units)
-    spread = expanded_of(view, "interval_modulus", modulus, freedom=MANY)
+    spread = expanded_of(view, "interval_modulus", modulus)
     branch = view.array_like("interval_branch", modulus)
     branches = {value: name for name, value in BRANCH_VALUES.items()}
     clock = view.texts("clock") or tuple(str(place + 1) for place in range(strain.size + 1))

@@ -20,7 +20,6 @@ from reduction.report.htmltable import (
 )
 from reduction.report.style import shown
 from reduction.report.uncertainty import (
-    MANY,
     NORMAL,
     expanded_of,
     plus_minus_of_tests,
@@ -134,9 +133,7 @@ def summary_table(view: TestView) -> Table | None:
     is_known = False
     for name, unit, label in given:
         values = view.array_like(name, np.empty(len(view.specimens)))
-        # where a line goes slack is read off samples
-        freedom = MANY if name.startswith("slack_") else None
-        spread = expanded_of(view, name, values, freedom=freedom)
+        spread = expanded_of(view, name, values)
         cells = (
             measured(value, half, unit, factor=factor)
             for value, half, factor in zip(values, spread.half, spread.factor, strict=True)
@@ -195,8 +192,7 @@ def slip_table(view: TestView) -> Table | None:
     )
     step, length = (view.array_like(f"slip_{name}", cycles) for name in ("tension_step", "length"))
     of_step, of_length = (
-        expanded_of(view, f"slip_{name}", cycles, freedom=MANY)
-        for name in ("tension_step", "length")
+        expanded_of(view, f"slip_{name}", cycles) for name in ("tension_step", "length")
     )
     rows = [
         [
@@ -293,7 +289,7 @@ def _parameters(view: TestView, fit: int) -> Iterator[str]:
     for place in np.flatnonzero(belongs == fit):
         for name, unit in (("modulus", stress), ("exponent", None)):
             values = view.array_like(f"elastomer_{name}", belongs)
-            half = expanded_of(view, f"elastomer_{name}", belongs, freedom=MANY).half
+            half = expanded_of(view, f"elastomer_{name}", belongs).half
             if np.isfinite(values[place]):
                 words_ = view.texts("elastomer_parameter_name")[place].replace("_", " ")
                 text = measured(values[place], half[place], unit).text

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.archive.budget import degrees_of_freedom
+from reduction.archive.freedom import effective_freedom
 from reduction.record import Floats
 from reduction.report.instruments import NOTHING_STATED, is_stated
 from reduction.report.sources import FROM_READINGS, in_order, source_words
 from reduction.report.view import TestView
-from reduction.uncertainty.combine import coverage_factor
+from reduction.uncertainty.combine import coverage_factor, effective_degrees_of_freedom
 from reduction.uncertainty.product import LINE_METHODS
 
 __all__ = [
@@ -76,8 +76,10 @@ def expand(
     [2.3 4.4] [2.26 1.97]
     """
     spread = np.asarray(standard_uncertainty, dtype=np.float64)
-    part = spread if random is None else random
-    factor = np.asarray(coverage_factor(spread, part, degrees_of_freedom))
+    part = spread if random is None else np.asarray(random, dtype=np.float64)
+    rest = np.sqrt(np.maximum(spread**2 - part**2, 0.0))
+    effective = effective_degrees_of_freedom(part, degrees_of_freedom, contribution=rest[None])
+    factor = np.asarray(coverage_factor(effective))
     return Expanded(factor * spread, factor)
 
 
@@ -85,10 +87,10 @@ NORMAL = float(expand(1.0).factor)
 """Coverage factor of what is taken as known, or has hundreds of samples behind it. [1]"""
 
 
-def expanded_of(
-    view: TestView, name: str, values: Floats, *, freedom: ArrayLike | None = None
-) -> Expanded:
+def expanded_of(view: TestView, name: str, values: Floats) -> Expanded:
     """Return the expanded uncertainty of a quantity of an archive, in the shape of its values.
+
+    The factor follows from what the archive says its parts were found from.
 
     Parameters
     ----------
@@ -98,16 +100,11 @@ def expanded_of(
         Of the quantity.
     values : ndarray
         Of it.
-    freedom : array_like, optional
-        Degrees of freedom of the random part; as the archive says where not given. [1]
     """
     spread = view.array_like(f"{name}_standard_uncertainty", values)
-    random = view.array(f"{name}_random_standard_uncertainty")
-    return expand(
-        spread,
-        random=random,
-        degrees_of_freedom=degrees_of_freedom(view.data, name) if freedom is None else freedom,
-    )
+    if name not in view.data:
+        return expand(spread)
+    return expand(spread, degrees_of_freedom=effective_freedom(view.data, name))
 
 
 def drawn_interval(view: TestView, name: str, place: int) -> tuple[float, float] | None:

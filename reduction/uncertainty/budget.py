@@ -13,7 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reduction.uncertainty.combine import combined_standard_uncertainty, coverage_factor
+from reduction.uncertainty.combine import (
+    combined_standard_uncertainty,
+    coverage_factor,
+    effective_degrees_of_freedom,
+)
 from reduction.uncertainty.product import Component
 
 __all__ = ["RANDOM", "Budget", "BudgetRow", "budget_of"]
@@ -50,8 +54,8 @@ class Budget:
         [unit]
     coverage_factor : float
         k of the expanded uncertainty, for 95 %. [1]
-    degrees_of_freedom : float
-        Of the random part. [1]
+    degrees_of_freedom, effective_degrees_of_freedom : float
+        Of the random part, and of all parts together, from which k follows. [1]
     rows : tuple of BudgetRow
         Largest first; their shares add up to 1.
     """
@@ -64,6 +68,7 @@ class Budget:
     expanded_uncertainty: float
     coverage_factor: float
     degrees_of_freedom: float
+    effective_degrees_of_freedom: float
     rows: tuple[BudgetRow, ...]
 
 
@@ -132,7 +137,13 @@ def budget_of(
         BudgetRow(source, of, amount, (amount / total) ** 2 if total > 0 else 0.0)
         for (source, of), amount in amounts.items()
     ]
-    factor = float(coverage_factor(total, random, degrees_of_freedom))
+    effective = effective_degrees_of_freedom(
+        random,
+        degrees_of_freedom,
+        contribution=np.array([*contributions.values()], dtype=np.float64),
+        of_contribution=np.array([one.degrees_of_freedom for one in contributions]),
+    )
+    factor = float(coverage_factor(effective))
     return Budget(
         quantity=quantity,
         unit=unit,
@@ -142,5 +153,6 @@ def budget_of(
         expanded_uncertainty=factor * total,
         coverage_factor=factor,
         degrees_of_freedom=degrees_of_freedom,
+        effective_degrees_of_freedom=float(effective),
         rows=tuple(sorted(rows, key=lambda row: (-row.share, row.source, row.of))),
     )

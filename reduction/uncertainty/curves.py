@@ -29,7 +29,7 @@ from reduction.record import Floats
 from reduction.uncertainty.field import ErrorField
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
-__all__ = ["by_diameter", "curve_contributions", "strain_rate_of_wave"]
+__all__ = ["by_diameter", "curve_contributions", "diameter_error", "strain_rate_of_wave"]
 
 Waveform = Literal["triangular", "sinusoidal", "other"]
 
@@ -92,6 +92,37 @@ def strain_rate_of_wave(
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = np.where(rate > 0, -(turn**2) * away / rate, 0.0)
     return rate, slope
+
+
+def diameter_error(errors: InstrumentErrors) -> Component:
+    """Name the error of a diameter, with the degrees of freedom that it has.
+
+    Parameters
+    ----------
+    errors : InstrumentErrors
+        Stated, or of the scatter of readings. [m]
+
+    Returns
+    -------
+    component : Component
+        Of the specimen. [1]
+
+    Raises
+    ------
+    AttributeError
+        If there are no errors.
+
+    Notes
+    -----
+    Readings less one, for their mean; what is stated counts as known.
+
+    Examples
+    --------
+    >>> print(diameter_error(InstrumentErrors("new", diameter=1e-4, diameter_readings=3)))
+    Component(source='diameter', of='new', number=0, degrees_of_freedom=2.0)
+    """
+    freedom = float(errors.diameter_readings - 1) if errors.diameter_readings else np.inf
+    return Component("diameter", errors.specimen, degrees_of_freedom=freedom)
 
 
 def by_diameter(modulus: ArrayLike, errors: InstrumentErrors, *, area: float) -> Floats:
@@ -207,7 +238,7 @@ def curve_contributions(
         tension.append(-late * rise * rate)
         moduli.append(-late * (bend * rate + modulus * faster))
     if errors.diameter:
-        component.append(Component("diameter", errors.specimen))
+        component.append(diameter_error(errors))
         tension.append(np.zeros(modulus.shape))
         moduli.append(by_diameter(modulus, errors, area=area))
     return Contributions(

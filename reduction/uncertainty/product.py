@@ -15,6 +15,7 @@ References
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, fields
 
 import numpy as np
@@ -50,6 +51,8 @@ class InstrumentErrors:
         Of the time by which tension is logged late (or early) against position. [s]
     diameter : float
         Of the mean diameter. [m]
+    diameter_readings : int
+        Readings whose scatter the error of the diameter is; 0 where it is stated. [1]
     strain_gain : float
         Relative, of strain: what the strain method itself may miss. [1]
     rated_break_strength : float
@@ -73,6 +76,7 @@ class InstrumentErrors:
     position_offset: float = 0.0
     lag: float = 0.0
     diameter: float = 0.0
+    diameter_readings: int = 0
     strain_gain: float = 0.0
     rated_break_strength: float = 0.0
     stiffness: float = 0.0
@@ -107,11 +111,15 @@ class Component:
         Of which instrument, specimen or model; with `source` it names the error.
     number : int
         Where one source is several independent errors (the coefficients of a fit). [1]
+    degrees_of_freedom : float
+        Of its standard uncertainty: infinite where that is stated, few where it is the scatter of
+        a few readings. It does not tell two errors apart. [1]
     """
 
     source: str
     of: str
     number: int = 0
+    degrees_of_freedom: float = field(default=math.inf, compare=False)
 
 
 @dataclass(frozen=True)
@@ -143,6 +151,11 @@ class Contributions:
                     found=f"shape {rows.shape}",
                     needed=f"({len(self.component)}, ...)",
                 )
+
+    @property
+    def degrees_of_freedom(self) -> Floats:
+        """Of the standard uncertainty of each component, shape (n_components,). [1]."""
+        return np.array([one.degrees_of_freedom for one in self.component])
 
     def shared_standard_uncertainty(self, name: str) -> Floats:
         """Root of the sum of squares over the components, in the shape of the quantity."""

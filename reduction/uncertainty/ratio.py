@@ -22,7 +22,11 @@ from numpy.typing import ArrayLike
 
 from reduction.moduli.product import Ratio
 from reduction.record import Floats
-from reduction.uncertainty.combine import combined_standard_uncertainty, coverage_factor
+from reduction.uncertainty.combine import (
+    combined_standard_uncertainty,
+    coverage_factor,
+    effective_degrees_of_freedom,
+)
 
 __all__ = ["ratio_contributions", "with_shared_interval"]
 
@@ -80,7 +84,9 @@ def ratio_contributions(
     return np.asarray(value * (above - below))
 
 
-def with_shared_interval(ratio: Ratio, contribution: ArrayLike) -> Ratio:
+def with_shared_interval(
+    ratio: Ratio, contribution: ArrayLike, *, of_contribution: ArrayLike = np.inf
+) -> Ratio:
     """Ratio with the interval of both parts; its standard uncertainty stays the random one.
 
     Parameters
@@ -89,6 +95,8 @@ def with_shared_interval(ratio: Ratio, contribution: ArrayLike) -> Ratio:
         With its interval of type A. [1]
     contribution : array_like, shape (n_components, 2, n_bins)
         Of shared errors. [1]
+    of_contribution : array_like, shape (n_components,), optional
+        Degrees of freedom of each; infinite where it is stated. [1]
 
     Returns
     -------
@@ -117,7 +125,10 @@ def with_shared_interval(ratio: Ratio, contribution: ArrayLike) -> Ratio:
     """
     random = ratio.ratio_standard_uncertainty
     total = combined_standard_uncertainty(np.nan_to_num(contribution), random)
-    reach = total * coverage_factor(total, random, ratio.degrees_of_freedom)
+    freedom = effective_degrees_of_freedom(
+        random, ratio.degrees_of_freedom, contribution=contribution, of_contribution=of_contribution
+    )
+    reach = total * coverage_factor(freedom)
     low, high = ratio.ratio - reach, ratio.ratio + reach
     return replace(
         ratio,

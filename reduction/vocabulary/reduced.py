@@ -125,6 +125,11 @@ OF_REDUCED = (
     ),
     Quantity("modulus_ratio_low", "1", "lower end of the 95 % interval of the modulus ratio"),
     Quantity("modulus_ratio_high", "1", "upper end of the 95 % interval of the modulus ratio"),
+    Quantity(
+        "modulus_ratio_degrees_of_freedom",
+        "1",
+        "degrees of freedom of the random part of the modulus ratio",
+    ),
     Quantity("modulus_ratio_is_different", "1", "whether the interval leaves out 1"),
     Quantity("ratio_numerator", "", "specimen or cycles above the line of the modulus ratio"),
     Quantity("ratio_denominator", "", "specimen below the line of the modulus ratio"),

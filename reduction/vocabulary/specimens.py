@@ -32,6 +32,11 @@ OF_SPECIMENS = (
     Quantity("uncertainty_source", "", "what the shared error is"),
     Quantity("uncertainty_source_of", "", "instrument, specimen or model that the error is of"),
     Quantity("uncertainty_source_number", "1", "place among independent errors of one source"),
+    Quantity(
+        "uncertainty_source_degrees_of_freedom",
+        "1",
+        "degrees of freedom of the standard uncertainty of a shared error; infinite where stated",
+    ),
     Quantity("coefficient_name", "", "coefficient of the strain method"),
     Quantity("coefficient_name_other", "", "coefficient of the strain method, second axis"),
     Quantity("strain_coefficient_correlation", "1", "correlation of two strain coefficients"),

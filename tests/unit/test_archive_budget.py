@@ -7,10 +7,10 @@ import xarray as xr
 from reduction.archive.budget import (
     all_budgets,
     budget_from_archive,
-    degrees_of_freedom,
     place_name,
     quantities_with_budget,
 )
+from reduction.archive.freedom import effective_freedom, random_freedom
 from reduction.errors import ArchiveError, SettingsError
 
 
@@ -79,11 +79,16 @@ def test_a_single_error_keeps_its_sign(archive):
     assert [row.contribution for row in found.rows] == [-4e3, 3e3, 0.0]
 
 
-def test_a_strain_is_that_of_the_bin_that_holds_it(archive):
+def test_a_strain_is_read_between_bins_as_a_look_up_reads_it(archive):
     found = budget_from_archive(archive, "tangent_modulus", {"strain": "1.02"})
-    assert found.value == 6.0
-    assert found.degrees_of_freedom == 3
-    assert found.place == {"specimen": "new", "strain_bin": "1.05"}
+    # 0.7 of the way from 5 to 6
+    assert found.value == pytest.approx(5.7)
+    assert found.standard_uncertainty == pytest.approx(1.0)
+    # means of 10 and of 4 cycles: 1/nu on a straight line
+    assert 1 / found.degrees_of_freedom == pytest.approx(0.3 / 9 + 0.7 / 3)
+    assert found.place == {"specimen": "new", "strain_bin": "1.02"}
+    at_middle = budget_from_archive(archive, "tangent_modulus", {"strain": "1.05"})
+    assert (at_middle.value, at_middle.degrees_of_freedom) == (6.0, pytest.approx(3))
 
 
 def test_what_has_a_budget_is_listed(archive):
@@ -98,7 +103,7 @@ def test_what_has_a_budget_is_listed(archive):
         ("segment_modulus", {"segment": "1"}, SettingsError, "which branch is meant"),
         ("segment_modulus", {"cycle": "1"}, SettingsError, "does not vary with cycle"),
         ("segment_modulus", {"branch": "up", "segment": "1"}, SettingsError, "no branch 'up'"),
-        ("tangent_modulus", {"strain": "3"}, SettingsError, "no bin at 3.*0.9 to 1.1"),
+        ("tangent_modulus", {"strain": "3"}, SettingsError, "no bin at 3.*0.95 to 1.05"),
         (
             "segment_modulus", {"branch": "ascending", "segment": "2"}, ArchiveError,
             "no segment_modulus there; found specimen=new, branch=ascending, segment=2; "
@@ -123,19 +128,19 @@ def test_every_number_of_a_quantity_has_its_budget_and_what_is_no_number_has_non
 
 
 def test_cycles_of_the_break_in_are_not_in_a_mean_and_give_no_degree_of_freedom(archive):
-    assert degrees_of_freedom(archive, "segment_modulus") == 2
+    assert random_freedom(archive, "segment_modulus") == 2
     settings = '{"reduction": {"cycles": {"break_in_cycles": 1}}}'
-    assert degrees_of_freedom(archive.assign_attrs(settings=settings), "segment_modulus") == 1
-    assert degrees_of_freedom(archive.drop_dims("cycle"), "segment_modulus") == 1
-    assert degrees_of_freedom(archive, "tangent_modulus").tolist() == [[9, 3]]
+    assert random_freedom(archive.assign_attrs(settings=settings), "segment_modulus") == 1
+    assert random_freedom(archive.drop_dims("cycle"), "segment_modulus") == 1
+    assert random_freedom(archive, "tangent_modulus").tolist() == [[9, 3]]
 
 
 def test_a_line_over_the_cycles_has_lost_two_and_a_regression_on_samples_counts_as_known(archive):
     with_line = archive.assign(dynamic_modulus_per_decade=("specimen", [1.0]))
-    assert degrees_of_freedom(with_line, "dynamic_modulus_per_decade") == 1
+    assert random_freedom(with_line, "dynamic_modulus_per_decade") == 1
     with_holds = archive.assign(relaxation_drop=("hold", [1.0]))
-    assert np.isinf(degrees_of_freedom(with_holds, "relaxation_drop"))
-    assert np.isinf(degrees_of_freedom(archive, "peak_tension"))
+    assert np.isinf(random_freedom(with_holds, "relaxation_drop"))
+    assert np.isinf(random_freedom(archive, "peak_tension"))
 
 
 def test_every_axis_of_strain_is_asked_for_by_the_word_strain(archive):
@@ -143,22 +148,75 @@ def test_every_axis_of_strain_is_asked_for_by_the_word_strain(archive):
     renamed = archive.rename({first: "first_loading_strain_bin"}).rename(
         {"strain_bin_bounds": "first_loading_strain_bin_bounds"}
     )
-    assert budget_from_archive(renamed, "tangent_modulus", {"strain": "1.02"}).value == 6.0
+    found = budget_from_archive(renamed, "tangent_modulus", {"strain": "1.02"})
+    assert found.value == pytest.approx(5.7)
+    # a single rise: of hundreds of samples, not of cycles
+    assert np.isinf(random_freedom(renamed.drop_vars("tangent_modulus_count"), "tangent_modulus"))
     assert place_name("first_loading_strain_bin") == "strain"
     assert place_name("specimen") == "specimen"
 
 
 def test_where_there_is_no_number_it_says_at_which_strains_there_is(archive):
     archive["tangent_modulus"][0, 0] = np.nan
-    with pytest.raises(ArchiveError, match="found specimen=new, strain=0.95; needed strain 1 to 1"):
+    with pytest.raises(
+        ArchiveError, match="found specimen=new, strain=0.95; needed strain 1.05 to 1.05"
+    ):
         budget_from_archive(archive, "tangent_modulus", {"strain": "0.95"})
     archive["tangent_modulus"][0, 1] = np.nan
     with pytest.raises(ArchiveError, match="needed another place: there is none at any strain"):
         budget_from_archive(archive, "tangent_modulus", {"strain": "0.95"})
 
 
-def test_bins_without_bounds_are_about_their_middles(archive):
+def test_bins_need_no_bounds(archive):
     bins = archive.rename(strain_bin="ratio_strain_bin").drop_vars("strain_bin_bounds")
-    assert budget_from_archive(bins, "tangent_modulus", {"strain": "1.02"}).value == 6.0
-    between = budget_from_archive(bins, "tangent_modulus", {"strain": "1.0"})
-    assert between.value in (5.0, 6.0)
+    found = budget_from_archive(bins, "tangent_modulus", {"strain": "1.0"})
+    assert found.value == pytest.approx(5.5)
+
+
+@pytest.fixture
+def with_readings(archive):
+    component = "uncertainty_component"
+    return archive.assign(
+        diameter=("specimen", [0.02]),
+        diameter_reading=(("specimen", "reading"), [[0.0199, 0.02, 0.0201, np.nan]]),
+        diameter_random_standard_uncertainty=("specimen", [0.0]),
+        diameter_uncertainty_contribution=((component, "specimen"), [[0.0], [0.0], [1e-4]]),
+        uncertainty_source_degrees_of_freedom=(component, [np.inf, np.inf, 2.0]),
+    )
+
+
+def test_a_diameter_of_three_readings_has_two_degrees_of_freedom(with_readings):
+    found = budget_from_archive(with_readings, "diameter", {})
+    assert found.coverage_factor == pytest.approx(4.303, abs=0.001)  # t of 2 at 97.5 %, tables
+    assert effective_freedom(with_readings, "diameter").tolist() == [2.0]
+    old = with_readings.drop_vars("diameter_uncertainty_contribution")
+    old["diameter_random_standard_uncertainty"] = ("specimen", [1e-4])
+    assert effective_freedom(old, "diameter").tolist() == [2.0]
+
+
+def test_the_few_readings_of_a_diameter_go_on_into_a_modulus(with_readings):
+    at = {"branch": "descending", "segment": "1"}
+    found = budget_from_archive(with_readings, "segment_modulus", at)
+    # 41^2 over (16^2/2 of three cycles, 0, 9^2 and 16^2/2): the third row is of few readings
+    assert found.effective_degrees_of_freedom == pytest.approx(41**2 / (16**2 / 2 + 16**2 / 2))
+    everywhere = effective_freedom(with_readings, "segment_modulus")
+    assert everywhere[0, 1, 0] == pytest.approx(found.effective_degrees_of_freedom)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("bedding_first_stiffness", np.inf), ("pull_peak_tension", np.inf),
+        ("permanent_set", np.inf), ("test_quasi_static_spring_constant", np.inf),
+        ("dynamic_stiffness", 4), ("dynamic_stiffness_drift", 3), ("test_apparent", 2),
+        ("dynamic_modulus_per_decade", 1),
+    ],
+)  # fmt: skip
+def test_a_number_counts_what_it_was_found_from(archive, name, expected):
+    with_levels = archive.assign(dynamic_cycles=("specimen", [5]))
+    assert np.all(random_freedom(with_levels, name) == expected)
+
+
+def test_a_mean_of_one_cycle_is_known_by_the_samples_of_it(archive):
+    archive["tangent_modulus_count"][0, 1] = 1
+    assert random_freedom(archive, "tangent_modulus").tolist() == [[9, np.inf]]

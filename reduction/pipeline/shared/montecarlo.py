@@ -14,7 +14,11 @@ from reduction.line.sensitivity import AMPLITUDE_INPUTS, FUNDAMENTAL_INPUTS
 from reduction.product import ReducedTest
 from reduction.record import Floats
 from reduction.settings import CycleSettings
-from reduction.uncertainty.combine import combined_standard_uncertainty, coverage_factor
+from reduction.uncertainty.combine import (
+    combined_standard_uncertainty,
+    coverage_factor,
+    effective_degrees_of_freedom,
+)
 from reduction.uncertainty.montecarlo import PARAMETERS, LineDraws, draw_line
 from reduction.uncertainty.product import LINE_METHODS, LineSpread
 
@@ -48,8 +52,11 @@ def with_line_spread(test: ReducedTest, cycles: CycleSettings) -> ReducedTest:
     high: dict[str, Floats] = {}
     for row, name in enumerate(PARAMETERS):
         random = line.random_uncertainty[name]
-        linear = combined_standard_uncertainty(_shared(test, line, name), random)
-        half = coverage_factor(linear, random, freedom) * linear
+        shared = _shared(test, line, name)
+        linear = combined_standard_uncertainty(shared, random)
+        half = linear * coverage_factor(
+            effective_degrees_of_freedom(random, freedom, contribution=shared)
+        )
         value = getattr(line, name)
         chosen = [method == LINE_METHODS[one] for one in ("linear", "monte_carlo")]
         for found, pair in (

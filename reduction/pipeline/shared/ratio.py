@@ -45,12 +45,15 @@ def of_ratios(test: ReducedTest, found: Contributions) -> list[Contributions]:
 
 def with_shared_ratios(test: ReducedTest) -> ReducedTest:
     """Ratios with the interval of all errors; as they are where none is shared."""
-    rows = None if test.contributions is None else test.contributions.values.get("modulus_ratio")
-    if rows is None:
+    shared = test.contributions
+    rows = None if shared is None else shared.values.get("modulus_ratio")
+    if shared is None or rows is None:
         return test
     names = {one.name for one in test.specimens}
     wider = [
-        with_shared_interval(ratio, rows[:, place]) if ratio.numerator in names else ratio
+        with_shared_interval(ratio, rows[:, place], of_contribution=shared.degrees_of_freedom)
+        if ratio.numerator in names
+        else ratio
         for place, ratio in enumerate(test.ratios)
     ]
     return replace(test, ratios=tuple(wider))

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from reduction.archive.budget import degrees_of_freedom
+from reduction.archive.freedom import random_freedom
 from reduction.record import Floats
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure
 from reduction.report.style import COLOURS, DASHES, Shown, shown
 from reduction.report.uncertainty import (
-    MANY,
     NORMAL,
     Expanded,
     expand,
@@ -101,7 +100,7 @@ def draw_cycle_curves(view: TestView) -> list[Figure]:
     if strain is None or modulus is None or cycles is None or cycles.size < 2:
         return []
     in_stress, in_strain = shown("stress", view.units), shown("strain", view.units)
-    spread = expanded_of(view, "tangent_modulus_by_cycle", modulus, freedom=MANY).half
+    spread = expanded_of(view, "tangent_modulus_by_cycle", modulus).half
     x = strain * in_strain.factor
     found = []
     for index, specimen in enumerate(view.specimens):
@@ -135,7 +134,7 @@ def _scatter_of(view: TestView, modulus: Floats) -> Expanded:
     both = view.array_like(f"{name}_standard_uncertainty", modulus)
     random = view.array(f"{name}_random_standard_uncertainty")
     return expand(
-        both if random is None else random, degrees_of_freedom=degrees_of_freedom(view.data, name)
+        both if random is None else random, degrees_of_freedom=random_freedom(view.data, name)
     )
 
 

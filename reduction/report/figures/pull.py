@@ -7,7 +7,7 @@ import numpy as np
 from reduction.report.decimate import keep_extremes
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure
 from reduction.report.style import colour, shown
-from reduction.report.uncertainty import MANY, NORMAL, expanded_of, plus_minus_of_tests
+from reduction.report.uncertainty import NORMAL, expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView
 
 __all__ = ["draw_pull"]
@@ -21,7 +21,7 @@ def draw_pull(view: TestView) -> list[Figure]:
     constant = view.array("quasi_static_spring_constant")
     if grid is None or strain is None or constant is None:
         return []
-    half = expanded_of(view, "quasi_static_spring_constant", constant, freedom=MANY).half
+    half = expanded_of(view, "quasi_static_spring_constant", constant).half
     force, percent = shown("tension", view.units), shown("strain", view.units)
     curves: list[Trace] = []
     slopes: list[Trace] = []

@@ -6,7 +6,7 @@ import numpy as np
 
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
 from reduction.report.style import COLOURS, DASHES, plot_text, shown
-from reduction.report.uncertainty import MANY, NORMAL, expanded_of, plus_minus_of_steps
+from reduction.report.uncertainty import NORMAL, expanded_of, plus_minus_of_steps
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_VALUES
 
@@ -82,7 +82,7 @@ def _moduli(view: TestView) -> Figure:
     data: list[Trace] = []
     middle, modulus = view.array("interval_strain"), view.array("interval_modulus")
     if middle is not None and modulus is not None:
-        half = expanded_of(view, "interval_modulus", modulus, freedom=MANY).half
+        half = expanded_of(view, "interval_modulus", modulus).half
         branch = view.array_like("interval_branch", modulus)
         for name, tint in _TINTS.items():
             own = (branch == BRANCH_VALUES[name]) & np.isfinite(modulus)

@@ -10,7 +10,7 @@ from reduction.record import Floats
 from reduction.report.decimate import POINTS, keep_extremes
 from reduction.report.figure import Figure, Trace, axis, band, line, make_figure
 from reduction.report.style import Kind, colour, faded, plot_text, shown
-from reduction.report.uncertainty import MANY, NORMAL, expanded_of, plus_minus
+from reduction.report.uncertainty import NORMAL, expanded_of, plus_minus
 from reduction.report.view import TestView
 
 __all__ = ["LONG", "draw_trends"]
@@ -49,7 +49,7 @@ def draw_trends(view: TestView) -> list[Figure]:
             values = view.array(name)
             if values is None:
                 continue
-            spread = expanded_of(view, name, values, freedom=MANY).half
+            spread = expanded_of(view, name, values).half
             for index, specimen in enumerate(view.specimens):
                 kept = keep_extremes(place, values[index], limit=POINTS)
                 x, y = cycle[kept], values[index, kept] * unit.factor
