@@ -25,7 +25,6 @@ from reduction.report.htmltable import (
 from reduction.report.style import Shown, shown, superscript
 from reduction.report.uncertainty import (
     DRAWN,
-    MANY,
     NORMAL,
     drawn_interval,
     expanded_of,
@@ -185,7 +184,7 @@ def pull_table(view: TestView) -> Table | None:
     if coefficient is None:
         return None
     force, percent = shown("tension", view.units), shown("strain", view.units)
-    half = expanded_of(view, "pull_strain_coefficient", coefficient, freedom=MANY).half
+    half = expanded_of(view, "pull_strain_coefficient", coefficient).half
     given = [k for k in range(len(view.specimens)) if np.isfinite(coefficient[k]).any()]
     rows = []
     for power, term in enumerate(_TERMS):
@@ -224,7 +223,7 @@ def pull_share_table(view: TestView) -> Table | None:
     share, strain = view.array("break_share"), view.array("strain_at_break_share")
     if share is None or strain is None:
         return None
-    half = expanded_of(view, "strain_at_break_share", strain, freedom=MANY).half
+    half = expanded_of(view, "strain_at_break_share", strain).half
     percent = shown("strain", view.units)
     kept = np.flatnonzero(np.isfinite(strain).any(axis=0))
     if kept.size == 0:
