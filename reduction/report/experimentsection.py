@@ -19,11 +19,8 @@ from reduction.report.figures.lines import draw_derived, draw_forms, draw_single
 from reduction.report.figures.screening import confounding_words, draw_effects
 from reduction.report.figures.surfacechecks import draw_checks, draw_pareto
 from reduction.report.figures.surfaces import draw_contours, draw_surface
-from reduction.report.linetables import (
-    form_quality_table,
-    form_table,
-    line_of_runs_table,
-)
+from reduction.report.formtables import form_quality_table, form_table
+from reduction.report.linetables import line_of_runs_table
 from reduction.report.section import Part, Section, make_part, provenance_of
 from reduction.report.surfacegrid import make_planes, negative_inside
 from reduction.report.surfacetables import anova_table, coefficient_table, quality_table

@@ -9,8 +9,8 @@ import numpy as np
 from reduction.record import Floats
 from reduction.report.experimentview import ExperimentView, in_words, response_unit
 from reduction.report.figures.surfaces import base_response
+from reduction.report.formtables import FORM_WORDS
 from reduction.report.htmltable import number_text, share_text
-from reduction.report.linetables import FORM_WORDS
 from reduction.report.summary import Finding
 from reduction.report.surfacegrid import negative_inside
 from reduction.surface.product import (

@@ -24,7 +24,8 @@ from reduction.report.figures.stepwise import draw_steps
 from reduction.report.figures.trends import draw_trends
 from reduction.report.holdtables import hold_table, prony_table, refusals
 from reduction.report.htmltable import Table
-from reduction.report.linetables import line_table, pull_share_table, pull_table
+from reduction.report.linetables import line_table
+from reduction.report.pulltables import pull_share_table, pull_table
 from reduction.report.specimentables import (
     coefficient_table,
     history_table,

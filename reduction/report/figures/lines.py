@@ -10,8 +10,8 @@ import numpy as np
 from reduction.record import Bools, Floats, Integers
 from reduction.report.experimentview import ExperimentView, response_unit
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
+from reduction.report.formtables import FORM_WORDS
 from reduction.report.htmltable import number_text
-from reduction.report.linetables import FORM_WORDS
 from reduction.report.style import COLOURS, SYMBOLS, colour, plot_text, shown
 from reduction.report.surfaceuncertainty import expanded_of_runs
 from reduction.report.uncertainty import factor_words
