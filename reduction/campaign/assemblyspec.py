@@ -1,4 +1,4 @@
-"""SPEC.toml of a deployed assembly: its tethers, their curve and splices, what is in line."""
+"""SPEC.toml of a deployed assembly to a case in SI: its tethers, their curve and splices."""
 
 from __future__ import annotations
 
@@ -7,103 +7,25 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
 
+from reduction.campaign.assemblykeys import (
+    AssemblyFile,
+    AssemblyKeys,
+    PartKeys,
+    SpliceKeys,
+    WorkingKeys,
+)
 from reduction.campaign.faults import in_toml
-from reduction.campaign.quantities import Number, TableReader
+from reduction.campaign.quantities import TableReader
 from reduction.campaign.toml import read_toml
 from reduction.errors import SettingsError
 from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.pieces import PieceBranch, PieceKind
+from reduction.lookup.pieces import PieceBranch
 from reduction.lookup.splices import StatedSplices
 from reduction.lookup.tethers import SeriesPart
 from reduction.pipeline.deployed import WorkingLevel
 
-__all__ = [
-    "AssemblyCase",
-    "AssemblyFile",
-    "AssemblyKeys",
-    "CurveKeys",
-    "PartKeys",
-    "SpliceKeys",
-    "WorkingKeys",
-    "load_assembly_case",
-]
-
-_MOST_TETHERS = 100
-
-
-class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class CurveKeys(_Section):
-    """``[assembly.curve]``: what `reduction composite` is told."""
-
-    source: str | tuple[str, ...]
-    """A published tether, or archives and folders beside the file."""
-    specimen: str | None = None
-    branch: PieceBranch | None = None
-    precedence: tuple[PieceKind, ...] | None = None
-
-
-class SpliceKeys(_Section):
-    """``[assembly.splices]``; without it those of the tested tether."""
-
-    length: str
-    """Of both together, relaxed; 0 m where there are none."""
-    strain_ratio: Number | None = None
-    """Their strain over that of the free length."""
-    strain: Number | None = None
-    """Theirs, at ``at_tension``."""
-    at_tension: str | None = None
-    exponent: Number = 1.0
-    """Of the tension, with ``strain``."""
-
-
-class PartKeys(_Section):
-    """``[[assembly.parts]]``: in line with the tethers."""
-
-    name: str = ""
-    length: str
-    spring_constant: str | None = None
-    """Force per unit strain; rigid if nothing."""
-
-
-class WorkingKeys(_Section):
-    """``[[assembly.working]]``: one of tension, total length and strain."""
-
-    tension: str | None = None
-    total_length: str | None = None
-    strain: Number | None = None
-    """Of the free length of a tether."""
-    tension_amplitude: str = "0 N"
-
-
-class AssemblyKeys(_Section):
-    """``[assembly]``."""
-
-    n_tethers: int | None = Field(default=None, ge=1, le=_MOST_TETHERS)
-    """All alike; or ``free_lengths``."""
-    free_length: str | None = None
-    """Of the rubber, relaxed; that of the tested tether if nothing."""
-    free_lengths: tuple[str, ...] | None = Field(
-        default=None, min_length=1, max_length=_MOST_TETHERS
-    )
-    tolerance: Number | None = None
-    """Of the free lengths: the greatest and the least load of a tether follow."""
-    rated_break_strength: str | None = None
-    """Of one tether; that of the source if nothing."""
-    curve: CurveKeys
-    splices: SpliceKeys | None = None
-    parts: tuple[PartKeys, ...] = ()
-    working: tuple[WorkingKeys, ...] = ()
-
-
-class AssemblyFile(_Section):
-    """The whole of SPEC.toml."""
-
-    assembly: AssemblyKeys
+__all__ = ["AssemblyCase", "load_assembly_case"]
 
 
 @dataclass(frozen=True)

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign.assemblyspec import (
+from reduction.campaign.assemblykeys import (
     AssemblyKeys,
     CurveKeys,
     PartKeys,
     SpliceKeys,
     WorkingKeys,
-    load_assembly_case,
 )
+from reduction.campaign.assemblyspec import load_assembly_case
 from reduction.cli.assembly import deployed_line
 
 DOCS = Path(__file__).parents[2] / "docs"
