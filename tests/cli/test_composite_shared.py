@@ -1,0 +1,118 @@
+"""A load cell that all tests have, in their composite: stated, and wrong in every log."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from reduction.archive.open import open_archive
+from reduction.batch.run import run_campaign
+from reduction.campaign.load import load_campaign
+
+RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
+TESTS = ("T-1", "T-2")
+STATED = """
+[uncertainty.tension]
+gain = "10 %"
+one_load_cell = true
+"""
+
+
+def reduced(folder, stated, *, factor=1.0):
+    """Two tests of the campaign with nothing stated but this, every log times a factor."""
+    raw = folder / "raw"
+    raw.mkdir(parents=True)
+    for path in RAW.glob("*.csv"):
+        if path.name == "marks.csv" or factor == 1.0:
+            shutil.copy(path, raw / path.name)
+            continue
+        log = pd.read_csv(path, comment="#")
+        loads = [name for name in log if name.startswith("load_")]
+        log[loads] *= factor
+        log.to_csv(raw / path.name, index=False, float_format="%.6f")
+    text = (RAW / "campaign.toml").read_text(encoding="utf-8")
+    head, rest = text.split("[uncertainty]")
+    text = head + stated + "\n[defaults]" + rest.split("[defaults]")[1]
+    (raw / "campaign.toml").write_text(text, encoding="utf-8")
+    run = run_campaign(
+        load_campaign(raw / "campaign.toml"), processed=folder / "p", reports=folder / "r",
+        clock=lambda: 0.0, tests=list(TESTS),
+    )  # fmt: skip
+    return run.processed
+
+
+@pytest.fixture(scope="module")
+def nothing(tmp_path_factory):
+    return reduced(tmp_path_factory.mktemp("nothing"), "")
+
+
+@pytest.fixture(scope="module")
+def gain(tmp_path_factory):
+    return reduced(tmp_path_factory.mktemp("gain"), STATED)
+
+
+def composite(command, processed, *options, tests=TESTS):
+    paths = [processed / f"{name}.nc" for name in tests]
+    done = command("composite", *paths, "--specimen", "new", *options, "--json")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    return {
+        name: np.array(value) if name.startswith(("strain", "tension_", "tension")) else value
+        for name, value in found.items()
+        if name != "tension_uncertainty_contributions"
+    } | {"rows": found["tension_uncertainty_contributions"]}
+
+
+def test_the_mean_of_both_branches_has_the_whole_gain(command, gain):
+    found = composite(command, gain, "--precedence", "cyclic", tests=["T-1"])
+    share = found["tension_standard_uncertainty"][3:] / found["tension"][3:]
+    assert share == pytest.approx(np.full(share.size, 0.1), rel=2e-3)
+
+
+@pytest.mark.parametrize("branch", ["mean", "ascending"])
+def test_a_gain_makes_the_curve_less_sure_and_its_pieces_no_more_alike(
+    command, nothing, gain, branch
+):
+    """Taken as random, 10 % explained all that is between these tests."""
+    before, after = (composite(command, one, "--branch", branch) for one in (nothing, gain))
+    assert before["between_pieces"] > 0.04
+    assert after["between_pieces"] == pytest.approx(before["between_pieces"], rel=1e-3)
+    assert after["tension"] == pytest.approx(before["tension"], rel=1e-6)
+    for strain in (0.8, 1.2):
+        u = [
+            np.interp(strain, one["strain"], one["tension_standard_uncertainty"])
+            / np.interp(strain, one["strain"], one["tension"])
+            for one in (before, after)
+        ]
+        assert u[1] == pytest.approx(np.hypot(u[0], 0.1), rel=1e-3)
+    parts = [after[f"tension_{part}_standard_uncertainty"] for part in ("random", "shared")]
+    assert np.hypot(*parts) == pytest.approx(after["tension_standard_uncertainty"])
+
+
+def test_the_curve_moves_by_what_it_says_where_every_log_reads_1_percent_high(
+    command, gain, tmp_path
+):
+    high = composite(command, reduced(tmp_path, STATED, factor=1.01))
+    found = composite(command, gain)
+    (row,) = [one for one in found["rows"] if one["source"] == "tension_gain"]
+    moved = np.interp(found["strain"], high["strain"], high["tension"]) - found["tension"]
+    # a tenth of the stated gain
+    inner = found["tension"] > 0.1 * found["tension"].max()
+    assert moved[inner] == pytest.approx(0.1 * np.array(row["contribution"])[inner], rel=0.02)
+
+
+def test_an_archive_that_keeps_nothing_apart_is_named_and_counts_as_its_own(
+    command, gain, tmp_path
+):
+    shutil.copy(gain / "T-2.nc", tmp_path)
+    with open_archive(gain / "T-1.nc") as archive:
+        old = archive.load().drop_vars(
+            [name for name in archive.variables if "_uncertainty_contribution" in str(name)]
+        )
+    old.to_netcdf(tmp_path / "T-1.nc")
+    found = composite(command, tmp_path)
+    assert any(note.startswith("T-1: what is shared with other tests") for note in found["notes"])
+    assert not any(note.startswith("T-2: what is shared") for note in found["notes"])
