@@ -24,7 +24,8 @@ _RULE = (
     "The curve is the one that rises and is nearest to all pieces, each weighted by its "
     "uncertainty and by what pieces of its kind differ by."
 )
-_DOUBTS = ("no pieces of one curve", "slipped", "not known", "extrapolated")
+_RULED = "local EA by the rule"
+_DOUBTS = ("DOUBTFUL", "no pieces of one curve", "slipped", "not known", "extrapolated")
 
 
 def write_composite_page(
@@ -61,7 +62,7 @@ def write_composite_page(
     )  # fmt: skip
     _write(
         path, f"Composite curve of {source.name}", [part], tiles=tiles, units=units,
-        notes=(*curve.notes, *source.notes), sources=source.sources,
+        notes=(*_doubt(curve), *curve.notes, *source.notes), sources=source.sources,
         synthetic=source.is_synthetic, subtitle=f"Branch: {source.branch}.",
     )  # fmt: skip
 
@@ -101,10 +102,15 @@ def write_assembly_page(found: DeployedLine, path: Path, *, units: UnitSystem = 
     ]  # fmt: skip
     _write(
         path, f"Assembly {found.name}", parts, tiles=tiles, units=units,
-        notes=(*found.deployed.notes, *found.curve.notes, *source.notes),
+        notes=(*_doubt(found.curve), *found.deployed.notes, *found.curve.notes, *source.notes),
         sources=(found.splices, *source.sources), synthetic=source.is_synthetic,
         subtitle=f"{found.words}.",
     )  # fmt: skip
+
+
+def _doubt(curve: CompositeCurve) -> tuple[str, ...]:
+    """What makes a curve doubtful as a whole, to stand before its notes."""
+    return (f"DOUBTFUL: {curve.doubt}",) if curve.doubt else ()
 
 
 def _piece_table(source: PieceSource, curve: CompositeCurve, units: UnitSystem) -> Table:
@@ -139,14 +145,18 @@ def _working_table(found: DeployedLine, units: UnitSystem) -> Table | None:
     rows = []
     for place, state in enumerate(found.deployed.working, start=1):
         point, sharing = state.point, state.sharing
+        has_cycle = bool(state.level.tension_amplitude)
+        doubts = (("not tested", not point.is_tested), (_RULED, state.is_moved and not has_cycle))
+        local = float("nan") if has_cycle else float(point.apparent_spring_constant)
         rows.append(
             [
-                words(f"{place}" if point.is_tested else f"{place}, not tested"),
+                words(", ".join([str(place), *(word for word, holds in doubts if holds)])),
                 measured(float(point.mean_tension), NORMAL * state.standard_uncertainty, force),
                 number(state.level.tension_amplitude, force),
                 number(float(point.total_length), length),
                 number(float(state.strain.max()), percent),
-                number(float(point.apparent_spring_constant), force),
+                number(state.secant_spring_constant, force),
+                number(local, force),
                 number(float(point.peak_tether_tension.max()), force),
                 number(100 * float(point.peak_share.max())),
                 number(float("nan") if sharing is None else float(sharing.least_load), force),
@@ -159,15 +169,17 @@ def _working_table(found: DeployedLine, units: UnitSystem) -> Table | None:
         "Working points.",
         (
             "point", force.label("tension"), force.label("amplitude"), length.label("length"),
-            percent.label("strain of a tether"), force.label("EA"),
+            percent.label("strain of a tether"), force.label("EA"), force.label("local EA"),
             force.label("greatest of a tether"), "of its strength [%]",
             force.label("least by the tolerance"), force.label("greatest by the tolerance"),
         ),
         rows, synthetic=found.source.is_synthetic,
         remarks=[
             f"±: expanded uncertainty, 95 % ({factor_words([NORMAL])}), of the curve at that"
-            " length. EA is that of the cycle, peak to valley, and the tangent where there is"
-            " none. Loads by the tolerance of the lengths are at the mean tension."
+            " length. EA is that of the cycle, peak to valley; where there is none it is over 5 %"
+            " of the length to each side, and the tangent stands beside it as local EA, which is"
+            " doubtful where it is that of the rule of rising. Loads by the tolerance of the"
+            " lengths are at the mean tension."
         ],
     )  # fmt: skip
 

@@ -100,3 +100,52 @@ def test_a_page_of_an_assembly_lists_its_working_points(tmp_path):
     write_assembly_page(deployed(levels=()), path, units="us")
     text = path.read_text(encoding="utf-8")
     assert "Working points." not in text and "US customary" in text
+
+
+def test_a_point_without_a_cycle_has_the_slope_of_the_curve_around_it_and_the_local_one(tmp_path):
+    # the pieces fall at a strain of 1: the curve rises there by the rule, as softly as it may
+    at = np.linspace(0.5, 2.0, 61)
+    falling = 400 * at - 150 * np.exp(-(((at - 1.1) / 0.08) ** 2))
+    source = PieceSource(
+        "tether", "mean", (CurvePiece("T-1", "cyclic", "mean", at, falling, np.full(61, 2.0)),),
+        is_synthetic=True,
+    )  # fmt: skip
+    curve = compose(source, CompositeRule())
+    found = deploy(
+        curve, DRIVEN, n_tethers=1,
+        levels=(WorkingLevel("strain", 1.05), WorkingLevel("strain", 1.05, 50.0)),
+    )  # fmt: skip
+    still, cycled = found.working
+    assert still.is_moved
+    path = tmp_path / "a.html"
+    write_assembly_page(DeployedLine("a", found, source, curve, "its own law", ()), path)
+    text = path.read_text(encoding="utf-8")
+    (body,) = re.findall(r"Working points\..*?<tbody>(.*?)</tbody>", text, re.S)
+    rows = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.S) for row in body.split("</tr>")[:2]]
+    (first, second) = ([re.sub(r"<[^>]+>", "", cell) for cell in row] for row in rows)
+    assert first[0] == "1, local EA by the rule" and second[0] == "2"
+    length, tension = found.assembly.total_length, found.assembly.tension
+    at_ends = np.interp(still.point.total_length * np.array([0.95, 1.05]), length, tension)
+    step = 0.1 * float(still.point.total_length) / length[0]
+    assert float(first[5]) == pytest.approx(np.ptp(at_ends) / step, rel=2e-3)
+    assert float(first[6]) == pytest.approx(float(still.point.apparent_spring_constant), rel=1e-3)
+    assert float(second[5]) == pytest.approx(cycled.secant_spring_constant, rel=1e-3)
+    assert second[6] == first[8]  # nothing: a cycle has one EA, and there is no tolerance
+    assert "the tangent stands beside it" in text
+
+
+def test_a_curve_far_from_a_piece_is_doubtful_on_both_pages(tmp_path):
+    at = np.linspace(0.5, 1.0, 11)
+    source = PieceSource(
+        "tether", "ascending", tuple(
+            CurvePiece(f"T-{place}", "static", "ascending", at, load * at, 0 * at)
+            for place, load in enumerate((*[100.0] * 5, 200.0))
+        ),
+    )  # fmt: skip
+    curve = compose(source, CompositeRule())
+    path = tmp_path / "c.html"
+    write_composite_page(source, curve, path)
+    assert "DOUBTFUL: up to 2.2" in path.read_text(encoding="utf-8")
+    found = deploy(curve, DRIVEN, n_tethers=1)
+    write_assembly_page(DeployedLine("a", found, source, curve, "its own law", ()), path)
+    assert "DOUBTFUL: up to 2.2" in path.read_text(encoding="utf-8")
