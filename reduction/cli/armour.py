@@ -10,8 +10,8 @@ import numpy as np
 
 from reduction.archive.write import write_whole
 from reduction.campaign.armourspec import load_armour_case
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.errors import DataError, SettingsError
 from reduction.pipeline.armour import PredictedArmour, predict_armour_case
 from reduction.report.predictionpage import write_armour_page
@@ -34,7 +34,7 @@ _OF_LAYER = {
 }  # fmt: skip
 
 
-def predict_cable(path: Path, *, out: Path | None, outcome: Outcome) -> None:
+def predict_cable(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Predict the armour of SPEC.toml and print it; with ``out``, write tables and page."""
     case = load_armour_case(path)
     try:
@@ -45,16 +45,16 @@ def predict_cable(path: Path, *, out: Path | None, outcome: Outcome) -> None:
         raise type(error)(
             f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
         ) from error
-    units = cast("UnitSystem", outcome.units)
-    _show(found, outcome, units)
+    units = cast("UnitSystem", output.units)
+    _show(found, output, units)
     if out is not None:
         wires, layers = out / "tables" / "armour_wires.csv", out / "tables" / "armour_layers.csv"
         write_whole(wires, _wires_csv(found))
         write_whole(layers, _layers_csv(found))
         page = write_armour_page(found, out, name=case.name, units=units)
-        outcome.say(f"tables: {wires}, {layers}")
-        outcome.say(f"figures: {page}")
-    outcome.answer(document(found) | {"name": case.name, "out": None if out is None else str(out)})
+        output.say(f"tables: {wires}, {layers}")
+        output.say(f"figures: {page}")
+    output.answer(document(found) | {"name": case.name, "out": None if out is None else str(out)})
 
 
 def _wires_csv(found: PredictedArmour) -> str:
@@ -88,7 +88,7 @@ def _layers_csv(found: PredictedArmour) -> str:
     )
 
 
-def _show(found: PredictedArmour, outcome: Outcome, system: UnitSystem) -> None:
+def _show(found: PredictedArmour, output: CommandOutput, system: UnitSystem) -> None:
     force, per_newton = display_unit("N", system)
     stress, per_pascal = display_unit("Pa", system)
     if system == "si":
@@ -105,7 +105,7 @@ def _show(found: PredictedArmour, outcome: Outcome, system: UnitSystem) -> None:
             table.add_row(
                 name, theory, *(short(a * b) for a, b in zip(scales, numbers, strict=True))
             )
-    outcome.show(table)
+    output.show(table)
     table = table_of(
         "layer", f"tension [{force}]", "torque [N m]", f"pressure [{stress}]",
         f"von Mises [{stress}]", "filled [%]", "gap [mm]", "thinning [%]",
@@ -123,23 +123,23 @@ def _show(found: PredictedArmour, outcome: Outcome, system: UnitSystem) -> None:
             short(1e3 * float(found.gap[place]), 4),
             short(100 * float(found.thinning_loss[place]), 2),
         )
-    outcome.show(table)
+    output.show(table)
     held, free = found.axial_stiffness
-    outcome.say(
+    output.say(
         f"cable: tension {per_newton * float(found.together.tension[0]):.5g} {force}, torque "
         f"{float(found.together.torque[0]):.4g} N m; axial stiffness {per_newton * held:.5g} "
         f"{force} held from turning, {per_newton * free:.5g} {force} free to turn"
     )
     if found.strength is not None:
-        outcome.say(
+        output.say(
             f"first yield: {found.layer_names[found.strength.governing_layer]} at "
             f"{100 * found.strength.strain:.4g} %, tension of the cable "
             f"{per_newton * found.strength.tension:.5g} {force}"
         )
     for sentence in found.use[0].statement:
-        outcome.say(f"  {sentence}")
+        output.say(f"  {sentence}")
     for note in found.notes:
-        outcome.say(f"note: {note}")
+        output.say(f"note: {note}")
 
 
 def document(found: PredictedArmour) -> dict[str, Any]:

@@ -10,10 +10,10 @@ import numpy as np
 from reduction.campaign.assemblyspec import AssemblyCase, load_assembly_case
 from reduction.campaign.faults import in_toml
 from reduction.cli.assemblydocument import assembly_document
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.composite import PAGE, table_format
 from reduction.cli.compositesource import piece_source
 from reduction.cli.numbers import short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.errors import DataError, ReductionError
 from reduction.export.fromassembly import assembly_table
 from reduction.export.write import export_table
@@ -30,19 +30,19 @@ __all__ = ["assemble_spec", "deployed_line"]
 _ROWS = 16
 
 
-def assemble_spec(path: Path, *, out: Path | None, outcome: Outcome) -> None:
+def assemble_spec(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Print curve and work of the assembly of SPEC.toml; with ``out``, write every node."""
     form = None if out is None else table_format(out)
     line = deployed_line(path)
-    units = cast("UnitSystem", outcome.units)
-    _show(line, outcome, units)
+    units = cast("UnitSystem", output.units)
+    _show(line, output, units)
     if out is not None and form is not None:
         if form == PAGE:
             write_assembly_page(line, out, units=units)
         else:
             export_table(assembly_table(line), form, out, units=units)
-        outcome.say(f"written: {out}")
-    outcome.answer(assembly_document(line) | {"out": None if out is None else str(out)})
+        output.say(f"written: {out}")
+    output.answer(assembly_document(line) | {"out": None if out is None else str(out)})
 
 
 def deployed_line(path: Path) -> DeployedLine:
@@ -138,14 +138,14 @@ def _splices_told(case: AssemblyCase, model: StrainModel) -> str:
     return f"length of a tether by {model.method}, {where}: {numbers}"
 
 
-def _show(line: DeployedLine, outcome: Outcome, system: UnitSystem) -> None:
+def _show(line: DeployedLine, output: CommandOutput, system: UnitSystem) -> None:
     deployed, assembly = line.deployed, line.deployed.assembly
     force, per_newton = display_unit("N", system)
     length, per_metre = display_unit("m", system)
     made = ", SYNTHETIC: nothing was tested" if line.source.is_synthetic else ""
-    outcome.say(f"assembly {line.name}: {line.words}{made}")
+    output.say(f"assembly {line.name}: {line.words}{made}")
     slack = assembly.slack_length
-    outcome.say(
+    output.say(
         f"slack below {per_metre * float(assembly.total_length[0]):.5g} {length}"
         + (
             f"; the longest tether below {per_metre * float(slack.max()):.5g} {length}"
@@ -185,13 +185,13 @@ def _show(line: DeployedLine, outcome: Outcome, system: UnitSystem) -> None:
                 if flag
             ),
         )
-    outcome.show(table)
+    output.show(table)
     for number, state in enumerate(deployed.working, start=1):
-        _show_working(number, state, outcome, system)
+        _show_working(number, state, output, system)
     for text in (*deployed.notes, *line.curve.notes, *line.source.notes):
-        outcome.say(f"note: {text}")
+        output.say(f"note: {text}")
     for text in (line.splices, *line.source.sources):
-        outcome.say(f"source: {text}")
+        output.say(f"source: {text}")
 
 
 def _pair(values: Any, *, equal: bool) -> str:
@@ -201,7 +201,9 @@ def _pair(values: Any, *, equal: bool) -> str:
     return f"{short(float(values.max()), 4)}, {short(float(values.min()), 4)}"
 
 
-def _show_working(number: int, state: WorkingState, outcome: Outcome, system: UnitSystem) -> None:
+def _show_working(
+    number: int, state: WorkingState, output: CommandOutput, system: UnitSystem
+) -> None:
     force, per_newton = display_unit("N", system)
     length, per_metre = display_unit("m", system)
     point = state.point
@@ -237,4 +239,4 @@ def _show_working(number: int, state: WorkingState, outcome: Outcome, system: Un
             f"{per_newton * float(state.sharing.least_load):.4g} to "
             f"{per_newton * float(state.sharing.greatest_load):.4g} {force} at the mean"
         )
-    outcome.say(told + ("" if point.is_tested else "; NOT TESTED there"))
+    output.say(told + ("" if point.is_tested else "; NOT TESTED there"))

@@ -11,8 +11,8 @@ import xarray as xr
 
 from reduction.archive.budget import budget_from_archive, place_name, quantities_with_budget
 from reduction.archive.open import open_archive
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.errors import SettingsError
 from reduction.uncertainty.budget import Budget
 from reduction.uncertainty.montecarlo import PARAMETERS
@@ -24,26 +24,26 @@ __all__ = ["list_budgets", "show_budget"]
 _WIDTH = 30
 
 
-def list_budgets(path: Path, *, outcome: Outcome) -> None:
+def list_budgets(path: Path, *, output: CommandOutput) -> None:
     """Print what PRODUCT keeps a budget of."""
     with open_archive(path) as archive:
         names = {name: list(archive[name].dims) for name in quantities_with_budget(archive)}
     table = table_of("quantity", "--at", texts=2)
     for name, dims in names.items():
         table.add_row(name, ", ".join(place_name(str(dim)) for dim in dims))
-    outcome.show(table)
-    outcome.answer(
+    output.show(table)
+    output.answer(
         {"quantities": {name: [str(dim) for dim in dims] for name, dims in names.items()}}
     )
 
 
-def show_budget(path: Path, quantity: str, places: Sequence[str], *, outcome: Outcome) -> None:
+def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: CommandOutput) -> None:
     """Print the budget of one number, largest source first."""
     with open_archive(path) as archive:
         budget = budget_from_archive(archive, quantity, _places(places))
         synthetic = archive.attrs.get("synthetic", "no") == "yes"
         drawn = _drawn_uncertainty(archive, budget)
-    unit, scale = display_unit(budget.unit, cast("UnitSystem", outcome.units))
+    unit, scale = display_unit(budget.unit, cast("UnitSystem", output.units))
     where = ", ".join(f"{place_name(dim)} {label}" for dim, label in budget.place.items())
     table = table_of(
         "source", "of", f"contribution [{unit}]", "share of u2", texts=2,
@@ -53,21 +53,21 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, outcome: Ou
         table.add_row(
             row.source, _short_name(row.of), short(row.contribution * scale, 3), f"{row.share:.1%}"
         )
-    outcome.show(table)
-    outcome.say(
+    output.show(table)
+    output.say(
         f"value {short(budget.value * scale)} {unit}, standard uncertainty "
         f"{short(budget.standard_uncertainty * scale, 3)} {unit}"
     )
-    outcome.say(
+    output.say(
         f"expanded uncertainty {short(budget.expanded_uncertainty * scale, 3)} {unit} "
         f"(95 %, k = {budget.coverage_factor:.2f})"
     )
     if drawn is not None:
-        outcome.say(
+        output.say(
             f"the product states {short(drawn * scale, 3)} {unit}, by Monte Carlo: this budget is "
             "of first order, which does not hold here"
         )
-    outcome.answer(_document(budget, synthetic))
+    output.answer(_document(budget, synthetic))
 
 
 def _drawn_uncertainty(archive: xr.Dataset, budget: Budget) -> float | None:

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, Quiet, Units
-from reduction.cli.outcome import Outcome, guarded
 from reduction.cli.usage import here
 
 __all__ = ["budget"]
@@ -37,10 +37,10 @@ def budget(
     units: Units = "si",
 ) -> None:
     """Where the uncertainty of a number comes from, largest source first."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.budget import list_budgets, show_budget
 
         if quantity is None:
-            list_budgets(product, outcome=outcome)
+            list_budgets(product, output=output)
         else:
-            show_budget(product, quantity, at or [], outcome=outcome)
+            show_budget(product, quantity, at or [], output=output)

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import CampaignPath, Json, Quiet, Units
-from reduction.cli.outcome import Outcome, guarded
 from reduction.cli.usage import here
 
 __all__ = ["check", "init", "report", "run", "schema", "sniff"]
@@ -22,10 +22,10 @@ def init(
     quiet: Quiet = False,
 ) -> None:
     """Write a starter campaign into a folder of logs, for a person to complete."""
-    with guarded(Outcome(json=json, quiet=quiet)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet)) as output:
         from reduction.cli.starter import start_campaign
 
-        start_campaign(folder, outcome)
+        start_campaign(folder, output)
 
 
 def sniff(
@@ -36,10 +36,10 @@ def sniff(
     quiet: Quiet = False,
 ) -> None:
     """Look at an unknown log and print a starter layout in TOML, to be confirmed."""
-    with guarded(Outcome(json=json, quiet=quiet)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet)) as output:
         from reduction.cli.starter import print_layout
 
-        print_layout(file, outcome)
+        print_layout(file, output)
 
 
 def check(
@@ -50,10 +50,10 @@ def check(
     units: Units = "si",
 ) -> None:
     """Read and validate everything, print what was found, write nothing."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.runs import check_campaign
 
-        check_campaign(campaign, tests=tuple(test or ()), outcome=outcome)
+        check_campaign(campaign, tests=tuple(test or ()), output=output)
 
 
 def run(
@@ -68,7 +68,7 @@ def run(
     units: Units = "si",
 ) -> None:
     """Reduce a campaign: archive, tables and report."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.runs import run_campaign
 
         run_campaign(
@@ -77,7 +77,7 @@ def run(
             reports=reports,
             tests=tuple(test or ()),
             force=force,
-            outcome=outcome,
+            output=output,
         )
 
 
@@ -94,10 +94,10 @@ def report(
     units: Units = "si",
 ) -> None:
     """Make the HTML report again, from the archives alone."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.runs import report_again
 
-        report_again(processed_dir, reports=reports, outcome=outcome)
+        report_again(processed_dir, reports=reports, output=output)
 
 
 def schema(
@@ -105,7 +105,7 @@ def schema(
     quiet: Quiet = False,
 ) -> None:
     """Print the JSON Schema of campaign.toml."""
-    with guarded(Outcome(json=not quiet or json, quiet=quiet)) as outcome:
+    with guarded(CommandOutput(json=not quiet or json, quiet=quiet)) as output:
         from reduction.campaign.model import CampaignFile
 
-        outcome.answer(CampaignFile.model_json_schema())
+        output.answer(CampaignFile.model_json_schema())

@@ -11,8 +11,8 @@ from reduction.archive.comparisons import NamedComparison
 from reduction.batch.comparisons import compare_archive, write_named
 from reduction.campaign.hoses import load_hose
 from reduction.campaign.plan import ComparisonPlan
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.compare.product import Calibration
 from reduction.compare.verdict import verdict_words
 from reduction.ingest.source import hash_source, source_of
@@ -26,7 +26,7 @@ __all__ = ["compare_test"]
 _EVENTS = {"pick_up": "cords pick up", "working": "working load", "break": "cords break"}
 
 
-def compare_test(measured: Path, spec: Path, *, out: Path | None, outcome: Outcome) -> None:
+def compare_test(measured: Path, spec: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Compare a test with the hose of SPEC.toml and print it; with ``out``, write products."""
     hose, file = load_hose(spec)
     plan = ComparisonPlan(
@@ -38,8 +38,8 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, outcome: Outco
         calibrate=file.comparison.calibrate,
     )
     named = compare_archive(measured, hose, plan)
-    units = cast("UnitSystem", outcome.units)
-    _show(named, outcome, units)
+    units = cast("UnitSystem", output.units)
+    _show(named, output, units)
     if out is not None:
         path = out / "comparisons.nc"
         write_named(
@@ -56,16 +56,16 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, outcome: Outco
         )
         tables = write_tables([], out / "tables", comparisons=path)
         page = write_report(out, out, units=units)
-        outcome.say(f"archive: {path}")
-        outcome.say(f"tables: {len(tables)} in {out / 'tables'}")
-        outcome.say(f"figures: {page}")
-    outcome.answer(document(named) | {"out": None if out is None else str(out)})
+        output.say(f"archive: {path}")
+        output.say(f"tables: {len(tables)} in {out / 'tables'}")
+        output.say(f"figures: {page}")
+    output.answer(document(named) | {"out": None if out is None else str(out)})
 
 
-def _show(named: NamedComparison, outcome: Outcome, system: UnitSystem) -> None:
+def _show(named: NamedComparison, output: CommandOutput, system: UnitSystem) -> None:
     found = named.comparison
     force, factor = display_unit("N", system)
-    outcome.say(
+    output.say(
         f"{named.test} of {named.specimen} ({found.measured.loading}) against {named.hose}: "
         f"{verdict_words(found.validation, unit=force, factor=factor)}"
     )
@@ -79,7 +79,7 @@ def _show(named: NamedComparison, outcome: Outcome, system: UnitSystem) -> None:
             short(100 * one.relative_rms, 3), short(factor * one.worst_difference, 4),
             short(100 * one.worst_strain, 4),
         )  # fmt: skip
-    outcome.show(table)
+    output.show(table)
     table = table_of(
         "event", "predicted strain [%]", "of that tension [%]", f"predicted tension [{force}]",
         f"measured there [{force}]", f"difference [{force}]", f"u [{force}]",
@@ -92,20 +92,20 @@ def _show(named: NamedComparison, outcome: Outcome, system: UnitSystem) -> None:
             short(factor * event.tension_difference, 4),
             short(factor * event.tension_difference_standard_uncertainty, 2),
         )  # fmt: skip
-    outcome.show(table)
+    output.show(table)
     if np.isfinite(found.measured_pick_up_strain):
         spread = found.measured_pick_up_strain_standard_uncertainty
-        outcome.say(
+        output.say(
             f"the test itself bends upward at {100 * found.measured_pick_up_strain:.2f} % "
             f"(u {100 * spread:.2g})"
         )
     if found.calibration is not None:
-        _show_calibration(found.calibration, outcome, system)
+        _show_calibration(found.calibration, output, system)
     for note in named.notes:
-        outcome.say(f"note: {note}")
+        output.say(f"note: {note}")
 
 
-def _show_calibration(fit: Calibration, outcome: Outcome, system: UnitSystem) -> None:
+def _show_calibration(fit: Calibration, output: CommandOutput, system: UnitSystem) -> None:
     table = table_of("calibrated", "unit", "before", "after", "u", "95 % interval", texts=2)
     for place, name in enumerate(fit.parameter):
         unit, factor = _shown_unit(name, system)
@@ -120,8 +120,8 @@ def _show_calibration(fit: Calibration, outcome: Outcome, system: UnitSystem) ->
             )
             + (" (at its bound)" if fit.is_at_bound[place] else ""),
         )  # fmt: skip
-    outcome.show(table)
-    outcome.say(
+    output.show(table)
+    output.say(
         f"RMS {100 * fit.before.relative_rms:.3g} % before, {100 * fit.after.relative_rms:.3g} % "
         "after"
     )

@@ -8,9 +8,9 @@ from typing import Any, cast
 
 import numpy as np
 
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.compositesource import piece_source, rule_of
 from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.errors import SettingsError
 from reduction.export.fromcomposite import composite_table, ranges_of
 from reduction.export.write import export_table
@@ -58,7 +58,7 @@ def compose_tests(
     branch: PieceBranch | None,
     precedence: str | None,
     out: Path | None,
-    outcome: Outcome,
+    output: CommandOutput,
 ) -> None:
     """Print the composite curve of SOURCE; with ``out``, write every node of it."""
     form = None if out is None else table_format(out)
@@ -66,22 +66,24 @@ def compose_tests(
     source = piece_source(sources, specimen=specimen, branch=branch)
     curve = compose(source, rule)
     source = used_of(source, curve)
-    units = cast("UnitSystem", outcome.units)
-    _show(source, curve, outcome, units)
+    units = cast("UnitSystem", output.units)
+    _show(source, curve, output, units)
     if out is not None and form is not None:
         if form == PAGE:
             write_composite_page(source, curve, out, units=units)
         else:
             export_table(composite_table(source, curve), form, out, units=units)
-        outcome.say(f"written: {out}")
-    outcome.answer(_document(source, curve, rule) | {"out": None if out is None else str(out)})
+        output.say(f"written: {out}")
+    output.answer(_document(source, curve, rule) | {"out": None if out is None else str(out)})
 
 
-def _show(source: PieceSource, curve: CompositeCurve, outcome: Outcome, system: UnitSystem) -> None:
+def _show(
+    source: PieceSource, curve: CompositeCurve, output: CommandOutput, system: UnitSystem
+) -> None:
     unit, factor = display_unit("N", system)
     made = ", SYNTHETIC: nothing was tested" if source.is_synthetic else ""
     doubt = f"; DOUBTFUL: {curve.doubt}" if curve.doubt else ""
-    outcome.say(f"{composite_table(source, curve).title}{made}{doubt}")
+    output.say(f"{composite_table(source, curve).title}{made}{doubt}")
     table = table_of(
         "strain [%]", f"tension [{unit}]", f"standard uncertainty [{unit}]",
         f"of it shared [{unit}]", "piece", "remark",
@@ -110,13 +112,13 @@ def _show(source: PieceSource, curve: CompositeCurve, outcome: Outcome, system: 
             curve.piece_words[curve.piece[place]] if curve.piece[place] >= 0 else "-",
             ", ".join(flags),
         )
-    outcome.show(table)
+    output.show(table)
     for text in curve.notes:
-        outcome.say(f"note: {text}")
+        output.say(f"note: {text}")
     for text in source.notes:
-        outcome.say(f"note: {text}")
+        output.say(f"note: {text}")
     for text in source.sources:
-        outcome.say(f"source: {text}")
+        output.say(f"source: {text}")
 
 
 def contributions(component: Sequence[Component], rows: Floats) -> list[dict[str, Any]]:

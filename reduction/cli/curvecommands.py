@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, Quiet, SpecPath, Units
-from reduction.cli.outcome import Outcome, guarded
 
 __all__ = ["assembly", "composite"]
 
@@ -52,7 +52,7 @@ def composite(
     units: Units = "si",
 ) -> None:
     """One curve of tension against strain from zero, out of all tests of a specimen."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.composite import compose_tests
 
         compose_tests(
@@ -61,7 +61,7 @@ def composite(
             branch=None if branch is None else branch.value,
             precedence=precedence,
             out=out,
-            outcome=outcome,
+            output=output,
         )
 
 
@@ -76,7 +76,7 @@ def assembly(
     units: Units = "si",
 ) -> None:
     """Tethers as they are deployed: tension against length, stiffness, load of each tether."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.assembly import assemble_spec
 
-        assemble_spec(spec, out=out, outcome=outcome)
+        assemble_spec(spec, out=out, output=output)

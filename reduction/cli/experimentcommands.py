@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, Quiet, SpecPath, Units
-from reduction.cli.outcome import Outcome, guarded
 from reduction.cli.usage import here
 
 __all__ = ["experiment", "surface"]
@@ -35,10 +35,10 @@ def experiment(
     units: Units = "si",
 ) -> None:
     """Plan an experiment: run sheet, cautions, expected precision."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.experiments import plan_runs
 
-        plan_runs(kind.value, spec, out=out, outcome=outcome)
+        plan_runs(kind.value, spec, out=out, output=output)
 
 
 def surface(
@@ -49,7 +49,7 @@ def surface(
     units: Units = "si",
 ) -> None:
     """Fit response surfaces, or effects of a screening, to a table of runs from anywhere."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.surfaces import fit_runs
 
-        fit_runs(runs, spec, outcome=outcome)
+        fit_runs(runs, spec, output=output)

@@ -10,8 +10,8 @@ from rich.markup import escape
 
 from reduction.archive.write import write_whole
 from reduction.campaign.spec import ExperimentSpec, load_spec
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.errors import ReductionError, SettingsError
 from reduction.surface.cautions import Caution, find_cautions
 from reduction.surface.designs import Design, DesignKind, box_behnken, plackett_burman
@@ -24,7 +24,7 @@ from reduction.units import UnitSystem, display_unit
 __all__ = ["plan_runs"]
 
 
-def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, outcome: Outcome) -> None:
+def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Print the run sheet of SPEC.toml, and write it where asked for."""
     spec = load_spec(path)
     try:
@@ -43,15 +43,15 @@ def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, outcome: Outcom
         raise in_file(path, error) from error
     if out is not None:
         write_whole(out, _csv(design, sheet, spec))
-    units = cast("UnitSystem", outcome.units)
-    _show_sheet(sheet, spec, outcome, units)
+    units = cast("UnitSystem", output.units)
+    _show_sheet(sheet, spec, output, units)
     for caution in cautions:
-        outcome.say(f"caution: {caution.message}. {caution.hint}")
+        output.say(f"caution: {caution.message}. {caution.hint}")
     if precision is not None:
-        _show_precision(precision, spec, outcome, units)
+        _show_precision(precision, spec, output, units)
     if out is not None:
-        outcome.say(f"run sheet: {out}")
-    outcome.answer(_document(kind, design, sheet, spec, cautions, precision, out))
+        output.say(f"run sheet: {out}")
+    output.answer(_document(kind, design, sheet, spec, cautions, precision, out))
 
 
 def in_file(path: Path, error: ReductionError) -> ReductionError:
@@ -143,7 +143,7 @@ def _csv(design: Design, sheet: RunSheet, spec: ExperimentSpec) -> str:
 
 
 def _show_sheet(
-    sheet: RunSheet, spec: ExperimentSpec, outcome: Outcome, system: UnitSystem
+    sheet: RunSheet, spec: ExperimentSpec, output: CommandOutput, system: UnitSystem
 ) -> None:
     columns = [
         (name, *display_unit(unit, system), sheet.engineering[:, place])
@@ -163,28 +163,31 @@ def _show_sheet(
         coded = " ".join(f"{level:+.0f}" if level else " 0" for level in sheet.coded[place])
         numbers = (short(scale * values[place]) for _, _, scale, values in columns)
         table.add_row(str(place + 1), str(run), coded, *numbers)
-    outcome.show(table)
+    output.show(table)
 
 
 def _show_precision(
-    precision: ExpectedPrecision | float, spec: ExperimentSpec, outcome: Outcome, system: UnitSystem
+    precision: ExpectedPrecision | float,
+    spec: ExperimentSpec,
+    output: CommandOutput,
+    system: UnitSystem,
 ) -> None:
     unit, scale = ("%", 100.0) if spec.sigma_unit == "1" else display_unit(spec.sigma_unit, system)
     sigma = f"{short(scale * (spec.sigma or 0.0))} {unit}"
     if isinstance(precision, float):
-        outcome.say(
+        output.say(
             f"expected with sigma {sigma}: effects above {short(scale * precision)} {unit} are "
             "significant (90 %)"
         )
         return
-    outcome.say(
+    output.say(
         f"expected with sigma {sigma}: half widths of {100 * precision.confidence:g} % intervals, "
         f"{precision.degrees_of_freedom} degrees of freedom [{unit}]"
     )
     table = table_of("term", "half width")
     for term, width in zip(precision.terms, precision.term_half_width, strict=True):
         table.add_row(escape(term), short(scale * width, 3))
-    outcome.show(table)
+    output.show(table)
     table = table_of("surface at", "coded", "half width", "of one more run", texts=2)
     for kind, place in _kinds(precision).items():
         point = " ".join(f"{level:+.0f}" if level else " 0" for level in precision.points[place])
@@ -192,7 +195,7 @@ def _show_precision(
             kind, point, short(scale * precision.confidence_half_width[place], 3),
             short(scale * precision.prediction_half_width[place], 3),
         )  # fmt: skip
-    outcome.show(table)
+    output.show(table)
 
 
 def _kinds(precision: ExpectedPrecision) -> dict[str, int]:

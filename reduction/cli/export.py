@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any, Literal, cast
 
 from reduction.cli.assembly import deployed_line
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.compositesource import is_of_pieces, piece_source, rule_of
 from reduction.cli.hydrodynamics import stated_hydrodynamics
 from reduction.cli.numbers import plain
-from reduction.cli.outcome import Outcome
 from reduction.cli.syrope import with_syrope
 from reduction.errors import SettingsError
 from reduction.export.closeness import closeness_of
@@ -56,7 +56,7 @@ def export_source(
     syrope: tuple[str | None, str | None],
     levels: dict[str, str | None],
     extrapolate: str,
-    outcome: Outcome,
+    output: CommandOutput,
 ) -> None:
     """Write the curve of a source in a format, and say what was written."""
     if extrapolate not in ("refuse", "flag"):
@@ -85,16 +85,16 @@ def export_source(
     )
     strength = _strength_of_shares(sources, values)
     line = with_syrope(line, *syrope, form=form, rated_break_strength=strength)
-    units = cast("UnitSystem", outcome.units)
+    units = cast("UnitSystem", output.units)
     there = set(out.parent.iterdir()) if out.parent.is_dir() else set()
     paths = export_line(line, to, out, form=form, units=units)
     notes = (*guards_of(line), *closeness_of(line, to, form), *line.notes)
-    outcome.say(f"{line.name}: {line.curve}")
+    output.say(f"{line.name}: {line.curve}")
     for text in (*line.sources, *(f"note: {note}" for note in notes)):
-        outcome.say(f"  {text}")
+        output.say(f"  {text}")
     for path in paths:
-        outcome.say(f"{'written over' if path in there else 'written'}: {path}")
-    outcome.answer(
+        output.say(f"{'written over' if path in there else 'written'}: {path}")
+    output.answer(
         {
             "line": line.name,
             "format": to,

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.pipeline.hosedesigns import DesignedHose
 from reduction.prediction import HoseTarget
 from reduction.units import UnitSystem, display_unit
@@ -17,7 +17,7 @@ __all__ = ["designed", "show_designs"]
 
 
 def show_designs(
-    designs: Sequence[DesignedHose], target: HoseTarget, outcome: Outcome, system: UnitSystem
+    designs: Sequence[DesignedHose], target: HoseTarget, output: CommandOutput, system: UnitSystem
 ) -> None:
     """Print each way to reach a target, and why there is none."""
     force, per_newton = display_unit("N", system)
@@ -50,10 +50,10 @@ def show_designs(
             short(at_break / working, 3),
         )
     if table.row_count:
-        outcome.show(table)
+        output.show(table)
     for one in designs:
         if one.refusal:
-            outcome.say(f"no hose by {one.varied}: {one.refusal}")
+            output.say(f"no hose by {one.varied}: {one.refusal}")
 
 
 def designed(one: DesignedHose) -> dict[str, Any]:

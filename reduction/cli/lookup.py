@@ -9,10 +9,10 @@ from typing import Any, cast
 import numpy as np
 from rich.table import Table
 
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.lookuppoints import Wanted, points_of
 from reduction.cli.lookupsource import lines_of, one_of
 from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.export.lookuptable import TENSIONS, format_of_file, table_of_values
 from reduction.export.table import ValueTable
 from reduction.export.write import export_table
@@ -34,11 +34,11 @@ __all__ = [
 ]
 
 
-def list_sources(source: str, search: Mapping[str, Any], *, outcome: Outcome) -> None:
+def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutput) -> None:
     """Print what SOURCE holds: each line, its quantities, and over which range."""
     lines = find_lines(lines_of(source), **search)
-    unit, factor = ("in", 1 / 0.0254) if outcome.units == "us" else ("mm", 1e3)
-    force, scale = display_unit("N", cast("UnitSystem", outcome.units))
+    unit, factor = ("in", 1 / 0.0254) if output.units == "us" else ("mm", 1e3)
+    force, scale = display_unit("N", cast("UnitSystem", output.units))
     table = table_of(
         "line", "source", "material", "construction", "condition", f"diameter\n[{unit}]",
         f"%RBS are of\n[{force}]", "quantities", texts=5,
@@ -55,8 +55,8 @@ def list_sources(source: str, search: Mapping[str, Any], *, outcome: Outcome) ->
             + (f"\n({line.strength_of})" if line.strength_of else ""),
             ", ".join(line.quantities),
         )  # fmt: skip
-    outcome.show(table)
-    outcome.answer({"lines": [_described(line) for line in lines]})
+    output.show(table)
+    output.answer({"lines": [_described(line) for line in lines]})
 
 
 def _described(line: LineSource) -> dict[str, Any]:
@@ -108,43 +108,43 @@ def _described(line: LineSource) -> dict[str, Any]:
     }
 
 
-def look_up_values(source: str, wanted: Wanted, *, outcome: Outcome) -> None:
+def look_up_values(source: str, wanted: Wanted, *, output: CommandOutput) -> None:
     """Print design values; several values of a level, parted by commas, make a grid."""
     form = None if wanted.out is None else format_of_file(wanted.out)
     line = one_of(find_lines(lines_of(source), **wanted.search), wanted.quantity, wanted.name)
     (points,), left_out = points_of(wanted, line)
     if left_out:
-        outcome.say("combinations whose amplitude is above the mean tension are left out")
+        output.say("combinations whose amplitude is above the mean tension are left out")
     found = look_up(
         line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **points
     )
-    _show(line, found, points, outcome)
-    files = write_table(table_of_values(line, found, points), wanted.out, form, outcome)
-    outcome.answer(_document(line, found, points, grid=wanted.grid) | {"files": files})
+    _show(line, found, points, output)
+    files = write_table(table_of_values(line, found, points), wanted.out, form, output)
+    output.answer(_document(line, found, points, grid=wanted.grid) | {"files": files})
 
 
 def write_table(
-    table: ValueTable, out: Path | None, form: str | None, outcome: Outcome
+    table: ValueTable, out: Path | None, form: str | None, output: CommandOutput
 ) -> list[str]:
     """Write the table where a file was named, and say so."""
     if out is None or form is None:
         return []
-    paths = export_table(table, form, out, units=cast("UnitSystem", outcome.units))
+    paths = export_table(table, form, out, units=cast("UnitSystem", output.units))
     for path in paths:
-        outcome.say(f"written: {path}")
+        output.say(f"written: {path}")
     return [str(path) for path in paths]
 
 
 def _show(
-    line: LineSource, found: DesignValues, points: Mapping[str, Floats], outcome: Outcome
+    line: LineSource, found: DesignValues, points: Mapping[str, Floats], output: CommandOutput
 ) -> None:
-    system = cast("UnitSystem", outcome.units)
+    system = cast("UnitSystem", output.units)
     unit, factor = display_unit(found.unit, system)
     branch = f", {found.branch} branch" if found.branch else ""
-    outcome.say(f"{found.quantity} of {line.name}{branch}; {found.source}")
-    if outcome.is_text:
-        outcome.show(_table(line, found, points, unit, factor, system))
-    said_of_lines(outcome, (line, found))
+    output.say(f"{found.quantity} of {line.name}{branch}; {found.source}")
+    if output.is_text:
+        output.show(_table(line, found, points, unit, factor, system))
+    said_of_lines(output, (line, found))
 
 
 def _table(
@@ -211,7 +211,7 @@ def _remarks(found: DesignValues, place: int) -> list[str]:
     ]
 
 
-def said_of_lines(outcome: Outcome, *pairs: tuple[LineSource, DesignValues]) -> None:
+def said_of_lines(output: CommandOutput, *pairs: tuple[LineSource, DesignValues]) -> None:
     """What is stated of each line, its rule, its errata and notes; each sentence once."""
     told = []
     for line, found in pairs:
@@ -224,7 +224,7 @@ def said_of_lines(outcome: Outcome, *pairs: tuple[LineSource, DesignValues]) -> 
             told.append(f"errata that touch it{of}: {', '.join(found.errata)}")
         told += [f"note{of}: {note}" for note in found.notes]
     for text in dict.fromkeys(told):
-        outcome.say(text)
+        output.say(text)
 
 
 def shown_levels(

@@ -8,11 +8,11 @@ from typing import Any, cast
 import numpy as np
 from rich.table import Table
 
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.lookup import fold_last, said_of_lines, shown_levels, span, write_table
 from reduction.cli.lookuppoints import Wanted, points_of
 from reduction.cli.lookupsource import lines_of, one_of
 from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.export.lookuptable import format_of_file, table_of_difference
 from reduction.lookup.against import LineDifference, compare_values
 from reduction.lookup.line import look_up
@@ -25,7 +25,7 @@ from reduction.vocabulary import quantity as quantity_of
 __all__ = ["look_up_against"]
 
 
-def look_up_against(source: str, other: str, wanted: Wanted, *, outcome: Outcome) -> None:
+def look_up_against(source: str, other: str, wanted: Wanted, *, output: CommandOutput) -> None:
     """Print values of two lines, their difference and ratio, and whether the intervals allow it."""
     form = None if wanted.out is None else format_of_file(wanted.out)
     lines = lines_of(source)
@@ -33,17 +33,17 @@ def look_up_against(source: str, other: str, wanted: Wanted, *, outcome: Outcome
     second = _other(lines, other, wanted.quantity)
     (points, others), left_out = points_of(wanted, first, second)
     if left_out:
-        outcome.say("combinations whose amplitude is above the mean tension are left out")
+        output.say("combinations whose amplitude is above the mean tension are left out")
     values = [
         look_up(line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **at)
         for line, at in ((first, points), (second, others))
     ]
     found = compare_values(*values)
-    _show(first, second, found, points, others, outcome)
+    _show(first, second, found, points, others, output)
     table = table_of_difference(first, second, found, points, others)
-    files = write_table(table, wanted.out, form, outcome)
+    files = write_table(table, wanted.out, form, output)
     document = _document(first, second, found, points, others, grid=wanted.grid)
-    outcome.answer(document | {"files": files})
+    output.answer(document | {"files": files})
 
 
 def _other(lines: list[LineSource], name: str, quantity: str) -> LineSource:
@@ -58,14 +58,14 @@ def _show(
     found: LineDifference,
     points: Mapping[str, Floats],
     others: Mapping[str, Floats],
-    outcome: Outcome,
+    output: CommandOutput,
 ) -> None:
-    system = cast("UnitSystem", outcome.units)
+    system = cast("UnitSystem", output.units)
     unit, factor = display_unit(found.unit, system)
     branch = f", {found.first.branch} branch" if found.first.branch else ""
-    outcome.say(f"{found.quantity} of {second.name} (second) against {first.name} (first){branch}")
+    output.say(f"{found.quantity} of {second.name} (second) against {first.name} (first){branch}")
     if any(not np.array_equal(values, others[name]) for name, values in points.items()):
-        outcome.say(
+        output.say(
             "levels in %RBS are shares of each line's own break strength: "
             + " and ".join(
                 f"{short(scale * line.rated_break_strength)} {force}"
@@ -74,19 +74,19 @@ def _show(
             )
             + "; loads are those of the first"
         )
-    if outcome.is_text:
-        outcome.show(_table(first, found, points, unit, factor, system))
-    outcome.say("differ: zero is not in the 95 % interval that follows from those of both lines")
-    outcome.say(
+    if output.is_text:
+        output.show(_table(first, found, points, unit, factor, system))
+    output.say("differ: zero is not in the 95 % interval that follows from those of both lines")
+    output.say(
         "95 % of the difference is of these lines: the surfaces, or the curves, that were tested"
     )
-    outcome.say(
+    output.say(
         "these lines: the two surfaces, of the lines that were tested; the kinds, another line of "
         "each: with how lines differ among each other, where a source says it"
     )
     for note in found.notes:
-        outcome.say(note)
-    said_of_lines(outcome, (first, found.first), (second, found.second))
+        output.say(note)
+    said_of_lines(output, (first, found.first), (second, found.second))
 
 
 def _table(

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, Quiet, Units
-from reduction.cli.outcome import Outcome, guarded
 
 __all__ = ["lookup"]
 
@@ -69,7 +69,7 @@ def lookup(
     units: Units = "si",
 ) -> None:
     """One design value with its interval, range check and source, or a table of them."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.lookup import list_sources, look_up_values
         from reduction.cli.lookupagainst import look_up_against
         from reduction.cli.lookuppoints import Wanted, parsed_search
@@ -78,7 +78,7 @@ def lookup(
         words = {"material": material, "construction": construction, "condition": condition}
         search = parsed_search(words, diameter, tolerance)
         if what_there_is or quantity is None:
-            list_sources(source, search, outcome=outcome)
+            list_sources(source, search, output=output)
             return
         levels = {
             "frequency": frequency,
@@ -98,6 +98,6 @@ def lookup(
             out=out,
         )
         if against is None:
-            look_up_values(source, wanted, outcome=outcome)
+            look_up_values(source, wanted, output=output)
         else:
-            look_up_against(source, against, wanted, outcome=outcome)
+            look_up_against(source, against, wanted, output=output)

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, Quiet, SpecPath, Units
-from reduction.cli.outcome import Outcome, guarded
 from reduction.cli.usage import here
 
 __all__ = ["compare", "predict"]
@@ -34,7 +34,7 @@ def predict(
     units: Units = "si",
 ) -> None:
     """Predict a stretch hose, a helical armour or a wave load from construction alone."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         if kind is PredictionName.HOSE:
             from reduction.cli.predictions import predict_hose as predict_it
         elif kind is PredictionName.ARMOUR:
@@ -42,7 +42,7 @@ def predict(
         else:
             from reduction.cli.waveload import predict_wave as predict_it
 
-        predict_it(spec, out=out, outcome=outcome)
+        predict_it(spec, out=out, output=output)
 
 
 def compare(
@@ -58,7 +58,7 @@ def compare(
     units: Units = "si",
 ) -> None:
     """Hold the archive of a test against the predicted hose of SPEC.toml."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.comparisons import compare_test
 
-        compare_test(measured, spec, out=out, outcome=outcome)
+        compare_test(measured, spec, out=out, output=output)

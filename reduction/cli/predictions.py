@@ -9,9 +9,9 @@ import numpy as np
 
 from reduction.batch.predictions import write_hoses
 from reduction.campaign.hoses import load_hose, target_of
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.hosedesigns import designed, show_designs
 from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.errors import SettingsError
 from reduction.ingest.source import hash_source
 from reduction.pipeline.hosedesigns import design_hoses
@@ -42,19 +42,19 @@ _EVENTS = {
 }  # fmt: skip
 
 
-def predict_hose(path: Path, *, out: Path | None, outcome: Outcome) -> None:
+def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Predict the hose of SPEC.toml and print it; with ``out``, write archive, tables and page."""
     plan, file = load_hose(path)
     target = target_of(path, file)
     hose = predict_from_plan(plan)
     designs = () if target is None else design_hoses(plan, target)
-    units = cast("UnitSystem", outcome.units)
-    _show(hose, outcome, units)
+    units = cast("UnitSystem", output.units)
+    _show(hose, output, units)
     if target is not None:
-        show_designs(designs, target, outcome, units)
+        show_designs(designs, target, output, units)
         if all(one.refusal for one in designs):
-            outcome.error(f"{path}: target: no hose like this one does that")
-            outcome.raise_status(SettingsError.exit_status)
+            output.error(f"{path}: target: no hose like this one does that")
+            output.raise_status(SettingsError.exit_status)
     if out is not None:
         write_hoses(
             [hose],
@@ -66,10 +66,10 @@ def predict_hose(path: Path, *, out: Path | None, outcome: Outcome) -> None:
         )
         tables = write_tables([], out / "tables", predictions=out / "predictions.nc")
         page = write_report(out, out, units=units)
-        outcome.say(f"archive: {out / 'predictions.nc'}")
-        outcome.say(f"tables: {len(tables)} in {out / 'tables'}")
-        outcome.say(f"figures: {page}")
-    outcome.answer(
+        output.say(f"archive: {out / 'predictions.nc'}")
+        output.say(f"tables: {len(tables)} in {out / 'tables'}")
+        output.say(f"figures: {page}")
+    output.answer(
         document(hose)
         | {"designs": [designed(one) for one in designs]}
         | {"out": None if out is None else str(out)}
@@ -86,11 +86,11 @@ def _events(hose: PredictedHose) -> dict[str, HoseEvent]:
     }
 
 
-def _show(hose: PredictedHose, outcome: Outcome, system: UnitSystem) -> None:
+def _show(hose: PredictedHose, output: CommandOutput, system: UnitSystem) -> None:
     force, per_newton = display_unit("N", system)
     pressure, per_pascal = display_unit("Pa", system)
     small = shown("small length", system)
-    outcome.say(
+    output.say(
         f"hose {hose.plan.name}: {np.degrees(float(hose.plan.design.wrap_angle)):.4g} degrees from "
         f"the axis, {hose.number_of_cords:.1f} cords, ribbon "
         f"{' and '.join(short(small.factor * width, 4) for width in hose.ribbon_width)} "
@@ -112,7 +112,7 @@ def _show(hose: PredictedHose, outcome: Outcome, system: UnitSystem) -> None:
             short(per_newton * float(event.cord_tension), 4),
             short(100 * float(event.cord_strain), 4),
         )
-    outcome.show(table)
+    output.show(table)
     prediction = hose.prediction
     table = table_of(
         "strain [%]", f"tension [{force}]", f"fill pressure [{pressure}]", f"cord [{force}]",
@@ -123,18 +123,18 @@ def _show(hose: PredictedHose, outcome: Outcome, system: UnitSystem) -> None:
     for place in [*range(0, prediction.strain.size - 1, step), prediction.strain.size - 1]:
         numbers = (float(getattr(prediction, name)[place]) for name in _IN_TABLE)
         table.add_row(*(short(scale * value) for scale, value in zip(scales, numbers, strict=True)))
-    outcome.show(table)
+    output.show(table)
     for layer in hose.layers:
         needed = "" if np.isnan(layer.least_angle) else (
             f"; {np.degrees(layer.least_angle):.1f} degrees or more keep it within its limit"
         )  # fmt: skip
-        outcome.say(
+        output.say(
             f"layer {layer.layer.name} at {np.degrees(layer.layer.wrap_angle):.4g} degrees: "
             f"{100 * layer.least_strain:.1f} to {100 * layer.greatest_strain:.1f} % up to the "
             f"working load{needed}"
         )
     for note in hose.notes:
-        outcome.say(f"note: {note}")
+        output.say(f"note: {note}")
 
 
 def _spread(hose: PredictedHose, event: str) -> dict[str, float]:

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, Quiet, Units
-from reduction.cli.outcome import Outcome, guarded
 
 __all__ = ["export", "reproduce"]
 
@@ -74,7 +74,7 @@ def export(
     units: Units = "si",
 ) -> None:
     """Write a curve for a mooring code, or as a table."""
-    with guarded(Outcome(json=json, quiet=quiet, units=units)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.export import export_source
 
         export_source(
@@ -99,7 +99,7 @@ def export(
                 "tension_amplitude": tension_amplitude,
             },
             extrapolate=extrapolate,
-            outcome=outcome,
+            output=output,
         )
 
 
@@ -115,10 +115,10 @@ def reproduce(
     quiet: Quiet = False,
 ) -> None:
     """Recompute every printed number of the published reports: counts, errata, open cells."""
-    with guarded(Outcome(json=json, quiet=quiet)) as outcome:
+    with guarded(CommandOutput(json=json, quiet=quiet)) as output:
         from reduction.cli.reproduce import reproduce_erratum, reproduce_reports
 
         if erratum is not None:
-            reproduce_erratum(report, erratum, outcome=outcome)
+            reproduce_erratum(report, erratum, output=output)
             return
-        reproduce_reports(report, out=out, outcome=outcome)
+        reproduce_reports(report, out=out, output=output)

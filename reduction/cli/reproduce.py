@@ -9,8 +9,8 @@ from typing import Any
 from rich.markup import escape
 
 from reduction.archive.write import write_whole
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import plain, table_of
-from reduction.cli.outcome import Outcome
 from reduction.errors import DataError, SettingsError
 from reduction.published.cell import ReportId
 from reduction.published.read import REPORTS
@@ -39,29 +39,29 @@ _COLUMNS = (
 )
 
 
-def reproduce_reports(report: str | None, *, out: Path | None, outcome: Outcome) -> None:
+def reproduce_reports(report: str | None, *, out: Path | None, output: CommandOutput) -> None:
     """Recompute and print counts, errata and open cells; with ``out``, write page and table."""
     reports = reproduce(None if report is None else _known(report))
     for one, items in reports.items():
-        _show(one, items, outcome)
-    outcome.say(_COLUMNS)
+        _show(one, items, output)
+    output.say(_COLUMNS)
     if len(reports) > 1:
-        _show_total(reports, outcome)
+        _show_total(reports, output)
     if out is not None:
         page, table = out / "reproduce.html", out / "reproduce.csv"
         write_whole(page, render_reproduction(reports))
         write_whole(table, csv_of(item for items in reports.values() for item in items))
-        outcome.say(f"page: {page}")
-        outcome.say(f"table: {table}")
-    outcome.answer(document(reports) | {"out": None if out is None else str(out)})
+        output.say(f"page: {page}")
+        output.say(f"table: {table}")
+    output.answer(document(reports) | {"out": None if out is None else str(out)})
     for items in reports.values():
         for item in items:
             if item.verdict == "unexplained":
-                outcome.error(_unexplained(item))
-                outcome.raise_status(UNEXPLAINED)
+                output.error(_unexplained(item))
+                output.raise_status(UNEXPLAINED)
 
 
-def reproduce_erratum(report: str | None, erratum: str, *, outcome: Outcome) -> None:
+def reproduce_erratum(report: str | None, erratum: str, *, output: CommandOutput) -> None:
     """Print one known fault of a page: what is right, why, and its cells."""
     reports = reproduce(None if report is None else _known(report))
     faults = [one for name, items in reports.items() for one in touched_errata(name, items)]
@@ -76,14 +76,14 @@ def reproduce_erratum(report: str | None, erratum: str, *, outcome: Outcome) -> 
     (one,) = found
     known = one.erratum
     for name in ("place", "printed", "corrected", "evidence", "confidence"):
-        outcome.say(f"{name}: {getattr(known, name)}")
+        output.say(f"{name}: {getattr(known, name)}")
     cells = table_of("cell", "printed", "recomputed", "verdict", "how", texts=5)
     for item in one.items:
         printed = f"{item.cell.printed} {item.cell.unit}"
         again = number_beside(item.recomputed, item.cell.printed) or "-"
         cells.add_row(*map(escape, (_name(item), printed, again, item.verdict, item.how)))
-    outcome.show(cells)
-    outcome.answer({**vars(known), "items": [_described(item) for item in one.items]})
+    output.show(cells)
+    output.answer({**vars(known), "items": [_described(item) for item in one.items]})
 
 
 def _known(report: str) -> ReportId:
@@ -95,18 +95,18 @@ def _known(report: str) -> ReportId:
     )
 
 
-def _show(report: ReportId, items: Sequence[Item], outcome: Outcome) -> None:
+def _show(report: ReportId, items: Sequence[Item], output: CommandOutput) -> None:
     table = _table(report)
     for name, counts in counts_by_table(items).items():
         table.add_row(escape(name), *_numbers(counts))
     table.add_row("all", *_numbers(counts_of(items)), style="bold")
-    outcome.show(table)
+    output.show(table)
     errata = table_of("erratum", "place", "printed", "right", "sure", "cells", texts=5)
     for one in touched_errata(report, items):
         known = one.erratum
         texts = (known.id, known.place, known.printed, known.corrected, known.confidence)
         errata.add_row(*map(escape, texts), f"{len(one.items)}")
-    outcome.show(errata)
+    output.show(errata)
     open_cells = [item for item in items if item.verdict == "open"]
     if open_cells:
         cells = table_of("open cell", "quantity", "printed", "erratum", "what it may be", texts=5)
@@ -114,17 +114,17 @@ def _show(report: ReportId, items: Sequence[Item], outcome: Outcome) -> None:
             cell = item.cell
             place, printed = f"{cell.table}: {cell.row}", f"{cell.printed} {cell.unit}"
             cells.add_row(*map(escape, (place, cell.column, printed, cell.erratum, cell.note)))
-        outcome.show(cells)
-    outcome.say("")
+        output.show(cells)
+    output.say("")
 
 
-def _show_total(reports: Mapping[ReportId, Sequence[Item]], outcome: Outcome) -> None:
+def _show_total(reports: Mapping[ReportId, Sequence[Item]], output: CommandOutput) -> None:
     table = _table("report")
     for report, items in reports.items():
         table.add_row(report, *_numbers(counts_of(items)))
     whole = [item for items in reports.values() for item in items]
     table.add_row("all", *_numbers(counts_of(whole)), style="bold")
-    outcome.show(table)
+    output.show(table)
 
 
 def _table(heading: str) -> Any:

@@ -23,7 +23,7 @@ from reduction.batch.results import results_found
 from reduction.batch.run import run_campaign as run_tests
 from reduction.batch.status import TestStatus
 from reduction.campaign.load import load_campaign
-from reduction.cli.outcome import Outcome
+from reduction.cli.commandoutput import CommandOutput
 from reduction.errors import ArchiveError
 from reduction.report.page import write_report
 from reduction.strain.model import StrainModel
@@ -35,9 +35,9 @@ ProgressCall = Callable[[str, str], None]
 
 
 @contextmanager
-def _progress(outcome: Outcome, n_steps: int) -> Iterator[ProgressCall]:
+def _progress(output: CommandOutput, n_steps: int) -> Iterator[ProgressCall]:
     """A line on standard error while a person waits; nothing where no terminal is."""
-    if outcome.quiet or outcome.json or not sys.stderr.isatty():
+    if output.quiet or output.json or not sys.stderr.isatty():
         yield lambda stage, name: None
         return
     columns = (
@@ -77,14 +77,14 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
 
 
 def _report_failures(
-    outcome: Outcome, tests: Sequence[TestStatus], parts: Sequence[PartStatus] = ()
+    output: CommandOutput, tests: Sequence[TestStatus], parts: Sequence[PartStatus] = ()
 ) -> None:
     ended = [(test.exit_status, test.message) for test in tests]
     ended += [(one.exit_status, one.message) for one in parts]
     for exit_status, message in ended:
         if exit_status:
-            outcome.error(message)
-            outcome.raise_status(exit_status)
+            output.error(message)
+            output.raise_status(exit_status)
 
 
 def _part_table(kind: str, parts: Sequence[PartStatus]) -> Table:
@@ -112,73 +112,73 @@ def _model_lines(
     return table
 
 
-def _say_results(outcome: Outcome, results: dict[str, Any] | None) -> None:
+def _say_results(output: CommandOutput, results: dict[str, Any] | None) -> None:
     """How many outcomes without a log there are, and what each is."""
     if results is None:
         return
-    outcome.say(f"{results['file']}: {results['outcomes']} outcomes")
+    output.say(f"{results['file']}: {results['outcomes']} outcomes")
     for quantity, uses in results["quantities"].items():
         listed = [
             f"{count} {use.replace('_', ' ')}{'' if count == 1 or use == 'excluded' else 's'}"
             for use, count in uses.items()
             if count
         ]
-        outcome.say(f"  {quantity}: {', '.join(listed)}")
+        output.say(f"  {quantity}: {', '.join(listed)}")
 
 
 def _say_experiments(
-    outcome: Outcome, experiments: list[dict[str, Any]], units: UnitSystem
+    output: CommandOutput, experiments: list[dict[str, Any]], units: UnitSystem
 ) -> None:
     """Runs, slow pulls and what would go slack, before anything is run."""
     force, factor = display_unit("N", units)
     for one in experiments:
-        outcome.say(
+        output.say(
             f"experiment {one['id']}: {one['kind']} of {', '.join(one['factors'])}; "
             f"{len(one['runs_found'])} of {len(one['runs'])} runs found"
         )
         if one["runs_failed"]:
-            outcome.say(f"  failed: {', '.join(one['runs_failed'])}")
+            output.say(f"  failed: {', '.join(one['runs_failed'])}")
         for pull in one["quasi_static"]:
             states = {True: "", False: ", which failed", None: ", which was not asked for"}
             said = states[pull["found"]]
-            outcome.say(f"  slow pull of {pull['specimen']}: {pull['test']}{said}")
+            output.say(f"  slow pull of {pull['specimen']}: {pull['test']}{said}")
         for slack in one["slack_runs"]:
             least = factor * slack["planned_minimum_tension"]["value"]
-            outcome.say(
+            output.say(
                 f"  {slack['run']} {slack['specimen']}: planned minimum tension {least:.4g} "
                 f"{force}: the line goes slack in every cycle"
             )
         for note in one["notes"]:
-            outcome.say(f"  {note}")
+            output.say(f"  {note}")
 
 
-def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> None:
+def check_campaign(path: Path, *, tests: tuple[str, ...], output: CommandOutput) -> None:
     """Read and validate everything, print what was found, write nothing."""
-    units = cast("UnitSystem", outcome.units)
+    units = cast("UnitSystem", output.units)
     campaign = load_campaign(path)
-    with _progress(outcome, len(campaign.tests)) as progress:
+    with _progress(output, len(campaign.tests)) as progress:
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
     if statuses or not (campaign.outcomes or campaign.hoses):
-        outcome.show(_status_table(statuses))
+        output.show(_status_table(statuses))
     for test in statuses:
         for channel, masks in test.found.get("flags", {}).items():
             listed = ", ".join(f"{name} {count}" for name, count in masks.items())
-            outcome.say(f"  {test.test} {channel}: {listed}")
+            output.say(f"  {test.test} {channel}: {listed}")
         for note in test.found.get("notes", ()):
-            outcome.say(f"  {test.test}: {note}")
+            output.say(f"  {test.test}: {note}")
     lines = _model_lines(models, statuses, units)
     if lines.row_count:  # weights hung by hand, and logs that failed, have no strain model
-        outcome.show(lines)
+        output.show(lines)
     results = results_found(campaign)
-    _say_results(outcome, results)
+    _say_results(output, results)
     experiments = experiments_found(campaign, statuses)
-    _say_experiments(outcome, experiments, units)
+    _say_experiments(output, experiments, units)
     for comparison in campaign.comparisons.values():
-        outcome.say(
+        output.say(
             f"comparison {comparison.name}: {comparison.measured} of {comparison.specimen} "
             f"against hose {comparison.predicted}"
         )
-    outcome.answer(
+    output.answer(
         {
             "campaign": campaign.id,
             "tests": [test.document() for test in statuses],
@@ -188,7 +188,7 @@ def check_campaign(path: Path, *, tests: tuple[str, ...], outcome: Outcome) -> N
             "results": results,
         }
     )
-    _report_failures(outcome, statuses)
+    _report_failures(output, statuses)
 
 
 def run_campaign(
@@ -198,12 +198,12 @@ def run_campaign(
     reports: Path,
     tests: tuple[str, ...],
     force: bool,
-    outcome: Outcome,
+    output: CommandOutput,
 ) -> None:
     """Reduce a campaign and say what became of each test."""
     campaign = load_campaign(path)
     # each log is surveyed, then reduced; then come the tables and the report
-    with _progress(outcome, 2 * len(campaign.tests) + 2) as progress:
+    with _progress(output, 2 * len(campaign.tests) + 2) as progress:
         result = run_tests(
             campaign,
             processed=processed,
@@ -213,23 +213,23 @@ def run_campaign(
             force=force,
             # paths, jobs and choices of tests are left out, so that equal inputs give equal bytes
             command="reduction run campaign.toml",
-            units=cast("UnitSystem", outcome.units),
+            units=cast("UnitSystem", output.units),
             progress=progress,
         )
     if result.tests or not (campaign.outcomes or campaign.hoses):
-        outcome.show(_status_table(result.tests))
-    _say_results(outcome, results_found(campaign))
+        output.show(_status_table(result.tests))
+    _say_results(output, results_found(campaign))
     for kind, parts in (
         ("experiment", result.experiments), ("hose", result.hoses),
         ("comparison", result.comparisons),
     ):  # fmt: skip
         if parts:
-            outcome.show(_part_table(kind, parts))
+            output.show(_part_table(kind, parts))
     for name in result.stray:
-        outcome.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
-    outcome.say(f"products: {result.processed}")
+        output.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
+    output.say(f"products: {result.processed}")
     if result.tables:
-        outcome.say(f"tables:   {', '.join(path.name for path in result.tables)}")
+        output.say(f"tables:   {', '.join(path.name for path in result.tables)}")
     document: dict[str, Any] = {
         "campaign": campaign.id,
         "tests": [test.document() for test in result.tests],
@@ -242,12 +242,12 @@ def run_campaign(
         "report": None if result.report is None else str(result.report),
     }
     if result.report is not None:
-        outcome.say(f"report:   {result.report}")
-    outcome.answer(document)
-    _report_failures(outcome, result.tests, result.parts)
+        output.say(f"report:   {result.report}")
+    output.answer(document)
+    _report_failures(output, result.tests, result.parts)
 
 
-def report_again(processed: Path, *, reports: Path, outcome: Outcome) -> None:
+def report_again(processed: Path, *, reports: Path, output: CommandOutput) -> None:
     """Make the report of one campaign, or of all below a folder, from archives alone."""
     folders = [processed] if any(processed.glob("*.nc")) else sorted(processed.glob("*/"))
     folders = [folder for folder in folders if any(folder.glob("*.nc"))]
@@ -260,8 +260,8 @@ def report_again(processed: Path, *, reports: Path, outcome: Outcome) -> None:
     written = []
     for folder in folders:
         page = write_report(
-            folder, reports / folder.resolve().name, units=cast("UnitSystem", outcome.units)
+            folder, reports / folder.resolve().name, units=cast("UnitSystem", output.units)
         )
-        outcome.say(f"report: {page}")
+        output.say(f"report: {page}")
         written.append(str(page))
-    outcome.answer({"reports": written})
+    output.answer({"reports": written})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from reduction.cli.outcome import Outcome
+from reduction.cli.commandoutput import CommandOutput
 from reduction.errors import SettingsError
 from reduction.ingest.sniff import sniff_layout
 from reduction.ingest.starter import starter_campaign
@@ -12,16 +12,16 @@ from reduction.ingest.starter import starter_campaign
 __all__ = ["print_layout", "start_campaign"]
 
 
-def print_layout(file: Path, outcome: Outcome) -> None:
+def print_layout(file: Path, output: CommandOutput) -> None:
     """Print a proposed layout in TOML, and what in it is a guess."""
     sniffed = sniff_layout(file)
-    outcome.say(sniffed.toml)
+    output.say(sniffed.toml)
     for remark in sniffed.remarks:
-        outcome.say(f"# {remark}")
-    outcome.answer({"layout": sniffed.toml, "remarks": list(sniffed.remarks)})
+        output.say(f"# {remark}")
+    output.answer({"layout": sniffed.toml, "remarks": list(sniffed.remarks)})
 
 
-def start_campaign(folder: Path, outcome: Outcome) -> None:
+def start_campaign(folder: Path, output: CommandOutput) -> None:
     """Write campaign.toml and tests.csv into a folder of logs; never over an existing file."""
     if not folder.is_dir():
         raise SettingsError(f"{folder}: is not a folder", needed="a folder of logs")
@@ -37,5 +37,5 @@ def start_campaign(folder: Path, outcome: Outcome) -> None:
     for name, text in texts.items():
         with (folder / name).open("x", encoding="utf-8", newline="") as file:
             file.write(text)
-        outcome.say(f"wrote {folder / name}")
-    outcome.answer({"written": [str(folder / name) for name in texts]})
+        output.say(f"wrote {folder / name}")
+    output.answer({"written": [str(folder / name) for name in texts]})

@@ -9,7 +9,7 @@ import numpy as np
 
 from reduction.campaign.runtable import RunSeries, read_runs
 from reduction.campaign.spec import ExperimentSpec, load_spec
-from reduction.cli.outcome import Outcome
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.surfaceanswers import effects_document, frame, surface_document
 from reduction.cli.surfacetables import show_effects, show_surfaces
 from reduction.errors import DataError, FitError
@@ -27,16 +27,16 @@ _NEAR_A_LEVEL = 0.1
 """Coded distance from -1 or 1 at which a level of a screening is still that level."""
 
 
-def fit_runs(path: Path, spec_path: Path | None, *, outcome: Outcome) -> None:
+def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> None:
     """Fit what SPEC.toml asks for to a table of runs, and print it."""
     spec = None if spec_path is None else load_spec(spec_path)
     runs = read_runs(path, spec)
-    units = cast("UnitSystem", outcome.units)
+    units = cast("UnitSystem", output.units)
     try:
         if spec is not None and spec.kind == "plackett-burman":
             effects, notes = _screen(runs)
-            show_effects(effects, runs, notes, outcome, units)
-            outcome.answer(frame(runs, notes) | effects_document(effects, runs))
+            show_effects(effects, runs, notes, output, units)
+            output.answer(frame(runs, notes) | effects_document(effects, runs))
             return
         surfaces = _fit(runs, spec)
         drift = drift_over_order(surfaces, runs.run_order)
@@ -51,12 +51,12 @@ def fit_runs(path: Path, spec_path: Path | None, *, outcome: Outcome) -> None:
         *negative_surfaces(surfaces),
         *drifting_responses(surfaces, drift),
     )
-    show_surfaces(surfaces, runs, notes, outcome, units)
+    show_surfaces(surfaces, runs, notes, output, units)
     documents = {
         name: surface_document(surfaces, index, runs, drift)
         for index, name in enumerate(surfaces.response_names)
     }
-    outcome.answer(frame(runs, notes) | {"fit": "quadratic", "responses": documents})
+    output.answer(frame(runs, notes) | {"fit": "quadratic", "responses": documents})
 
 
 def _fit(runs: RunSeries, spec: ExperimentSpec | None) -> ResponseSurfaces:

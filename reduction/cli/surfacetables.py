@@ -6,8 +6,8 @@ import numpy as np
 from rich.markup import escape
 
 from reduction.campaign.runtable import RunSeries
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import Shown, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.product import (
     LACK_OF_FIT_REASONS,
@@ -25,7 +25,7 @@ def show_surfaces(
     surfaces: ResponseSurfaces,
     runs: RunSeries,
     notes: tuple[str, ...],
-    outcome: Outcome,
+    output: CommandOutput,
     system: UnitSystem,
 ) -> None:
     """Each surface: its terms, its analysis of variance, its stationary point."""
@@ -34,29 +34,31 @@ def show_surfaces(
         shown = Shown(runs.response_units[index], transform, runs.factor_units, system)
         power = f", Box-Cox exponent {surfaces.transform_exponent[index]:.3g}"
         unit = f" [{shown.unit}]" if shown.unit else f" ({transform})" * (transform != "none")
-        outcome.say(f"{name}{unit}{power if transform == 'box-cox' else ''}")
+        output.say(f"{name}{unit}{power if transform == 'box-cox' else ''}")
         if surfaces.reason[index] in (1, 2):
-            outcome.say(f"  {FIT_REASONS[int(surfaces.reason[index])]}")
+            output.say(f"  {FIT_REASONS[int(surfaces.reason[index])]}")
             continue
-        _show_terms(surfaces, index, shown.scale, outcome)
-        outcome.say(
+        _show_terms(surfaces, index, shown.scale, output)
+        output.say(
             f"r2 {short(surfaces.r2[index])}, adjusted {short(surfaces.adjusted_r2[index])}, "
             f"predicted {short(surfaces.predicted_r2[index])}; "
             f"F {short(surfaces.overall_f[index])}, p {short(surfaces.overall_p_value[index], 3)}"
         )
-        outcome.say(
+        output.say(
             f"sigma {short(shown.scale * surfaces.sigma[index])} with "
             f"{surfaces.degrees_of_freedom[index]} degrees of freedom"
         )
-        _show_anova(surfaces, index, shown.scale, outcome)
-        _show_stationary(surfaces, index, shown, runs, outcome, system)
-        _show_equation(surfaces, index, shown, outcome)
-        outcome.say("")
+        _show_anova(surfaces, index, shown.scale, output)
+        _show_stationary(surfaces, index, shown, runs, output, system)
+        _show_equation(surfaces, index, shown, output)
+        output.say("")
     for note in notes:
-        outcome.say(f"note: {note}")
+        output.say(f"note: {note}")
 
 
-def _show_terms(surfaces: ResponseSurfaces, index: int, scale: float, outcome: Outcome) -> None:
+def _show_terms(
+    surfaces: ResponseSurfaces, index: int, scale: float, output: CommandOutput
+) -> None:
     table = table_of("", "term", "coefficient", "standard error", "t", "p", texts=2)
     rows = zip(
         surfaces.labels, surfaces.term_names, surfaces.coefficient[index],
@@ -68,10 +70,12 @@ def _show_terms(surfaces: ResponseSurfaces, index: int, scale: float, outcome: O
             label, escape(term), short(scale * coefficient), short(scale * error), short(t, 4),
             short(p, 3),
         )  # fmt: skip
-    outcome.show(table)
+    output.show(table)
 
 
-def _show_equation(surfaces: ResponseSurfaces, index: int, shown: Shown, outcome: Outcome) -> None:
+def _show_equation(
+    surfaces: ResponseSurfaces, index: int, shown: Shown, output: CommandOutput
+) -> None:
     """The equation in the units of the factors, where they have any."""
     engineering = surfaces.coefficient_engineering[index]
     if np.array_equal(surfaces.coefficient[index], engineering):
@@ -87,10 +91,12 @@ def _show_equation(surfaces: ResponseSurfaces, index: int, shown: Shown, outcome
             label, escape(term), short(scale * coefficient, 8), short(scale * error),
             escape(unit),
         )  # fmt: skip
-    outcome.show(table)
+    output.show(table)
 
 
-def _show_anova(surfaces: ResponseSurfaces, index: int, scale: float, outcome: Outcome) -> None:
+def _show_anova(
+    surfaces: ResponseSurfaces, index: int, scale: float, output: CommandOutput
+) -> None:
     anova = surfaces.anova
     table = table_of("source", "df", "sum of squares", "mean square", "F", "p")
     rows = zip(
@@ -102,10 +108,10 @@ def _show_anova(surfaces: ResponseSurfaces, index: int, scale: float, outcome: O
             source, short(df), short(scale**2 * squares), short(scale**2 * mean), short(f, 4),
             short(p, 3),
         )  # fmt: skip
-    outcome.show(table)
+    output.show(table)
     reason = LACK_OF_FIT_REASONS[int(surfaces.lack_of_fit.reason[index])]
     if reason:
-        outcome.say(f"no test of lack of fit: {reason}")
+        output.say(f"no test of lack of fit: {reason}")
 
 
 def _show_stationary(
@@ -113,17 +119,17 @@ def _show_stationary(
     index: int,
     shown: Shown,
     runs: RunSeries,
-    outcome: Outcome,
+    output: CommandOutput,
     system: UnitSystem,
 ) -> None:
     canonical = surfaces.canonical
     reason = STATIONARY_REASONS[int(canonical.reason[index])]
     if reason:
-        outcome.say(f"no stationary point: {reason}")
+        output.say(f"no stationary point: {reason}")
         return
     inside = "among" if canonical.is_inside[index] else "outside"
     eigenvalues = ", ".join(short(shown.scale * value) for value in canonical.eigenvalue[index])
-    outcome.say(
+    output.say(
         f"{STATIONARY_KINDS[int(canonical.kind[index])]} {inside} the levels, value "
         f"{short(shown.scale * canonical.stationary_value[index])}; eigenvalues {eigenvalues}"
     )
@@ -134,22 +140,22 @@ def _show_stationary(
     ):  # fmt: skip
         text, scale = display_unit(unit, system)
         table.add_row(escape(name), short(coded), short(scale * engineering), escape(text))
-    outcome.show(table)
+    output.show(table)
 
 
 def show_effects(
     effects: ScreeningEffects,
     runs: RunSeries,
     notes: tuple[str, ...],
-    outcome: Outcome,
+    output: CommandOutput,
     system: UnitSystem,
 ) -> None:
     """Effects of each response, largest first, and the smallest that counts."""
     for index, name in enumerate(runs.response_names):
         unit, scale = display_unit(runs.response_units[index], system)
-        outcome.say(f"{name} [{unit}]" if unit else name)
+        output.say(f"{name} [{unit}]" if unit else name)
         if effects.reason[index]:
-            outcome.say(f"  {effects.reason[index]}")
+            output.say(f"  {effects.reason[index]}")
         table = table_of("factor", "effect", "t", "p", "significant")
         order = sorted(
             range(len(effects.names)), key=lambda place: -abs(effects.effect[index, place])
@@ -160,15 +166,15 @@ def show_effects(
                 short(effects.t_value[index, place], 4), short(effects.p_value[index, place], 3),
                 "yes" if effects.is_significant[index, place] else "no",
             )  # fmt: skip
-        outcome.show(table)
+        output.show(table)
         of = "the dummies" if effects.error_from == "dummy" else "Lenth"
-        outcome.say(
+        output.say(
             f"significant at {100 * (1 - effects.significance):g} %: above "
             f"{short(scale * effects.minimum_significant_effect[index])}, all factors together "
             f"{short(scale * effects.simultaneous_minimum_effect[index])}; standard error by {of} "
             f"{short(scale * effects.effect_standard_error[index])} with "
             f"{short(effects.degrees_of_freedom, 3)} degrees of freedom"
         )
-        outcome.say("")
+        output.say("")
     for note in notes:
-        outcome.say(f"note: {note}")
+        output.say(f"note: {note}")

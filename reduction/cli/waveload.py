@@ -8,8 +8,8 @@ from typing import Any, cast
 
 from reduction.archive.write import write_whole
 from reduction.campaign.wavespec import load_wave_case
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.outcome import Outcome
 from reduction.errors import DataError
 from reduction.pipeline.waveload import PredictedWaveLoad, predict_wave_load
 from reduction.report.predictionpage import write_wave_page
@@ -25,7 +25,7 @@ _UNITS = {
 }  # fmt: skip
 
 
-def predict_wave(path: Path, *, out: Path | None, outcome: Outcome) -> None:
+def predict_wave(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Predict the wave load of SPEC.toml and print it; with ``out``, write table and page."""
     case = load_wave_case(path)
     given = asdict(case)
@@ -36,15 +36,15 @@ def predict_wave(path: Path, *, out: Path | None, outcome: Outcome) -> None:
         raise DataError(
             f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
         ) from error
-    units = cast("UnitSystem", outcome.units)
-    _show(found, outcome, units)
+    units = cast("UnitSystem", output.units)
+    _show(found, output, units)
     if out is not None:
         table = out / "tables" / "wave_load.csv"
         write_whole(table, _csv(found))
         page = write_wave_page(found, out, name=name, units=units)
-        outcome.say(f"table: {table}")
-        outcome.say(f"figures: {page}")
-    outcome.answer(document(found) | {"name": name, "out": None if out is None else str(out)})
+        output.say(f"table: {table}")
+        output.say(f"figures: {page}")
+    output.answer(document(found) | {"name": name, "out": None if out is None else str(out)})
 
 
 def _csv(found: PredictedWaveLoad) -> str:
@@ -55,24 +55,24 @@ def _csv(found: PredictedWaveLoad) -> str:
     )
 
 
-def _show(found: PredictedWaveLoad, outcome: Outcome, system: UnitSystem) -> None:
+def _show(found: PredictedWaveLoad, output: CommandOutput, system: UnitSystem) -> None:
     length, per_metre = display_unit("m", system)
     force, per_newton = display_unit("N", system)
     section, theory = found.load.section, found.theory
     depth = float(section.immersion_depth)
-    outcome.say(
+    output.say(
         f"immersed {per_metre * depth:.4g} {length} of "
         f"{per_metre * float(section.outer_diameter):.4g} {length} "
         f"({100 * depth / float(section.outer_diameter):.1f} %), "
         f"{1e4 * float(section.submerged_section_area):.4g} cm2 of its section"
     )
-    outcome.say(
+    output.say(
         f"wave of {per_metre * theory.wave_length:.4g} {length}: d/L {theory.relative_depth:.3g}, "
         f"H/L {theory.steepness:.3g}, {100 * theory.breaking_ratio:.0f} % of the height at which "
         f"it breaks; computed by {found.used} at {per_metre * found.elevation:+.4g} {length}"
     )
     regime = found.regime
-    outcome.say(
+    output.say(
         f"Keulegan-Carpenter {float(regime.keulegan_carpenter_number):.3g}, "
         f"Reynolds {float(regime.reynolds_number):.3g}, "
         f"drag over inertia {float(regime.drag_to_inertia):.3g}"
@@ -92,16 +92,16 @@ def _show(found: PredictedWaveLoad, outcome: Outcome, system: UnitSystem) -> Non
             short(scale * float(classic.maximum)), short(scale * float(classic.minimum)),
             short(100 * float(getattr(found.difference, f"{direction}_of_maximum")), 4),
         )  # fmt: skip
-    outcome.show(table)
+    output.show(table)
     anchor = found.anchor
-    outcome.say(
+    output.say(
         f"anchor force: {per_newton * float(anchor.combined):.5g} {force} combined; "
         f"{per_newton * float(anchor.separate):.5g} {force} as the sum of wave "
         f"{per_newton * float(anchor.wave):.4g}, current {per_newton * float(anchor.current):.4g} "
         f"and wind {per_newton * float(anchor.wind):.4g}"
     )
     for note in found.notes:
-        outcome.say(f"note: {note}")
+        output.say(f"note: {note}")
 
 
 def document(found: PredictedWaveLoad) -> dict[str, Any]:

@@ -6,9 +6,9 @@ import sys
 import pytest
 from rich.console import Console
 
-from reduction.cli import outcome as outcome_module
+from reduction.cli import output as outcome_module
+from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import table_of
-from reduction.cli.outcome import Outcome
 
 CELLS = ["a long name of a line", "1.2345e+05", "-9.8765e-12", "1.5e+05 to 1.6e+05"]
 
@@ -27,7 +27,7 @@ def table(n_numbers):
 def test_no_digit_is_lost(capsys, monkeypatch, n_numbers, width, is_terminal):
     monkeypatch.setattr(sys.stdout, "isatty", lambda: is_terminal)
     monkeypatch.setenv("COLUMNS", str(width))
-    Outcome().show(table(n_numbers))
+    CommandOutput().show(table(n_numbers))
     text = re.sub(r"\x1b\[[0-9;]*m", "", capsys.readouterr().out)
     assert "\N{HORIZONTAL ELLIPSIS}" not in text
     for cell in CELLS[1 : 1 + n_numbers]:
@@ -40,7 +40,7 @@ def test_no_digit_is_lost(capsys, monkeypatch, n_numbers, width, is_terminal):
 def test_row_by_row_each_cell_has_its_heading(capsys, monkeypatch):
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     monkeypatch.setattr(outcome_module, "Console", lambda **_: Console(width=30, highlight=False))
-    Outcome().show(table(3))
+    CommandOutput().show(table(3))
     blocks = capsys.readouterr().out.strip().split("\n\n")
     assert len(blocks) == 2
     assert blocks[0].splitlines() == [
@@ -52,7 +52,7 @@ def test_row_by_row_each_cell_has_its_heading(capsys, monkeypatch):
 
 
 def test_nothing_is_shown_where_no_text_is_said(capsys):
-    for silent in (Outcome(quiet=True), Outcome(json=True)):
+    for silent in (CommandOutput(quiet=True), CommandOutput(json=True)):
         silent.show(table(1))
         assert not silent.is_text
     assert capsys.readouterr().out == ""

@@ -20,13 +20,13 @@ from rich.table import Table
 
 from reduction.errors import ReductionError, SettingsError
 
-__all__ = ["Outcome", "guarded"]
+__all__ = ["CommandOutput", "guarded"]
 
 INTERRUPTED = 130
 
 
 @dataclass
-class Outcome:
+class CommandOutput:
     """How one command talks; ``status`` is what it exits with."""
 
     json: bool = False
@@ -112,32 +112,30 @@ def _row_by_row(table: Table, console: Console) -> str:
 
 
 @contextmanager
-def guarded(outcome: Outcome) -> Iterator[Outcome]:
+def guarded(output: CommandOutput) -> Iterator[CommandOutput]:
     """Run a command body; turn every ending into a message and an exit status."""
     try:
-        if outcome.units not in ("si", "us"):
-            raise SettingsError(
-                "--units is not known", found=repr(outcome.units), needed="si or us"
-            )
-        yield outcome
+        if output.units not in ("si", "us"):
+            raise SettingsError("--units is not known", found=repr(output.units), needed="si or us")
+        yield output
     except ReductionError as error:
-        outcome.error(str(error))
-        outcome.raise_status(error.exit_status)
-        if not outcome.answered:
+        output.error(str(error))
+        output.raise_status(error.exit_status)
+        if not output.answered:
             failed = {"tests": [], "error": str(error), "exit_status": error.exit_status}
-            outcome.answer(failed)
+            output.answer(failed)
     except KeyboardInterrupt:
-        outcome.error("interrupted; products that were finished are kept")
-        outcome.status = INTERRUPTED
+        output.error("interrupted; products that were finished are kept")
+        output.status = INTERRUPTED
     except BrokenPipeError:
         # the reader of a pipe went away: not an error of ours, and nothing more can be said
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except Exception as error:
         if os.environ.get("REDUCTION_DEBUG"):
             raise
-        outcome.error(
+        output.error(
             f"internal error, a defect of this program: {type(error).__name__}: {error}. "
             "Set REDUCTION_DEBUG=1 to see where, and please report it."
         )
-        outcome.raise_status(1)
-    raise typer.Exit(outcome.status)
+        output.raise_status(1)
+    raise typer.Exit(output.status)
