@@ -83,8 +83,8 @@ class InstrumentErrors:
     tension_reading: float = 0.0
     position_reading: float = 0.0
     test: str = ""
-    tension_instrument: str = "tension"
-    position_instrument: str = "crosshead_position"
+    tension_instrument: str = "load cell"
+    position_instrument: str = "crosshead"
     strain_model: str = ""
 
     def __post_init__(self) -> None:
