@@ -6,7 +6,7 @@ import sys
 import pytest
 from rich.console import Console
 
-from reduction.cli import output as outcome_module
+from reduction.cli import commandoutput as output_module
 from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import table_of
 
@@ -39,7 +39,7 @@ def test_no_digit_is_lost(capsys, monkeypatch, n_numbers, width, is_terminal):
 
 def test_row_by_row_each_cell_has_its_heading(capsys, monkeypatch):
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
-    monkeypatch.setattr(outcome_module, "Console", lambda **_: Console(width=30, highlight=False))
+    monkeypatch.setattr(output_module, "Console", lambda **_: Console(width=30, highlight=False))
     CommandOutput().show(table(3))
     blocks = capsys.readouterr().out.strip().split("\n\n")
     assert len(blocks) == 2
