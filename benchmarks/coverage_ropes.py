@@ -24,7 +24,7 @@ from coverage_tethers import Found, table
 from scipy import stats
 
 from reduction.archive.dataset import to_dataset
-from reduction.archive.linesource import line_of_experiment
+from reduction.archive.linesource import line_source_of_experiment
 from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.batch.experiments import fit_rows
 from reduction.batch.runrows import row_of_archive
@@ -246,7 +246,7 @@ def campaign(seed: int) -> list[Found]:
 
 def looked_up(result: ExperimentResult, pair: int, rng: np.random.Generator) -> list[Found]:
     """Design values of the surface at three points of the box, with the interval they are given."""
-    line = line_of_experiment(surfaces_to_dataset([result], origin=ORIGIN), "rope")
+    line = line_source_of_experiment(surfaces_to_dataset([result], origin=ORIGIN), "rope")
     found: list[Found] = []
     for coded in rng.uniform(-0.8, 0.8, (3, 3)):
         level = (HIGH + LOW) / 2 + coded * (HIGH - LOW) / 2

@@ -23,8 +23,8 @@ from reduction.vocabulary import RESPONSES, quantity
 __all__ = [
     "Facts",
     "facts_of_specimens",
-    "line_of_experiment",
-    "line_of_test",
+    "line_source_of_experiment",
+    "line_source_of_test",
     "specimens_of",
 ]
 
@@ -43,7 +43,7 @@ Facts = Mapping[str, str | float]
 """Fields of `LineSource` that a specimen states, by name."""
 
 
-def line_of_experiment(
+def line_source_of_experiment(
     dataset: xr.Dataset, experiment: str, *, specimens: Mapping[str, Facts] | None = None
 ) -> LineSource:
     """Surfaces of an experiment as a source of design values.
@@ -212,7 +212,7 @@ def _scale(name: str, unit: str, strength: float, experiment: str) -> float:
     )  # fmt: skip
 
 
-def line_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
+def line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
     """Curves of one specimen of a reduced test as a source of design values.
 
     Parameters

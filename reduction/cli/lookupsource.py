@@ -10,8 +10,8 @@ from reduction.archive.linecurves import CURVES
 from reduction.archive.linesource import (
     Facts,
     facts_of_specimens,
-    line_of_experiment,
-    line_of_test,
+    line_source_of_experiment,
+    line_source_of_test,
     specimens_of,
 )
 from reduction.archive.open import open_archive
@@ -127,14 +127,14 @@ def lines_of_archive(path: Path) -> list[LineSource]:
             kinds = archive["experiment_kind"].values.astype(str).tolist()
             known = _specimens(path, {one for name in names for one in specimens_of(archive, name)})
             return [
-                line_of_experiment(archive, name, specimens=known)
+                line_source_of_experiment(archive, name, specimens=known)
                 for name, kind in zip(names, kinds, strict=True)
                 if kind == "box-behnken"
             ]
         if not any(name in archive for name in CURVES):
             return []
         names = archive["specimen"].values.astype(str).tolist()
-        return [line_of_test(archive, name) for name in names]
+        return [line_source_of_test(archive, name) for name in names]
 
 
 def _told_apart(found: Sequence[tuple[str, list[LineSource]]]) -> list[LineSource]:
