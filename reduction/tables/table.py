@@ -12,7 +12,8 @@ from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.prediction_schema import PREDICTION_SCHEMA
 from reduction.archive.properties import PROPERTY_SCHEMA
 from reduction.archive.schema import schema_of
-from reduction.archive.surface_schema import SURFACE_SCHEMA, rows_of_response
+from reduction.archive.surface_rows import rows_of_response
+from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.variable import Variable, count, label, measured, stated
 from reduction.tables.column import Column, uncertainty_of
 
