@@ -13,7 +13,6 @@ from reduction.record import Floats, Quality, Record, Specimen, areas_of
 from reduction.strain.evaluate import extrapolated, strain_by_model
 from reduction.strain.model import StrainModel
 from reduction.strain.stress import nominal_stress
-from reduction.uncertainty.product import InstrumentErrors
 from reduction.workers import run_blocks
 
 __all__ = ["flagged_record", "parts_of_stress", "strain_of_record"]
@@ -45,14 +44,11 @@ def strain_of_record(
 
 
 def parts_of_stress(
-    record: Record,
-    tension: Floats,
-    specimens: tuple[Specimen, ...],
-    instruments: Sequence[InstrumentErrors],
+    record: Record, tension: Floats, specimens: tuple[Specimen, ...]
 ) -> dict[str, Any]:
     """Nominal stress, by field of `ReducedTest`, where a diameter is known.
 
-    NaN where tension is not usable.
+    NaN where tension is not usable; its uncertainty is that of one reading of tension.
     """
     if not any(specimen.diameter for specimen in specimens):
         return {}
@@ -63,13 +59,10 @@ def parts_of_stress(
     spread = record.tension_standard_uncertainty
     if not spread:
         return {"nominal_stress": stress}
-    of_stress = np.array(spread) / areas_of(specimens)
-    for row, errors in enumerate(instruments):
-        if errors.diameter and specimens[row].diameter:
-            level = np.sqrt(np.nanmean(stress[row] ** 2))
-            share = 2 * errors.diameter / specimens[row].mean_diameter
-            of_stress[row] = np.hypot(of_stress[row], level * share)
-    return {"nominal_stress": stress, "nominal_stress_standard_uncertainty": of_stress}
+    return {
+        "nominal_stress": stress,
+        "nominal_stress_standard_uncertainty": np.array(spread) / areas_of(specimens),
+    }
 
 
 def flagged_record(located: Located, models: Sequence[StrainModel]) -> Record:

@@ -36,7 +36,12 @@ from reduction.pipeline.shared.montecarlo import with_line_spread
 from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.pipeline.shared.ratio import with_shared_ratios
 from reduction.pipeline.shared.weights import with_shared_steps
-from reduction.pipeline.spread import strain_spread, with_stated_channels
+from reduction.pipeline.spread import (
+    channel_contributions,
+    reading_spread,
+    readings_of,
+    with_readings,
+)
 from reduction.pipeline.told import notes_of_test, stage_lines
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
@@ -44,7 +49,8 @@ from reduction.record import Specimen, StepReadings
 from reduction.settings import CycleSettings, ReductionSettings
 from reduction.strain.model import StrainModel
 from reduction.strain.stress import check_constant_volume
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.uncertainty.join import merged
+from reduction.uncertainty.product import Contributions, InstrumentErrors
 
 __all__ = ["reduce_stepwise_test", "reduce_test"]
 
@@ -107,7 +113,8 @@ def reduce_test(
     position, tension = located.position, located.tension
     phase = label_phases(record.n_samples, standstills=standstills, cycles=cycles)
     strain = strain_of_record(record, position, tension, models)
-    stated = with_stated_channels(located, instruments, phase=phase)
+    readings = readings_of(record, instruments)
+    stated = replace(located, record=with_readings(record, readings))
     of_cycles = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings
     )
@@ -160,9 +167,7 @@ def reduce_test(
         standstills=standstills,
         phase=phase,
         strain=strain,
-        strain_standard_uncertainty=strain_spread(
-            located, models, phase=phase, instruments=instruments
-        ),
+        strain_standard_uncertainty=reading_spread(located, models, readings, phase=phase),
         strain_models=tuple(models),
         cycles=cycles,
         holds=holds,
@@ -177,10 +182,17 @@ def reduce_test(
         **of_cycles,
         **of_first_rise,
         **of_line,
-        **parts_of_stress(stated.record, tension, specimens, instruments),
+        **parts_of_stress(stated.record, tension, specimens),
     )  # fmt: skip
     shared = _with_shared_errors(
-        reduced, instruments, settings=settings.cycles, pulls=pulls, pull_origins=pull_origins
+        reduced,
+        instruments,
+        settings=settings.cycles,
+        pulls=pulls,
+        pull_origins=pull_origins,
+        of_channels=channel_contributions(
+            located, strain, models, specimens, instruments, phase=phase
+        ),
     )
     return with_line_spread(with_shared_ratios(shared), settings.cycles)
 
@@ -192,15 +204,18 @@ def _with_shared_errors(
     settings: CycleSettings,
     pulls: Sequence[SlowPull | None] | None,
     pull_origins: Sequence[PullOrigin | None],
+    of_channels: Contributions,
 ) -> ReducedTest:
     """The test with what errors that all its samples share do to its numbers, where stated."""
     if not instruments:
         return test
+    of_numbers = contributions_of_test(
+        test, instruments, cycles=settings, pulls=pulls, pull_origins=pull_origins
+    )
+    whole = merged([of_channels] if of_numbers is None else [of_numbers, of_channels])
     return replace(
         test,
-        contributions=contributions_of_test(
-            test, instruments, cycles=settings, pulls=pulls, pull_origins=pull_origins
-        ),
+        contributions=whole if whole.component else None,
         shared_uncertainty_of_cycles=shared_uncertainty_of_cycles(
             test, instruments, cycles=settings
         ),

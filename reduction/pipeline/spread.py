@@ -1,4 +1,9 @@
-"""One standard uncertainty a specimen for its samples: of tension, position and strain."""
+"""How well a sample of tension, position, strain and stress is known: one number a specimen.
+
+A reading has an error of its own, which no other sample shares; a load cell's gain and zero, a
+crosshead's, the tape and the diameter are in every sample of the test.  The two are kept apart, as
+in every number of a product.
+"""
 
 from __future__ import annotations
 
@@ -9,17 +14,163 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.pipeline.locate import Located
-from reduction.record import Floats, Integers
+from reduction.record import Floats, Integers, Record, Specimen
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
-from reduction.strain.uncertainty import strain_uncertainty_of
 from reduction.uncertainty.field import error_field
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.uncertainty.join import merged, stacked
+from reduction.uncertainty.points import with_diameter
+from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 from reduction.vocabulary import PHASE_VALUES
 
-__all__ = ["strain_spread", "with_stated_channels"]
+__all__ = ["channel_contributions", "reading_spread", "readings_of", "with_readings"]
 
 _SAMPLES = 4096  # spread over the record: the uncertainty changes slowly with strain
+
+
+def readings_of(
+    record: Record, instruments: Sequence[InstrumentErrors]
+) -> tuple[InstrumentErrors, ...]:
+    """Errors with that of one reading of each channel: the one rule of which statement counts.
+
+    What the layout declares of one reading takes the place of noise and resolution of the
+    campaign, which hold for every log: the layout is of this one.  Gain and zero are stated by the
+    campaign alone, and stand beside either.
+    """
+    known = instruments or tuple(InstrumentErrors(name) for name in record.specimens)
+    tension = record.tension_standard_uncertainty or (np.nan,) * len(known)
+    position = record.position_standard_uncertainty
+    return tuple(
+        replace(
+            errors,
+            tension_reading=own if np.isfinite(own) else errors.tension_reading,
+            position_reading=position if np.isfinite(position) else errors.position_reading,
+        )
+        for errors, own in zip(known, tension, strict=True)
+    )
+
+
+def with_readings(record: Record, readings: Sequence[InstrumentErrors]) -> Record:
+    """Record with the standard uncertainty of one reading; NaN where nothing says it."""
+    tension = tuple(one.tension_reading or np.nan for one in readings)
+    return replace(
+        record,
+        tension_standard_uncertainty=tension if np.isfinite(tension).any() else (),
+        position_standard_uncertainty=readings[0].position_reading or np.nan,
+    )
+
+
+def reading_spread(
+    located: Located,
+    models: Sequence[StrainModel],
+    readings: Sequence[InstrumentErrors],
+    *,
+    phase: NDArray[np.int8],
+) -> Floats:
+    """Standard uncertainty of strain by one reading of position and tension. [1].
+
+    Root mean square over the samples, shape (n_specimens,); NaN where nothing is known of either
+    channel, and for an extensometer, which reads neither.
+    """
+    rows = _rows_of(phase)
+    position, tension = located.position[rows], located.tension[:, rows]
+    found = np.full(len(models), np.nan)
+    for index, (model, errors) in enumerate(zip(models, readings, strict=True)):
+        if model.method == "extensometer" or not (
+            errors.position_reading or errors.tension_reading
+        ):
+            continue
+        parts = []
+        for of_position, of_tension in (
+            (errors.position_reading, 0.0),
+            (0.0, errors.tension_reading),
+        ):
+            # a step of one standard uncertainty: finite where a law is steep near no tension
+            high, low = (
+                strain_by_model(
+                    model,
+                    position=position + way * of_position,
+                    tension=tension[index] + way * of_tension,
+                )
+                for way in (1, -1)
+            )
+            parts.append((high - low) / 2)
+        found[index] = _rms(np.hypot(*parts))
+    return found
+
+
+def channel_contributions(
+    located: Located,
+    strain: Floats,
+    models: Sequence[StrainModel],
+    specimens: Sequence[Specimen],
+    errors: Sequence[InstrumentErrors],
+    *,
+    phase: NDArray[np.int8],
+) -> Contributions:
+    """What shared errors do to the samples, by archive name of the channel.
+
+    Each contribution is the root mean square over the cycling samples, or over all but rests
+    where none cycles, with the sign of the mean.  Of tension and position it is what the channel
+    itself may be wrong by; strain has in addition the tape and the strain method, and stress the
+    diameter.  The lag between the channels is in none of them.  Nothing without stated errors.
+    """
+    if not errors:
+        return Contributions(())
+    rows = _rows_of(phase)
+    own = [
+        _of_specimen(located.tension[index, rows], strain[index, rows], model, specimen, one)
+        for index, (model, specimen, one) in enumerate(zip(models, specimens, errors, strict=True))
+    ]
+    reach = _rms(located.position[rows])
+    first = errors[0]
+    is_length = located.record.position_is_length
+    of_position = _of_channel(
+        "crosshead_position" if is_length else "crosshead_displacement",
+        {
+            Component("position_gain", first.position_instrument): first.position_gain * reach,
+            Component("position_offset", first.position_instrument): first.position_offset,
+        },
+    )
+    return merged([stacked(own), of_position])
+
+
+def _of_specimen(
+    tension: Floats,
+    strain: Floats,
+    model: StrainModel,
+    specimen: Specimen,
+    errors: InstrumentErrors,
+) -> Contributions:
+    level = _rms(tension)
+    cell = errors.tension_instrument
+    of_tension = _of_channel(
+        "tension",
+        {
+            Component("tension_gain", cell): errors.tension_gain * level,
+            Component("tension_offset", cell): errors.tension_offset,
+        },
+    )
+    field = error_field(errors, model, strain=strain, tension=tension)
+    of_strain = Contributions(
+        field.component,
+        {"strain": np.array([_signed_rms(row) for row in field.strain]).reshape(-1)},
+    )
+    if not specimen.diameter:
+        return merged([of_tension, of_strain])
+    of_stress = Contributions(
+        of_tension.component, {"nominal_stress": of_tension.values["tension"] / specimen.area}
+    )
+    value = {"nominal_stress": np.asarray(level / specimen.area)}
+    return merged(
+        [of_tension, of_strain, with_diameter(of_stress, errors, value, area=specimen.area)]
+    )
+
+
+def _of_channel(name: str, stated: dict[Component, float]) -> Contributions:
+    """Contributions to one channel, without those that are zero."""
+    kept = {one: value for one, value in stated.items() if value}
+    return Contributions(tuple(kept), {name: np.array(list(kept.values()))})
 
 
 def _rows_of(phase: NDArray[np.int8]) -> Integers:
@@ -30,100 +181,11 @@ def _rows_of(phase: NDArray[np.int8]) -> Integers:
     return np.asarray(rows[:: max(1, rows.size // _SAMPLES)])
 
 
-def strain_spread(
-    located: Located,
-    models: Sequence[StrainModel],
-    *,
-    phase: NDArray[np.int8],
-    instruments: Sequence[InstrumentErrors] = (),
-) -> Floats:
-    """Root mean square over the samples of a reading's error and of what all samples share.
-
-    Where the layout declares the uncertainty of a channel it is taken for that channel; where it
-    does not, what is stated of the instrument is.
-    """
-    record = located.record
-    rows = _rows_of(phase)
-    position, tension = located.position[rows], located.tension[:, rows]
-    declared = record.tension_standard_uncertainty or (np.nan,) * len(models)
-    known = instruments or tuple(InstrumentErrors(model.specimen) for model in models)
-    found = np.full(len(models), np.nan)
-    for index, (model, of_tension, errors) in enumerate(zip(models, declared, known, strict=True)):
-        of_position = record.position_standard_uncertainty
-        shared = errors
-        if np.isfinite(of_tension):
-            shared = replace(shared, tension_gain=0.0, tension_offset=0.0)
-        if np.isfinite(of_position):
-            shared = replace(shared, position_gain=0.0, position_offset=0.0)
-        spread = strain_uncertainty_of(
-            replace(model, covariance=np.empty((0, 0))),
-            position=position,
-            tension=tension[index],
-            position_uncertainty=of_position
-            if np.isfinite(of_position)
-            else errors.position_reading or np.nan,
-            tension_uncertainty=of_tension
-            if np.isfinite(of_tension)
-            else errors.tension_reading or np.nan,
-        )
-        variance = np.nan_to_num(spread) ** 2
-        if model.method != "extensometer":
-            strain = strain_by_model(model, position=position, tension=tension[index])
-            field = error_field(shared, model, strain=strain, tension=tension[index])
-            variance = np.where(np.isnan(strain), np.nan, variance + np.sum(field.strain**2, 0))
-        elif errors.strain_gain:
-            measured = record.measured_strain
-            level = np.nan if measured is None else measured[index, rows]
-            variance = variance + (errors.strain_gain * level) ** 2
-        usable = variance[np.isfinite(variance)]
-        # nothing known of it is not the same as nothing wrong with it
-        if usable.size and usable.any():
-            found[index] = np.sqrt(np.mean(usable))
-    return found
-
-
-def with_stated_channels(
-    located: Located, instruments: Sequence[InstrumentErrors], *, phase: NDArray[np.int8]
-) -> Located:
-    """Record with what is stated of its channels where the layout declares nothing of them.
-
-    Root mean square over the samples of reading, gain and zero.
-    """
-    record = located.record
-    if not instruments:
-        return located
-    rows = _rows_of(phase)
-    if not rows.size:
-        return located
-    tension = record.tension_standard_uncertainty or (np.nan,) * len(instruments)
-    position = record.position_standard_uncertainty
-    level = [_root_mean_square(load) for load in located.tension[:, rows]]
-    tension = tuple(
-        own
-        if np.isfinite(own)
-        else _root(one.tension_reading, one.tension_offset, one.tension_gain * force)
-        for own, one, force in zip(tension, instruments, level, strict=True)
-    )
-    first = instruments[0]
-    if not np.isfinite(position):
-        reach = _root_mean_square(located.position[rows])
-        position = _root(first.position_reading, first.position_offset, first.position_gain * reach)
-    return replace(
-        located,
-        record=replace(
-            record,
-            tension_standard_uncertainty=tension if np.isfinite(tension).any() else (),
-            position_standard_uncertainty=position,
-        ),
-    )
-
-
-def _root_mean_square(values: Floats) -> float:
+def _rms(values: Floats) -> float:
     known = values[np.isfinite(values)]
     return float(np.sqrt(np.mean(known**2))) if known.size else 0.0
 
 
-def _root(*parts: float) -> float:
-    """Root of the sum of squares; NaN where nothing is stated."""
-    total = float(np.sqrt(np.sum(np.square(parts))))
-    return total if total > 0 else float("nan")
+def _signed_rms(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.copysign(_rms(known), known.mean())) if known.size else 0.0

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from reduction.archive.dataset import to_dataset
-from reduction.archive.shared import SHARED
+from reduction.archive.shared import SHARED, SHARED_OF_CHANNELS
 from reduction.archive.write import write_archive
 from reduction.cycles.product import Cycles, Loops
 from reduction.holds.product import HoldResult
@@ -415,7 +415,10 @@ def make_contributions(rng):
         "hold": 3, "hold_time": 4, "prony_term": 2, "strain_level": 2, "comparison": 2,
         "ratio_strain_bin": 3, "slip": 2, "elastomer_parameter": 3, "interval": 2,
     }  # fmt: skip
-    values = {name: array(rng, 2, *(size[dim] for dim in dims)) for name, dims in SHARED.items()}
+    values = {
+        name: array(rng, 2, *(size[dim] for dim in dims))
+        for name, dims in (SHARED | SHARED_OF_CHANNELS).items()
+    }
     for name, dims in SHARED.items():
         # the slow pull is one that was fitted: its numbers are read to their uncertainty
         if {"tension_grid", "break_share", "pull_term"} & set(dims):

@@ -79,3 +79,29 @@ def test_contributions_without_a_variable_are_refused_and_not_dropped():
     lost = Contributions((Component("tension_gain", "cell"),), {"test_speed": np.ones((1, 1))})
     with pytest.raises(ArchiveError, match="no variable for contributions of shared errors"):
         with_shared(values(), lost, {})
+
+
+def channel(reading, rows):
+    """Parts of the uncertainty of tension, by the suffix of their variable."""
+    before = {"tension": np.zeros((2, 9))}
+    if reading is not None:
+        before["tension_standard_uncertainty"] = np.array(reading)
+    found = with_shared(before, Contributions((CELL,), {"tension": np.array([rows])}), {})
+    return [
+        found[f"tension{suffix}"].tolist()
+        for suffix in (
+            "_random_standard_uncertainty", "_uncertainty_contribution", "_standard_uncertainty",
+        )
+    ]  # fmt: skip
+
+
+def test_a_channel_keeps_what_one_reading_adds_apart_from_what_all_samples_share():
+    assert channel([3.0, 0.5], [4.0, 0.0]) == [[3.0, 0.5], [[4.0, 0.0]], [5.0, 0.5]]
+
+
+def test_of_a_channel_nothing_known_of_a_reading_counts_as_zero_beside_what_is_known():
+    random, rows, both = channel(None, [4.0, 0.0])
+    assert rows == [[4.0, 0.0]]
+    assert random[0] == 0.0 and both[0] == 4.0
+    # of the second nothing is known at all
+    assert np.isnan(random[1]) and np.isnan(both[1])

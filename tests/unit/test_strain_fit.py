@@ -11,7 +11,8 @@ from reduction.strain.evaluate import strain_by_model
 from reduction.strain.fit import fit_strain_model, zero_strain_position
 from reduction.strain.model import StrainModel
 from reduction.strain.pool import PooledMarks, fit_to_marks
-from reduction.strain.uncertainty import strain_uncertainty_of
+from reduction.uncertainty.field import error_field
+from reduction.uncertainty.product import InstrumentErrors
 
 L0, LS = 2.55, 1.18
 COMPLIANCE, EXPONENT = 0.0012, 0.85
@@ -236,11 +237,10 @@ def test_the_uncertainty_of_a_stated_gauge_length_is_shared_by_all_strains():
     model = fit_strain_model(stated, test_id="a", reference_position=2.0)
     assert model.notes == () and model.relaxed_length == 2.0
     # at 100 and at 50 %, 0.5 % of the strain
-    spread = strain_uncertainty_of(
-        model, position=[4.0, 3.0], tension=[1.0, 1.0], position_uncertainty=np.nan,
-        tension_uncertainty=np.nan,
-    )  # fmt: skip
-    assert spread == pytest.approx([0.005, 0.0025], rel=1e-6)
+    field = error_field(
+        InstrumentErrors("hose"), model, strain=np.array([1.0, 0.5]), tension=np.ones(2)
+    )
+    assert np.hypot.reduce(field.strain) == pytest.approx([0.005, 0.0025], rel=1e-6)
 
 
 def test_a_gauge_length_without_one_counts_as_exact_and_says_so():

@@ -8,6 +8,7 @@ import pytest
 from experiments import ABOUT, screening_experiment, surface_experiment
 
 from reduction.archive.schema import SCHEMA
+from reduction.archive.shared import SHARED_OF_CHANNELS
 from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.archive.variable import SUFFIXES
 from reduction.archive.write import write_archive
@@ -122,6 +123,7 @@ def test_every_number_of_an_archive_but_the_samples_is_in_a_table():
         "tension_standard_uncertainty", "diameter_reading", "stretched_diameter",
         "stretched_diameter_strain", "standstill_position_tolerance", "slack_tension",
         "hold_tension_tolerance",
+        *(f"{name}_uncertainty_contribution" for name in SHARED_OF_CHANNELS),
     }  # fmt: skip
     missing = {
         name
