@@ -15,7 +15,7 @@ from reduction.surface.cautions import Caution, find_cautions
 from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.levels import FactorLevels
 from reduction.surface.product import ResponseSurfaces
-from reduction.surface.reached import levels_off_plan
+from reduction.surface.reached import ON_PLAN, levels_off_plan
 from reduction.surface.runsheet import RunSheet
 
 __all__ = [
@@ -28,8 +28,6 @@ __all__ = [
     "surface_levels_off_plan",
 ]
 
-_OFF_SURFACE = 0.3
-"""Coded distance from the plan of a run that a machine with poor control still meets."""
 _OFF_SCREENING = 0.1
 _WRONG_HALF = 0.5
 """Coded distance from which a level of a screening is no more that of its column."""
@@ -55,13 +53,13 @@ def remarks_of_runs(runs: RunTable) -> list[str]:
 def surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[str]:
     """A note where runs of a surface were not run where the plan has them."""
     words = levels_off_plan(
-        coded, runs.coded_plan[:, : len(names)], beyond=_OFF_SURFACE,
+        coded, runs.coded_plan[:, : len(names)], beyond=ON_PLAN,
         run_names=runs.names, factor_names=names,
     )  # fmt: skip
     if not words:
         return []
     return [
-        f"levels reached disagree with the plan by more than {_OFF_SURFACE:g} coded: "
+        f"levels reached disagree with the plan by more than {ON_PLAN:g} coded: "
         f"{listed(words, between='; ')}; the surfaces are of the levels reached"
     ]
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from reduction.record import Bools, Floats
 from reduction.surface.product import ResponseSurfaces
+from reduction.surface.reached import ON_PLAN
 from reduction.surface.terms import model_matrix
 from reduction.surface.variance import variance_factor
 
@@ -23,8 +24,6 @@ ABOVE_LEVERAGE = 1 + 1e-9
 
 _EDGE = 1e-9
 """Rounding of the change of units, by which a point on the edge may lie outside."""
-_ON_PLAN = 0.3
-"""Coded distance from the plan of a run that a machine with poor control still meets."""
 
 
 def is_within_levels(coded: ArrayLike, *, allowed: ArrayLike = 0.0) -> Bools:
@@ -92,7 +91,7 @@ def levels_tested(reached: Floats, plan: Floats) -> Floats:
     >>> levels_tested(np.array([[0.98], [0.2]]), np.array([[1.0], [-1.0]])).ravel()
     array([0.98, 0.2 , 1.  ])
     """
-    is_near = np.all(np.abs(reached - plan) <= _ON_PLAN, axis=1)
+    is_near = np.all(np.abs(reached - plan) <= ON_PLAN, axis=1)
     return np.concatenate([reached, plan[is_near]])
 
 
