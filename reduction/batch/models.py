@@ -96,7 +96,11 @@ def fit_strain_models(
                     failed_tests=failed,
                 )
                 read_by = tuple(cells[name].get(test, "") for test in model.mark_test)
-                models[survey.plan.id, name] = replace(model, mark_load_cell=read_by)
+                models[survey.plan.id, name] = replace(
+                    model,
+                    mark_load_cell=read_by,
+                    is_zero_logged=survey.is_zero_logged and model.method == "gauge-length",
+                )
             except Exception as error:
                 # one test's failure, even where it is a defect here
                 errors[survey.plan.id] = as_reduction_error(error)

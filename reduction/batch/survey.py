@@ -48,6 +48,7 @@ class Survey:
     mark_tension: dict[str, Floats] = field(default_factory=dict)
     mark_tension_at_start: dict[str, Floats] = field(default_factory=dict)
     zero_strain_position: float | None = None
+    is_zero_logged: bool = False
     extremes: Extremes = field(default_factory=Extremes)
     found: dict[str, Any] = field(default_factory=dict)
     error: ReductionError | None = None
@@ -99,7 +100,7 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
     if not plan.steps:
         survey = _located(plan, record, sources)
         if survey.located is not None:
-            survey.zero_strain_position = _zero_strain_position(survey.located, campaign, plan)
+            _find_zero_strain(survey, survey.located, campaign, plan)
         _measure_marks(survey, survey.located, campaign.marks)
         return [survey]
     # a mark, and the position of zero strain, belong to the whole log and not to a step of it
@@ -112,17 +113,20 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
             survey = _located(part, record_of_step, sources)
         except ReductionError as error:
             survey = Survey(part, sources, n_rows=record.n_samples, error=error)
-        survey.zero_strain_position = _zero_strain_position(whole, campaign, plan)
+        _find_zero_strain(survey, whole, campaign, plan)
         surveys.append(survey)
     _measure_marks(surveys[0], whole, campaign.marks)
     return surveys
 
 
-def _zero_strain_position(located: Located, campaign: Campaign, plan: TestPlan) -> float | None:
-    return zero_strain_position(
+def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan: TestPlan) -> None:
+    """Set where strain is zero, and whether that is a position of the log."""
+    layouts = [campaign.layouts[layout] for _, layout in plan.files]
+    survey.is_zero_logged = bool(located.standstills.is_rest.any())
+    survey.zero_strain_position = zero_strain_position(
         located.standstills,
         position_is_length=located.record.position_is_length,
-        length_at_slack=length_at_slack([campaign.layouts[layout] for _, layout in plan.files]),
+        length_at_slack=length_at_slack(layouts),
     )
 
 

@@ -51,6 +51,9 @@ class StrainModel:
         is the inverse of this times the modulus here. NaN without marks. [1]
     notes : tuple of str
         What a reader has to know.
+    is_zero_logged : bool
+        True where the position of zero strain was read from the log of the test, so that a wrong
+        zero of the crosshead is in it as well.
     splice_law : dict of str to float
         Of a method that knows position alone: the coefficients of ``tension-driven`` fitted to
         the same marks, by which its error is judged; empty where there is no such law.
@@ -74,6 +77,7 @@ class StrainModel:
     mark_load_cell: tuple[str, ...] = ()
     strain_slope_ratio: float = float("nan")
     notes: tuple[str, ...] = ()
+    is_zero_logged: bool = False
     splice_law: dict[str, float] = field(default_factory=dict)
 
     @property

@@ -25,8 +25,15 @@ _REACH = 1e-4  # of the strain 1, for the slopes
 def position_parts(
     errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
 ) -> list[FieldPart]:
-    """Gain and zero of the crosshead's scale; none for an extensometer."""
+    """Gain and zero of the crosshead's scale; none for an extensometer.
+
+    Where zero strain is a position of the log itself, a wrong zero is in both and leaves strain as
+    it is, and a wrong scale is one of what lies between.
+    """
     gain, offset = errors.position_gain, errors.position_offset
+    begin = 0.0
+    if model.is_zero_logged:
+        begin, offset = model.coefficients["reference_position"], 0.0
     if model.method == "extensometer" or not (gain or offset):
         return []
     position = position_by_model(model, strain=at, tension=load)
@@ -38,7 +45,7 @@ def position_parts(
     if gain:
         rows = field_rows(
             load,
-            strain=gain * slope * position,
+            strain=gain * slope * (position - begin),
             strain_slope=gain,
             strain_slope_over_tension=gain * slope * (longer - shorter) / (2 * step),
         )

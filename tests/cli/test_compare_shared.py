@@ -23,6 +23,9 @@ strain = "0.5 %"
 gain = "1 %"
 offset = "10 lbf"
 noise = "50 lbf"
+[uncertainty.crosshead_position]
+gain = "0.1 %"
+offset = "0.1 in"
 [uncertainty.temperature]
 value = "2 K"
 stiffness_per_kelvin = "1 %"
@@ -58,10 +61,13 @@ def with_column(name, values):
     return change
 
 
-LOAD, TIME = "load_lbf", "time_s"
+LOAD, PLACE, TIME = "load_lbf", "flange_to_flange_in", "time_s"
 WRONG = {
     "tension_gain": with_column(LOAD, lambda load: 1.01 * load),
     "tension_offset": with_column(LOAD, lambda load: load + 10.0),
+    # lengths are told from the first rest of the same log: a wrong zero is in both
+    "position_gain": with_column(PLACE, lambda place: 1.001 * place),
+    "position_offset": with_column(PLACE, lambda place: place + 0.1),
     # a record of which the load was taken late: at each time it is that of a while ago
     "lag": lambda log: log.assign(
         load_lbf=np.interp(log[TIME] - 0.05, log[TIME], log[LOAD])
@@ -99,7 +105,8 @@ def test_logs_that_are_wrong_move_the_measured_curve_by_what_the_comparison_says
     names = [one.source for one in curve.component]
     n = min(curve.strain.size, wrong.strain.size)
     for name in curve.curves():
-        row = curve.contribution_of(name)[names.index(source)][:n]
+        rows = dict(zip(names, curve.contribution_of(name), strict=True))
+        row = rows.get(source, np.zeros(curve.strain.size))[:n]
         moved = wrong.tension_of(name)[:n] - curve.tension_of(name)[:n]
         slope = np.gradient(curve.tension_of(name)[:n], curve.strain[:n])
         there = np.isfinite(moved) & np.isfinite(slope)
@@ -133,6 +140,8 @@ def test_what_shared_errors_add_is_in_the_shape_of_each(right, test):
     np.testing.assert_allclose(errors["strain_gain"], 0.005 * strain, rtol=1e-6, atol=1e-12)
     np.testing.assert_allclose(np.abs(errors["strain_calibration"]), strain * 0.05 / LENGTH,
                                rtol=1e-3, atol=1e-7)  # fmt: skip
+    np.testing.assert_allclose(errors["position_gain"], 0.001 * strain, rtol=1e-3, atol=1e-12)
+    assert "position_offset" not in errors
     assert not any("calibration is stated" in note for note in found.validation.notes)
 
 
