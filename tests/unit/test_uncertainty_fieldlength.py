@@ -1,37 +1,79 @@
-"""Errors of the crosshead's scale, as the zero of strain is from the log or from elsewhere."""
+"""Errors of the tape in coefficients and in what rests on one of them."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from reduction.pipeline.shared.material import of_material
+from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import error_field
+from reduction.uncertainty.fieldlength import coefficient_errors
 from reduction.uncertainty.product import InstrumentErrors
 
-LENGTH, START = 2.0, 2.3
-STRAIN = np.array([0.0, 0.4, 0.9])
+COEFFICIENTS = {
+    "relaxed_free_length": 2.55,
+    "relaxed_splice_length": 1.18,
+    "splice_compliance": 0.0012,
+    "splice_exponent": 0.86,
+}
+DEVIATION = np.array([1.2e-3, 1.5e-3, 5e-5, 6e-3])
+CORRELATION = np.array(
+    [[1, -0.8, 0.1, 0.0], [-0.8, 1, -0.3, 0.1], [0.1, -0.3, 1, -0.9], [0.0, 0.1, -0.9, 1]]
+)
+MODEL = StrainModel(
+    "new", "tension-driven", COEFFICIENTS, CORRELATION * np.outer(DEVIATION, DEVIATION)
+)
 
 
-@pytest.mark.parametrize("is_zero_logged", [True, False])
-@pytest.mark.parametrize(("source", "size"), [("position_gain", 1e-3), ("position_offset", 2e-3)])
-def test_a_crosshead_that_is_wrong_moves_strain_by_what_its_zero_does_not_share(
-    source, size, is_zero_logged
-):
-    """Positions read wrong, once with the zero from the same log and once with the right one."""
-    place = START + LENGTH * STRAIN
+def test_the_errors_add_up_to_the_covariance():
+    errors = coefficient_errors(MODEL)
+    np.testing.assert_allclose(errors @ errors.T, MODEL.covariance, rtol=1e-9, atol=1e-18)
 
-    def read(position):
-        return position * (1 + size) if source == "position_gain" else position + size
 
-    zero = read(START) if is_zero_logged else START
-    expected = (read(place) - zero) / LENGTH - STRAIN
-    model = StrainModel(
-        "rope", "gauge-length", {"reference_position": START, "gauge_length": LENGTH},
-        is_zero_logged=is_zero_logged,
+def test_a_model_without_covariance_has_no_errors():
+    assert coefficient_errors(StrainModel("new", "tension-driven", COEFFICIENTS)).shape == (4, 0)
+
+
+def slack_contributions(**stated):
+    """Of a strain at slack of 3 %, found where 5 N more would be 1 mm per metre more."""
+    test = SimpleNamespace(
+        stress_at_strain=None, first_loading=None, history=None, standstills=None,
+        slack_strain=SimpleNamespace(strain=np.array([0.03]), by_tension=np.array([2e-4])),
     )  # fmt: skip
-    found = error_field(
-        InstrumentErrors("rope", **{source: size}), model, strain=STRAIN, tension=1e3 * STRAIN
-    )
-    moved = found.strain[0] if found.component else np.zeros(3)
-    np.testing.assert_allclose(moved, expected, rtol=1e-9, atol=1e-15)
-    slope = found.strain_slope[0] if found.component else np.zeros(3)
-    np.testing.assert_allclose(slope, np.gradient(expected, STRAIN), rtol=1e-9, atol=1e-12)
+    (found,) = of_material(test, 0, InstrumentErrors("new", **stated), MODEL, np.nan)
+    return dict(zip(found.component, found.values["slack_strain_at_unloading"], strict=True))
+
+
+def test_strain_at_slack_goes_with_the_strain_of_the_test_by_the_same_tape():
+    # a length found 1.2 mm too large makes a strain of 3 % too small by 1.2 mm in 2.55 m of it
+    slack = {
+        one: row for one, row in slack_contributions().items() if one.source == "strain_calibration"
+    }
+    assert np.sqrt(sum(row**2 for row in slack.values())) == pytest.approx(0.03 * 1.2e-3 / 2.55)
+    field = error_field(InstrumentErrors("new"), MODEL, strain=1.0, tension=500.0)
+    together = sum(slack[one] * row for one, row in zip(field.component, field.strain, strict=True))
+    # the same covariance with the coefficients moved one by one at a fixed position
+    position = 2.55 * 2 + 1.18 * (1 + 0.0012 * 500.0**0.86)
+    slopes = []
+    for name, value in COEFFICIENTS.items():
+        ends = [
+            strain_by_model(
+                StrainModel(
+                    "new", "tension-driven", {**COEFFICIENTS, name: value * (1 + way * 1e-6)}
+                ),
+                position=position, tension=500.0,
+            )
+            for way in (1, -1)
+        ]  # fmt: skip
+        slopes.append((ends[0] - ends[1]) / (2e-6 * value))
+    wanted = np.array([-0.03 / 2.55, 0.0, 0.0, 0.0]) @ MODEL.covariance @ np.array(slopes)
+    assert together == pytest.approx(wanted, rel=1e-5)
+
+
+def test_gains_of_crosshead_and_strain_method_scale_the_strain_at_slack():
+    found = {one.source: row for one, row in slack_contributions(strain_gain=0.02).items()}
+    assert found["strain_gain"] == pytest.approx(0.03 * 0.02)
+    found = {one.source: row for one, row in slack_contributions(position_gain=0.01).items()}
+    assert found["position_gain"] == pytest.approx(0.03 * 0.01)
