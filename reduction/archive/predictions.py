@@ -146,7 +146,7 @@ def _uncertainty_values(hoses: Sequence[PredictedHose]) -> Values:
         values[f"{name}_contribution"] = parts
         values[f"{name}_standard_uncertainty"] = pad(
             [
-                _stated(hose, getattr(hose.uncertainty, f"{name}_standard_uncertainty"))
+                _nan_where_exact(hose, getattr(hose.uncertainty, f"{name}_standard_uncertainty"))
                 for hose in hoses
             ]
         )
@@ -157,7 +157,7 @@ def _uncertainty_values(hoses: Sequence[PredictedHose]) -> Values:
     return values
 
 
-def _stated(hose: PredictedHose, values: Floats) -> Floats:
+def _nan_where_exact(hose: PredictedHose, values: Floats) -> Floats:
     """NaN, not zero, of a hose of which no number is uncertain."""
     return values if hose.uncertainty.source else np.full(values.shape, np.nan)
 

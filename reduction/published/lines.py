@@ -209,7 +209,7 @@ def _strength(cells: LineCells, row: str) -> PublishedStrength | None:
     )
 
 
-def _stated(cells: LineCells, row: str) -> tuple[StatedStrength, ...]:
+def _strengths_when_new(cells: LineCells, row: str) -> tuple[StatedStrength, ...]:
     """Rated and measured strengths of the new line, as the tables have them."""
     line = row.rpartition(" | ")[0]
     places = (
@@ -235,7 +235,7 @@ def _line(cells: LineCells, row: str) -> PublishedLine:
     surfaces = {name: _surface(cells, row, name) for name in RESPONSES}
     found = {name: surface for name, surface in surfaces.items() if surface is not None}
     cubics = {quantity: _cubic(cells, row, quantity) for quantity in SCALE_OF_CUBIC}
-    strength, stated = _strength(cells, row), _stated(cells, row)
+    strength, stated = _strength(cells, row), _strengths_when_new(cells, row)
     parts = {**surfaces, **cubics, BREAK: strength}
     rated = [box.rated_break_strength for surface in found.values() for box in surface.boxes[:1]]
     return PublishedLine(

@@ -26,10 +26,12 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | No
     statements: dict[str, list[TestView]] = {}
     for view in tests:
         if is_stated(view):
-            statements.setdefault(json.dumps(_stated(view), sort_keys=True), []).append(view)
+            statements.setdefault(json.dumps(_stated_errors_of(view), sort_keys=True), []).append(
+                view
+            )
     if not statements:
         return None
-    stated = [_stated(views[0]) for views in statements.values()]
+    stated = [_stated_errors_of(views[0]) for views in statements.values()]
     rows = [
         [words(unit.label(text)), *(number(one.get(key, 0.0), unit, digits=3) for one in stated)]
         for key, text, unit in _rows(units)
@@ -62,10 +64,12 @@ def instrument_sentences(tests: Sequence[TestView]) -> list[str]:
 
 def is_stated(view: TestView) -> bool:
     """Return whether the archive states any error of the instruments."""
-    return any(value for key, value in _stated(view).items() if key != "has_one_load_cell")
+    return any(
+        value for key, value in _stated_errors_of(view).items() if key != "has_one_load_cell"
+    )
 
 
-def _stated(view: TestView) -> dict[str, float]:
+def _stated_errors_of(view: TestView) -> dict[str, float]:
     settings = json.loads(view.attribute("settings") or "{}")
     found: dict[str, float] = settings.get("uncertainty", {})
     return found
