@@ -65,9 +65,9 @@ def comparison_findings(view: ComparisonView) -> list[Finding]:
     """Return what a reader must know of a comparison before its numbers."""
     of = (f"comparison {view.name}",)
     found = []
-    if view.outcome == "differs":
+    if view.short_verdict == "differs":
         found.append(Finding("warning", of, f"The prediction {view.verdict}."))
-    elif view.outcome != "agrees":
+    elif view.short_verdict != "agrees":
         found.append(Finding("note", of, f"{view.verdict[:1].upper()}{view.verdict[1:]}."))
     if view.is_identified is False:
         found += [Finding("warning", of, sentence) for sentence in _identified(view)]
@@ -80,7 +80,7 @@ def comparison_tiles(views: Sequence[ComparisonView]) -> list[Tile]:
         return []
     noun = "comparison" if len(views) == 1 else "comparisons"
     found = [Tile(f"{len(views):,}", noun, views[0].key)]
-    differing = [view for view in views if view.outcome == "differs"]
+    differing = [view for view in views if view.short_verdict == "differs"]
     if differing:
         words = "differs" if len(differing) == 1 else "differ"
         found.append(Tile(f"{len(differing):,}", words, differing[0].key, is_bad=True))

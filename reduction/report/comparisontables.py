@@ -47,7 +47,7 @@ def verdict_table(views: Sequence[ComparisonView]) -> Table | None:
         rows.append(
             [
                 words(view.name), words(view.test), words(view.hose), words(view.loading),
-                words(view.outcome),
+                words(view.short_verdict),
                 number(view.judged_scalar("tension_bias"), force, digits=3),
                 number(view.judged_scalar("tension_rms"), force, digits=3),
                 number(view.judged_scalar("tension_relative_rms"), strain, digits=3),

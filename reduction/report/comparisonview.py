@@ -19,10 +19,10 @@ from reduction.report.style import Shown, shown
 from reduction.units import UnitSystem
 
 __all__ = [
-    "ComparisonView", "FittedNumber", "MetEvent", "Outcome", "view_comparisons",
+    "ComparisonView", "FittedNumber", "MetEvent", "ShortVerdict", "view_comparisons",
 ]  # fmt: skip
 
-Outcome = Literal["agrees", "says little", "differs", "not judged"]
+ShortVerdict = Literal["agrees", "says little", "differs", "not judged"]
 _EVENT_WORDS = {**EVENT_WORDS, "break": EVENT_WORDS["cord_break"]}
 _NUMBER_WORDS = {
     "cord_load_scale": "scale of the cords' load",
@@ -127,7 +127,7 @@ class ComparisonView(RowView):
         return self.text("verdict")
 
     @property
-    def outcome(self) -> Outcome:
+    def short_verdict(self) -> ShortVerdict:
         """The verdict in a word: agreement within a wide band says little."""
         if not np.isfinite(self.scalar("largest_ratio")):
             return "not judged"
