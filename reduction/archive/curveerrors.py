@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import xarray as xr
 
 from reduction.archive.shared import components_of
+from reduction.archive.statederrors import stated_errors_of
 from reduction.compare.shared import SharedErrors, constant_errors
 from reduction.record import Bools, Floats
 
@@ -67,11 +66,10 @@ def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tupl
         there &= np.isfinite(slope)
         if there.any():
             return _errors(archive, archive[axis].values, tension, of_error, slope, there), ()
-    stated = json.loads(str(archive.attrs.get("settings") or "{}")).get("uncertainty")
+    stated = stated_errors_of(archive)
     if stated is None:
         return _of_old(archive, place), (_OLD,)
-    is_left_out = any(isinstance(value, float) and value > 0 for value in stated.values())
-    return _of_length(archive, place), (_NO_CURVE,) if is_left_out else ()
+    return _of_length(archive, place), (_NO_CURVE,) if stated.has_any else ()
 
 
 def _errors(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 
+from reduction.archive.statederrors import stated_errors_of
 from reduction.report.htmltable import Table, make_table, number, words
 from reduction.report.style import Shown, shown
 from reduction.report.view import TestView, any_synthetic
+from reduction.uncertainty.stated import StatedErrors
 from reduction.units import UnitSystem
 
 __all__ = ["NOTHING_STATED", "instrument_sentences", "instrument_table", "is_stated"]
@@ -23,20 +24,18 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | No
 
     Tests of one campaign are usually reduced with one statement.
     """
-    statements: dict[str, list[TestView]] = {}
+    statements: dict[StatedErrors, list[TestView]] = {}
     for view in tests:
         if is_stated(view):
-            statements.setdefault(json.dumps(_stated_errors_of(view), sort_keys=True), []).append(
-                view
-            )
+            statements.setdefault(_stated_errors_of(view), []).append(view)
     if not statements:
         return None
-    stated = [_stated_errors_of(views[0]) for views in statements.values()]
     rows = [
-        [words(unit.label(text)), *(number(one.get(key, 0.0), unit, digits=3) for one in stated)]
+        [words(unit.label(text)),
+         *(number(getattr(one, key), unit, digits=3) for one in statements)]
         for key, text, unit in _rows(units)
-        if any(one.get(key, 0.0) for one in stated)
-    ]
+        if any(getattr(one, key) for one in statements)
+    ]  # fmt: skip
     is_one = len(statements) == 1 and len(next(iter(statements.values()))) == len(tests)
     columns = (
         ["standard uncertainty"]
@@ -44,7 +43,7 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | No
         else [", ".join(view.id for view in views) for views in statements.values()]
     )
     without = [view.id for view in tests if not is_stated(view)]
-    has_one_cell = any(one.get("has_one_load_cell") for one in stated)
+    has_one_cell = any(one.has_one_load_cell for one in statements)
     remarks = [
         "Standard uncertainties (k = 1), as computed from what campaign.toml states; what has no"
         " row counts as known.",
@@ -64,15 +63,11 @@ def instrument_sentences(tests: Sequence[TestView]) -> list[str]:
 
 def is_stated(view: TestView) -> bool:
     """Return whether the archive states any error of the instruments."""
-    return any(
-        value for key, value in _stated_errors_of(view).items() if key != "has_one_load_cell"
-    )
+    return _stated_errors_of(view).has_any
 
 
-def _stated_errors_of(view: TestView) -> dict[str, float]:
-    settings = json.loads(view.attribute("settings") or "{}")
-    found: dict[str, float] = settings.get("uncertainty", {})
-    return found
+def _stated_errors_of(view: TestView) -> StatedErrors:
+    return stated_errors_of(view.data) or StatedErrors()
 
 
 def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:

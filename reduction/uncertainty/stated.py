@@ -8,7 +8,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal
 
 import numpy as np
@@ -161,6 +161,11 @@ class StatedErrors:
     rated_break_strength: float = 0.0
     stiffness: float = 0.0
     has_one_load_cell: bool = False
+
+    @property
+    def has_any(self) -> bool:
+        """True where an error is stated at all."""
+        return any(getattr(self, item.name) for item in fields(self) if item.type == "float")
 
     def of_channel(
         self,

@@ -9,7 +9,7 @@ from reduction.archive.schema import COEFFICIENTS, SCHEMA, schema_of
 from reduction.cycles.product import Loops
 from reduction.moduli.hyperelastic import PARAMETERS
 from reduction.moduli.product import AmplitudeSummary
-from reduction.strain import methods, splice
+from reduction.strain import methods, splice, tensiondriven
 
 PER_CYCLE = [item.name for item in fields(Loops) if item.name != "uncertainty"]
 OF_TEST = [item.name for item in fields(AmplitudeSummary) if item.name != "uncertainty"]
@@ -27,7 +27,7 @@ def test_what_has_no_uncertainty_has_a_reason(is_stepwise):
     [
         methods.marked_line_strain,
         methods.splice_ratio_strain,
-        methods.tension_driven_strain,
+        tensiondriven.tension_driven_strain,
         methods.gauge_length_strain,
         splice.free_length_strain,
     ],

@@ -1,0 +1,50 @@
+"""The statement of a campaign, read from the settings of an archive."""
+
+import json
+from dataclasses import asdict
+
+import pytest
+import xarray as xr
+
+from reduction.archive.statederrors import stated_errors_of
+from reduction.errors import ArchiveError
+from reduction.uncertainty.stated import StatedErrors
+
+
+def archive(uncertainty=None):
+    settings = {} if uncertainty is None else {"uncertainty": uncertainty}
+    return xr.Dataset(attrs={"settings": json.dumps(settings)})
+
+
+def test_what_was_written_is_read_again():
+    stated = StatedErrors(tension_gain=0.0025, lag=0.02, has_one_load_cell=True)
+    assert stated_errors_of(archive(asdict(stated))) == stated
+
+
+def test_an_older_archive_has_no_statement_and_an_empty_one_states_nothing():
+    assert stated_errors_of(archive()) is None
+    assert stated_errors_of(xr.Dataset()) is None
+    found = stated_errors_of(archive({}))
+    assert found == StatedErrors() and not found.has_any
+
+
+def test_one_load_cell_alone_is_no_error():
+    assert not StatedErrors(has_one_load_cell=True).has_any
+    assert StatedErrors(diameter=1e-5).has_any
+
+
+def test_a_key_of_a_later_version_is_left_aside():
+    assert stated_errors_of(archive({"lag": 0.02, "humidity": 3.0})) == StatedErrors(lag=0.02)
+
+
+@pytest.mark.parametrize(
+    ("kept", "words"),
+    [
+        ({"lag": "20 ms"}, "no standard uncertainty as lag; found '20 ms'; needed a number in SI"),
+        ({"lag": True}, "as lag; found True"),
+        ({"has_one_load_cell": 1.0}, "as has_one_load_cell; found 1.0; needed true or false"),
+    ],
+)
+def test_what_is_no_statement_is_refused(kept, words):
+    with pytest.raises(ArchiveError, match=words):
+        stated_errors_of(archive(kept))
