@@ -37,7 +37,8 @@ def lookup(
         ),
     ],
     quantity: Annotated[
-        str | None, typer.Option(help="What is wanted: its name, or K_ap, H, K_0, K_1, tau, N.")
+        str | None,
+        typer.Option(help="What is wanted: its name, or K_ap, H, K_0, K_1, tau, N, tension."),
     ] = None,
     frequency: Annotated[str | None, typer.Option(help='"0.3 Hz".')] = None,
     mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,

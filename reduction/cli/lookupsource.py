@@ -27,6 +27,8 @@ _OF_CYCLES = (
     "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
     "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient",
 )  # fmt: skip
+# tension along a curve over strain is kept by the name of its branches
+_OF_CURVES = {"tension": "branch_tension"}
 _ENDINGS = (".nc", ".toml", ".csv")
 
 
@@ -84,27 +86,28 @@ def lines_of(source: str) -> list[LineSource]:
 
 
 def name_of_quantity(text: str) -> str:
-    """Name of a quantity that is asked for by the symbol of its source, such as ``K_ap``.
+    """Name of a quantity that is asked for by the symbol of its source, or as ``tension``.
 
     Parameters
     ----------
     text : str
-        A name, or a symbol; K_0 or K0.
+        A name, or a symbol; K_0 or K0; ``tension`` is that of a branch over strain.
 
     Returns
     -------
     name : str
-        The text itself where it is no symbol of a number of the three-parameter line.
+        The text itself where it is neither ``tension`` nor a symbol of a number of the
+        three-parameter line.
 
     Examples
     --------
-    >>> [name_of_quantity(text) for text in ("K_ap", "tau", "loss_factor")]
-    ['apparent_spring_constant', 'relaxation_time', 'loss_factor']
+    >>> [name_of_quantity(text) for text in ("K_ap", "tension", "loss_factor")]
+    ['apparent_spring_constant', 'branch_tension', 'loss_factor']
     """
     symbols = {
         SINGLE_QUANTITIES[name].symbol.split(",")[0].split()[-1].replace("_", ""): name
         for name in _OF_CYCLES
-    }
+    } | _OF_CURVES
     return symbols.get(text.replace("_", ""), text)
 
 

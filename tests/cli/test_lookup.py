@@ -420,6 +420,13 @@ def test_a_quantity_can_be_asked_for_by_its_symbol(command, symbol, name):
     assert answer["quantity"] == name
 
 
+def test_tension_over_strain_is_asked_for_as_tension(command):
+    at = ("lookup", "rubber-tether-new-T-1", "--strain", "100 %", "--json", "--quantity")
+    short, whole = (json.loads(command(*at, name).stdout) for name in ("tension", "branch_tension"))
+    assert short == whole
+    assert short["quantity"] == "branch_tension"
+
+
 def test_no_name_is_broken_in_a_pipe(command):
     words = set(command("lookup", "published", "--list").stdout.split())
     lines = json.loads(command("lookup", "published", "--list", "--json").stdout)["lines"]
