@@ -25,6 +25,7 @@ __all__ = [
     "FREEDOM",
     "SHARED",
     "SHARED_OF_CHANNELS",
+    "SHARED_OF_STEPS",
     "SHARED_ROWS",
     "component_values",
     "components_of",
@@ -103,6 +104,8 @@ SHARED_OF_CHANNELS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("tension", "strain", "nominal_stress"), _S),
 }
 """Channels: one contribution for all samples of a specimen, with its dimensions."""
+SHARED_OF_STEPS: dict[str, tuple[str, ...]] = {"secant_modulus": ("step",)}
+"""Of a stepwise test alone: in a record it is of each cycle."""
 # the curve of one cycle has the shared error of the mean
 _ALIKE = {"tangent_modulus_by_cycle": "tangent_modulus"}
 
@@ -153,7 +156,7 @@ def with_shared(
     ArchiveError
         If there are contributions to a quantity that has no variable for them.
     """
-    known = SHARED | SHARED_OF_CHANNELS
+    known = SHARED | SHARED_OF_CHANNELS | SHARED_OF_STEPS
     homeless = sorted(set(contributions.values) - set(known)) if contributions else []
     if homeless:
         raise ArchiveError(

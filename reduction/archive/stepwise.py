@@ -7,8 +7,9 @@ from itertools import chain
 import numpy as np
 
 from reduction.archive.reasons import CLOCK, STATED
+from reduction.archive.shared import COMPONENT, SHARED_OF_STEPS
 from reduction.archive.values import Values, texts
-from reduction.archive.variable import Variable, flag, label, mask, measured, stated
+from reduction.archive.variable import Variable, companion, flag, label, mask, measured, stated
 from reduction.moduli.stepwise import StepwiseResult
 from reduction.vocabulary import BRANCH_VALUES
 
@@ -37,6 +38,13 @@ STEPWISE: dict[str, Variable] = {
         measured("strain", ("step",), ancillary=("step_flag",)),
         flag("branch", ("step",), BRANCH_VALUES),
         measured("secant_modulus", ("step",)),
+        *(
+            (
+                companion(name, "_random_standard_uncertainty", dims),
+                companion(name, "_uncertainty_contribution", (COMPONENT, *dims)),
+            )
+            for name, dims in SHARED_OF_STEPS.items()
+        ),
     )
 }
 """Names that stand along ``step`` in a stepwise test."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reduction.archive.shared import COMPONENT, SHARED
+from reduction.archive.shared import COMPONENT, SHARED, SHARED_OF_STEPS
 from reduction.tables.table import Table
 
 __all__ = ["ERROR", "SHARED_TABLES"]
@@ -23,6 +23,7 @@ _FILES = {
     ("hold", "prony_term"): "shared_errors_prony",
     ("held_pair",): "shared_errors_static_stiffness",
     ("interval",): "shared_errors_stepwise",
+    ("step",): "shared_errors_weights",
     ("slip",): "shared_errors_slips",
     ("elastomer_parameter",): "shared_errors_elastomer",
     ("comparison", "branch_name", "ratio_strain_bin"): "shared_errors_ratios",
@@ -34,6 +35,7 @@ _OF = {
     ("hold", "prony_term"): ("specimen=hold_specimen", "hold_number"),
     ("held_pair",): ("specimen=held_pair_specimen",),
     ("slip",): ("specimen=slip_specimen", "slip_cycle"),
+    ("step",): ("clock",),
     ("elastomer_parameter",): ("elastomer_parameter_fit", "elastomer_parameter_name"),
     ("comparison", "branch_name", "ratio_strain_bin"): ("ratio_numerator", "ratio_denominator"),
 }
@@ -41,9 +43,14 @@ _OF = {
 
 def _table(name: str, dims: tuple[str, ...]) -> Table:
     rows = tuple(
-        f"{quantity}_uncertainty_contribution" for quantity, own in SHARED.items() if own == dims
+        f"{quantity}_uncertainty_contribution"
+        for quantity, own in (SHARED | SHARED_OF_STEPS).items()
+        if own == dims
     )
-    return Table(name, (*dims, COMPONENT), (*_OF.get(dims, ()), *ERROR, *rows), rows)
+    return Table(
+        name, (*dims, COMPONENT), (*_OF.get(dims, ()), *ERROR, *rows), rows,
+        product="stepwise test" if "step" in dims else "test",
+    )  # fmt: skip
 
 
 SHARED_TABLES = tuple(_table(name, dims) for dims, name in _FILES.items())

@@ -116,3 +116,22 @@ def test_an_archive_that_keeps_nothing_apart_is_named_and_counts_as_its_own(
     found = composite(command, tmp_path)
     assert any(note.startswith("T-1: what is shared with other tests") for note in found["notes"])
     assert not any(note.startswith("T-2: what is shared") for note in found["notes"])
+
+
+def test_weights_that_are_heavier_than_they_say_are_in_their_curve_whole(command, tmp_path):
+    """One load is on both ways: their mean has the whole of it, and the diameter none."""
+    raw = tmp_path / "raw"
+    shutil.copytree(RAW.parent / "buoy-technology-1997", raw)
+    path = raw / "campaign.toml"
+    stated = '\n[uncertainty]\ndiameter = "0.02 inch"\n[uncertainty.tension]\ngain = "10 %"\n'
+    path.write_text(path.read_text(encoding="utf-8") + stated, encoding="utf-8")
+    run = run_campaign(
+        load_campaign(path), processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0
+    )
+    found = json.loads(command("composite", run.processed, "--branch", "mean", "--json").stdout)
+    rows = {
+        one["source"]: np.array(one["contribution"])
+        for one in found["tension_uncertainty_contributions"]
+    }
+    assert set(rows) == {"tension_gain", "gauge_length"}
+    assert rows["tension_gain"] == pytest.approx(0.1 * np.array(found["tension"]))

@@ -35,12 +35,13 @@ from reduction.moduli.product import (
 from reduction.moduli.slack import SlackStrain
 from reduction.moduli.stepwise import StepwiseResult
 from reduction.phases.standstill import Standstills
+from reduction.pipeline.shared.weights import with_shared_steps
 from reduction.product import History, ReducedTest, TestDescription
 from reduction.provenance import Source, Step
 from reduction.record import Quality, Record, Specimen
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.lag import LagEstimate
-from reduction.uncertainty.product import Component, Contributions, LineSpread
+from reduction.uncertainty.product import Component, Contributions, InstrumentErrors, LineSpread
 
 N_SAMPLES, N_CYCLES, N_BINS, N_SEGMENTS = 60, 4, 5, 3
 SOURCE = Source("T-1.csv", "ab" * 32, 12345)
@@ -560,7 +561,8 @@ def write_to(folder, test):
 def archives(rich_test, holds_only_test, bare_test, stepwise_test, tmp_path_factory):
     """One archive of each kind, for tests that leave them as they are."""
     folder = tmp_path_factory.mktemp("archives")
-    tests = (bare_test, holds_only_test, stepwise_test, rich_test)
+    weighed = with_shared_steps(stepwise_test, (InstrumentErrors("tether", tension_gain=0.01),))
+    tests = (bare_test, holds_only_test, weighed, rich_test)
     return [write_to(folder, test) for test in tests]
 
 

@@ -13,7 +13,8 @@ from reduction.uncertainty.weights import stepwise_contributions
 
 __all__ = ["with_shared_steps"]
 
-_OF_READINGS = ("tension", "strain", "secant_modulus")
+_OF_READINGS = ("tension", "strain")
+_MODULI = ("interval_modulus", "secant_modulus")
 
 
 def with_shared_steps(test: ReducedTest, instruments: Sequence[InstrumentErrors]) -> ReducedTest:
@@ -25,9 +26,9 @@ def with_shared_steps(test: ReducedTest, instruments: Sequence[InstrumentErrors]
     found = stepwise_contributions(result, errors, area=specimen.area)
     if not found.component:
         return test
-    between = Contributions(found.component, {"interval_modulus": found.values["interval_modulus"]})
+    moduli = Contributions(found.component, {name: found.values[name] for name in _MODULI})
     section = section_contributions(errors, area=specimen.area)
-    whole = merged([between, stacked([section])] if section.component else [between])
+    whole = merged([moduli, stacked([section])] if section.component else [moduli])
     return replace(
         test,
         contributions=whole,
