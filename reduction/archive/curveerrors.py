@@ -22,6 +22,11 @@ _CURVES = (
     ("branch_tension", "tangent_modulus_untrimmed", "strain_bin"),
     ("branch_tension_first_loading", "tangent_modulus_first_loading", "first_loading_strain_bin"),
 )
+_OF_ALL_SAMPLES = (
+    "tension_gain", "tension_offset", "position_gain", "position_offset", "lag", "strain_gain",
+    "stiffness",
+)  # fmt: skip
+"""What may be stated of a test that is in its curve: not the noise of a reading."""
 _OLD = (
     "the archive of the test is of a version that kept no shared errors: what is stated of its "
     "channels counts as zeros that all samples share; reduce it again for more"
@@ -69,7 +74,12 @@ def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tupl
     stated = stated_errors_of(archive)
     if stated is None:
         return _of_old(archive, place), (_OLD,)
-    return _of_length(archive, place), (_NO_CURVE,) if stated.has_any else ()
+    has_curve = any(
+        curve in archive and np.isfinite(archive[curve].values[place]).any()
+        for curve, *_ in _CURVES
+    )
+    is_left_out = not has_curve and any(getattr(stated, name) for name in _OF_ALL_SAMPLES)
+    return _of_length(archive, place), (_NO_CURVE,) if is_left_out else ()
 
 
 def _errors(

@@ -185,6 +185,7 @@ def test_noise_of_one_reading_is_no_error_that_samples_share(tmp_path):
     for one in found:
         assert [each.source for each in one.measured.component] == ["strain_calibration"]
         assert any("nothing is stated of the load cell" in note for note in one.validation.notes)
+        assert not any("holds no curve" in note for note in one.notes)
 
 
 @pytest.mark.parametrize(
