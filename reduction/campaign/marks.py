@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from reduction.campaign.csvlines import read_lines
+from reduction.campaign.csvrows import read_rows
 from reduction.campaign.files import file_inside
 from reduction.errors import LogError
 from reduction.record import SpliceMarks
@@ -100,20 +100,20 @@ def read_marks(path: Path) -> dict[str, SpliceMarks]:
     DataError
         If a row contradicts itself.
     """
-    header, lines = read_lines(path, "the marks file")
+    header, filled = read_rows(path, "the marks file")
     columns = _columns(path, header)
     where = {name: header.index(name) for name in ("test", "specimen", "hold")}
     rows: dict[str, _Rows] = {}
-    for number, line in lines:
-        entry = rows.setdefault(line[where["specimen"]].strip(), _Rows())
-        hold = line[where["hold"]].strip()
+    for number, cells in filled:
+        entry = rows.setdefault(cells[where["specimen"]].strip(), _Rows())
+        hold = cells[where["hold"]].strip()
         _check_hold(path, number, hold)
-        entry.test.append(line[where["test"]].strip())
+        entry.test.append(cells[where["test"]].strip())
         entry.hold.append(hold)
         values = []
         for name in _LENGTHS:
             index, factor = columns[name]
-            cell = line[index].strip()
+            cell = cells[index].strip()
             values.append(factor * _reading(path, number, header[index], cell))
             decimals = len(cell.partition(".")[2])
             entry.decimals.append(factor * 10.0**-decimals)

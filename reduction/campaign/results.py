@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TypeVar, get_args
 
-from reduction.campaign.csvlines import read_lines
+from reduction.campaign.csvrows import read_rows
 from reduction.errors import LogError, SettingsError
 from reduction.outcomes.product import IN_THE_TERMINATION, Outcome, OutcomeQuantity, Place
 from reduction.units import Dimension, scale_to_si
@@ -47,7 +47,7 @@ class _Column:
 
 
 @dataclass(frozen=True)
-class _Line:
+class _ResultRow:
     """One row of the file, to be read cell by cell."""
 
     path: Path
@@ -159,74 +159,76 @@ def _header(path: Path, header: list[str]) -> None:
         )  # fmt: skip
 
 
-def _value(line: _Line, columns: list[_Column], quantity: OutcomeQuantity, valid: bool) -> float:
+def _value(
+    row: _ResultRow, columns: list[_Column], quantity: OutcomeQuantity, valid: bool
+) -> float:
     """The one value of a row, in SI."""
-    filled = [column for column in columns if line.cells[column.header].strip()]
+    filled = [column for column in columns if row.cells[column.header].strip()]
     if not filled and not valid:
         return math.nan
     if len(filled) != 1:
-        raise line.fault(
+        raise row.fault(
             "a row has no value" if not filled else "a row has two values",
             (filled or columns)[-1].header, needed="one value",
             hint=None if filled else "A test that gave none has valid = no.",
         )  # fmt: skip
     (column,) = filled
-    unit = line.cells.get("unit", "").strip() if column.unit is None else column.unit
+    unit = row.cells.get("unit", "").strip() if column.unit is None else column.unit
     dimension = _DIMENSION[quantity]
     if dimension == "number":
         unit = "" if unit in ("cycles", "cycle") else unit
     elif not unit:
-        raise line.fault("a value has no unit", column.header, needed=f"a unit of {dimension}")
+        raise row.fault("a value has no unit", column.header, needed=f"a unit of {dimension}")
     if _OF_BREAK_STRENGTH.fullmatch(unit):
-        raise line.fault(
+        raise row.fault(
             "a strength is given as a share of another", column.header, needed="a unit of force"
         )
-    value = line.in_si(column.header, unit, dimension)
+    value = row.in_si(column.header, unit, dimension)
     if not value > 0:
-        raise line.fault("a value is not above zero", column.header, needed="a number above zero")
+        raise row.fault("a value is not above zero", column.header, needed="a number above zero")
     return value
 
 
-def _load(line: _Line, columns: list[_Column]) -> tuple[float, float]:
+def _load(row: _ResultRow, columns: list[_Column]) -> tuple[float, float]:
     """A load [N] and its share of the rated break strength [1], whichever is given."""
     if not columns:
         return math.nan, math.nan
     (column,) = columns
     unit = column.unit or ""
-    load = line.number(column.header)
+    load = row.number(column.header)
     if load < 0:
-        raise line.fault("a load is below zero", column.header, needed="0 or more")
+        raise row.fault("a load is below zero", column.header, needed="0 or more")
     if _OF_BREAK_STRENGTH.fullmatch(unit):
         return math.nan, load / 100
-    return line.in_si(column.header, unit, "force"), math.nan
+    return row.in_si(column.header, unit, "force"), math.nan
 
 
-def _outcome(line: _Line, measured: dict[str, list[_Column]], others: list[str]) -> Outcome:
-    quantity = line.choice("quantity", _QUANTITY, "a quantity has no known name")
-    place = line.choice("place", _PLACE, "a place has no known name")
-    is_valid = line.is_yes("valid", place not in IN_THE_TERMINATION)
-    minimum = _load(line, measured.get("minimum_load", []))
-    peak = _load(line, measured.get("peak_load", []))
+def _outcome(row: _ResultRow, measured: dict[str, list[_Column]], others: list[str]) -> Outcome:
+    quantity = row.choice("quantity", _QUANTITY, "a quantity has no known name")
+    place = row.choice("place", _PLACE, "a place has no known name")
+    is_valid = row.is_yes("valid", place not in IN_THE_TERMINATION)
+    minimum = _load(row, measured.get("minimum_load", []))
+    peak = _load(row, measured.get("peak_load", []))
     if minimum[0] >= peak[0] or minimum[1] >= peak[1]:
-        raise line.fault(
+        raise row.fault(
             "the minimum load is not below the peak load", measured["minimum_load"][0].header,
             needed="less than the peak load",
         )  # fmt: skip
-    remarks = [f"{name}: {line.cells[name].strip()}" for name in others if line.cells[name].strip()]
+    remarks = [f"{name}: {row.cells[name].strip()}" for name in others if row.cells[name].strip()]
 
     def text(name: str) -> str:
-        return line.cells.get(name, "").strip()
+        return row.cells.get(name, "").strip()
 
     sizes = {}
     for name in ("diameter", "exposure"):
         for column in measured.get(name, []):
-            size = line.in_si(column.header, column.unit or "", _MEASURED[name])
+            size = row.in_si(column.header, column.unit or "", _MEASURED[name])
             if size < 0 or (name == "diameter" and size == 0):
-                raise line.fault(f"{name} cannot be", column.header, needed="a number above zero")
+                raise row.fault(f"{name} cannot be", column.header, needed="a number above zero")
             sizes[name] = size / _YEAR if name == "exposure" else size
     return Outcome(
         quantity=quantity,
-        value=_value(line, measured["value"], quantity, is_valid),
+        value=_value(row, measured["value"], quantity, is_valid),
         test=text("test") or text("id"),
         specimen=text("specimen"),
         line=text("line"),
@@ -242,9 +244,9 @@ def _outcome(line: _Line, measured: dict[str, list[_Column]], others: list[str])
         mode=text("mode"),
         place=place,
         is_valid=is_valid,
-        is_suspended=any(line.is_yes(name, default=False) for name in _SUSPENDED),
+        is_suspended=any(row.is_yes(name, default=False) for name in _SUSPENDED),
         note="; ".join(filter(None, [text("note"), *remarks])),
-        row=line.row,
+        row=row.row,
     )
 
 
@@ -266,14 +268,14 @@ def read_results(path: Path) -> tuple[Outcome, ...]:
     LogError
         With the row and the column, if the header or a row cannot be used.
     """
-    header, lines = read_lines(path, "the table of results")
+    header, rows = read_rows(path, "the table of results")
     _header(path, header)
     measured, others = _columns(path, header)
     outcomes: list[Outcome] = []
     seen: dict[tuple[str, str, str], int] = {}
-    for number, cells in lines:
+    for number, cells in rows:
         outcome = _outcome(
-            _Line(path, number, dict(zip(header, cells, strict=True))), measured, others
+            _ResultRow(path, number, dict(zip(header, cells, strict=True))), measured, others
         )
         key = (outcome.test, outcome.specimen, outcome.quantity)
         if outcome.test and seen.setdefault(key, number) != number:

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from reduction.campaign.csvlines import read_lines
+from reduction.campaign.csvrows import read_rows
 from reduction.campaign.faults import faults_of, in_toml, listed
 from reduction.campaign.model import Identifier, TestSection
 from reduction.errors import SettingsError
@@ -72,7 +72,7 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
     SettingsError
         With row and column, if the table or a row cannot be used.
     """
-    header, lines = read_lines(path, "the table of tests", fault=_in_table)
+    header, rows = read_rows(path, "the table of tests", fault=_in_table)
     if "id" not in header or "file" not in header or len(set(header)) != len(header):
         raise _in_table(
             path, "the table of tests has no usable header", row=1, found=", ".join(header),
@@ -88,8 +88,8 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
             )  # fmt: skip
     tests: dict[str, TestSection] = {}
     identifier = TypeAdapter(Identifier)
-    for number, line in lines:
-        cells = dict(zip(header, line, strict=True))
+    for number, texts in rows:
+        cells = dict(zip(header, texts, strict=True))
         name = cells["id"].strip()
         if name in tests:
             raise _in_table(path, "a test stands twice", row=number, channel="id", found=repr(name))

@@ -14,18 +14,18 @@ from scipy import stats
 
 from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError, FitError
-from reduction.outcomes.product import ExposureLine
+from reduction.outcomes.product import ExposureTrend
 from reduction.record import Bools, Floats
 
-__all__ = ["fit_exposure_line", "share_lost_per_year", "strength_after"]
+__all__ = ["fit_exposure_trend", "share_lost_per_year", "strength_after"]
 
 
-def fit_exposure_line(
+def fit_exposure_trend(
     exposure: ArrayLike,
     mean: ArrayLike,
     standard_deviation: ArrayLike | None = None,
     n: ArrayLike | None = None,
-) -> ExposureLine:
+) -> ExposureTrend:
     """Straight line of strength against exposure, by least squares over the breaks.
 
     Parameters
@@ -41,7 +41,7 @@ def fit_exposure_line(
 
     Returns
     -------
-    line : ExposureLine
+    trend : ExposureTrend
         With lack of fit against the scatter of breaks of one exposure.
 
     Raises
@@ -62,9 +62,9 @@ def fit_exposure_line(
     Figure 15 of [1]_, from Tables 10 and 21 and section 6.3.2 (n of the third is not printed;
     4 samples a line are stated), in lb and lb a year:
 
-    >>> line = fit_exposure_line([0, 2, 3, 5], [6400, 4672, 4365, 3241], [473, np.nan, 321, np.nan],
-    ...                          [16, 1, 4, 2])
-    >>> print(round(line.intercept), round(line.slope), line.degrees_of_freedom)
+    >>> trend = fit_exposure_trend([0, 2, 3, 5], [6400, 4672, 4365, 3241],
+    ...                           [473, np.nan, 321, np.nan], [16, 1, 4, 2])
+    >>> print(round(trend.intercept), round(trend.slope), trend.degrees_of_freedom)
     6380 -655 20
     """
     years = as_finite("exposure", exposure)
@@ -113,7 +113,7 @@ def fit_exposure_line(
     # of (value at the centre, slope), carried to the value at no exposure
     shift = np.array([[1.0, -centre], [0.0, 1.0]])
     covariance = shift @ np.diag([variance / breaks.sum(), variance / spread]) @ shift.T
-    return ExposureLine(
+    return ExposureTrend(
         intercept=middle - slope * centre,
         slope=slope,
         covariance=covariance,
@@ -129,13 +129,17 @@ def fit_exposure_line(
 
 
 def strength_after(
-    line: ExposureLine, exposure: ArrayLike, *, confidence: float = 0.95, of_one_break: bool = False
+    trend: ExposureTrend,
+    exposure: ArrayLike,
+    *,
+    confidence: float = 0.95,
+    of_one_break: bool = False,
 ) -> tuple[Floats, Floats, Floats, Bools]:
     """Strength on the line with its interval.
 
     Parameters
     ----------
-    line : ExposureLine
+    trend : ExposureTrend
         As fitted.
     exposure : array_like
         Time in the field. [year]
@@ -158,33 +162,33 @@ def strength_after(
 
     Examples
     --------
-    >>> line = fit_exposure_line([0, 2, 3, 5], [6400, 4672, 4365, 3241], [473, np.nan, 321, np.nan],
-    ...                          [16, 1, 4, 2])
-    >>> strength, low, high, is_inside = strength_after(line, [4.0, 8.0])
+    >>> trend = fit_exposure_trend([0, 2, 3, 5], [6400, 4672, 4365, 3241],
+    ...                           [473, np.nan, 321, np.nan], [16, 1, 4, 2])
+    >>> strength, low, high, is_inside = strength_after(trend, [4.0, 8.0])
     >>> print(strength.round(), is_inside)
     [3758. 1137.] [ True False]
     """
     years = as_finite("exposure", exposure)
-    strength = line.intercept + line.slope * years
+    strength = trend.intercept + trend.slope * years
     variance = (
-        line.covariance[0, 0]
-        + 2 * years * line.covariance[0, 1]
-        + years**2 * line.covariance[1, 1]
-        + (line.residual_standard_deviation**2 if of_one_break else 0.0)
+        trend.covariance[0, 0]
+        + 2 * years * trend.covariance[0, 1]
+        + years**2 * trend.covariance[1, 1]
+        + (trend.residual_standard_deviation**2 if of_one_break else 0.0)
     )
-    half = stats.t.ppf((1 + confidence) / 2, line.degrees_of_freedom) * np.sqrt(variance)
-    is_inside = (years >= line.exposure_low) & (years <= line.exposure_high)
+    half = stats.t.ppf((1 + confidence) / 2, trend.degrees_of_freedom) * np.sqrt(variance)
+    is_inside = (years >= trend.exposure_low) & (years <= trend.exposure_high)
     return strength, strength - half, strength + half, np.asarray(is_inside)
 
 
 def share_lost_per_year(
-    line: ExposureLine, *, confidence: float = 0.95
+    trend: ExposureTrend, *, confidence: float = 0.95
 ) -> tuple[float, float, float]:
     r"""Share of the new strength that the line loses in a year, with Fieller's interval.
 
     Parameters
     ----------
-    line : ExposureLine
+    trend : ExposureTrend
         As fitted.
     confidence : float
         Of the interval, two-sided. [1]
@@ -202,19 +206,19 @@ def share_lost_per_year(
 
     Examples
     --------
-    >>> line = fit_exposure_line([0, 2, 3, 5], [6400, 4672, 4365, 3241], [473, np.nan, 321, np.nan],
-    ...                          [16, 1, 4, 2])
-    >>> print(round(share_lost_per_year(line)[0], 3))
+    >>> trend = fit_exposure_trend([0, 2, 3, 5], [6400, 4672, 4365, 3241],
+    ...                           [473, np.nan, 321, np.nan], [16, 1, 4, 2])
+    >>> print(round(share_lost_per_year(trend)[0], 3))
     0.103
     """
-    if line.intercept <= 0:
-        raise FitError("the line has no strength when new", found=f"{line.intercept:g}")
-    t = float(stats.t.ppf((1 + confidence) / 2, line.degrees_of_freedom))
-    (v_new, v_both), (_, v_slope) = line.covariance
-    lead = line.intercept**2 - t**2 * v_new
-    middle = -(line.slope * line.intercept - t**2 * v_both)
-    last = line.slope**2 - t**2 * v_slope
-    share = -line.slope / line.intercept
+    if trend.intercept <= 0:
+        raise FitError("the line has no strength when new", found=f"{trend.intercept:g}")
+    t = float(stats.t.ppf((1 + confidence) / 2, trend.degrees_of_freedom))
+    (v_new, v_both), (_, v_slope) = trend.covariance
+    lead = trend.intercept**2 - t**2 * v_new
+    middle = -(trend.slope * trend.intercept - t**2 * v_both)
+    last = trend.slope**2 - t**2 * v_slope
+    share = -trend.slope / trend.intercept
     if lead <= 0:
         return share, float("nan"), float("nan")
     half = float(np.sqrt(middle**2 - lead * last))

@@ -22,7 +22,7 @@ __all__ = [
     "IN_THE_TERMINATION",
     "REASONS",
     "CensoredMean",
-    "ExposureLine",
+    "ExposureTrend",
     "GroupStatistics",
     "OneWay",
     "Outcome",
@@ -225,7 +225,7 @@ class CensoredMean:
 
 
 @dataclass(frozen=True)
-class ExposureLine:
+class ExposureTrend:
     """Strength against exposure as a straight line: ``intercept + slope * exposure``.
 
     Parameters

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from reduction.errors import FitError
-from reduction.outcomes.exposure import fit_exposure_line
+from reduction.outcomes.exposure import fit_exposure_trend
 from reduction.outcomes.fatigue import fit_load_life
 from reduction.outcomes.groups import Group, group_outcomes
 from reduction.outcomes.life_product import LifeDistribution, LoadLife
-from reduction.outcomes.product import ExposureLine, Outcome
+from reduction.outcomes.product import ExposureTrend, Outcome
 from reduction.outcomes.strength import EXCLUDED, VALUE
 from reduction.record import Bools, Floats, freeze_arrays
 
@@ -40,7 +40,7 @@ class ExposureSeries:
         True where the line holds at least this; not in the fit.
     n_unused : int
         Tests of the line without an exposure or a value.
-    fit : ExposureLine or None
+    fit : ExposureTrend or None
         None where there is no line.
     reason : str
         Why; empty where there is one.
@@ -51,7 +51,7 @@ class ExposureSeries:
     strength: Floats
     is_lower_bound: Bools
     n_unused: int
-    fit: ExposureLine | None = None
+    fit: ExposureTrend | None = None
     reason: str = ""
 
     def __post_init__(self) -> None:
@@ -137,7 +137,7 @@ def exposure_series(outcomes: Iterable[Outcome]) -> tuple[ExposureSeries, ...]:
         is_bound = np.array([row.use == "lower_bound" for row in used])
         fit, reason = None, ""
         try:
-            fit = fit_exposure_line(exposure[~is_bound], strength[~is_bound])
+            fit = fit_exposure_trend(exposure[~is_bound], strength[~is_bound])
         except FitError as error:
             reason = error.problem
         n_unused = len(rows) - len(used)

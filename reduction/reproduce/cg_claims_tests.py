@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from reduction.outcomes.abrasion import ratio_to_published_life
-from reduction.outcomes.exposure import fit_exposure_line
+from reduction.outcomes.exposure import fit_exposure_trend
 from reduction.outcomes.life import ratio_of_lives
 from reduction.published.cell import Cell
 from reduction.reproduce.cg_cells import Check, Pages, always, number
@@ -43,7 +43,7 @@ def _half(cell: Cell, pages: Pages) -> Item:
 
 
 def _linear(cell: Cell, pages: Pages) -> Item:
-    line = fit_exposure_line(
+    line = fit_exposure_trend(
         [0, 2, 3, 5],
         [
             pages.value("10", f"{POLYESTER_BRAID} | new", f"{STRENGTH} mean"),

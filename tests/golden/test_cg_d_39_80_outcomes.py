@@ -11,7 +11,7 @@ import pytest
 
 from reduction.outcomes.abrasion import ratio_to_published_life
 from reduction.outcomes.compare import one_way, ratio_of_means
-from reduction.outcomes.exposure import fit_exposure_line, strength_after
+from reduction.outcomes.exposure import fit_exposure_trend, strength_after
 from reduction.outcomes.life import fit_life
 from reduction.outcomes.strength import group_statistics
 
@@ -185,7 +185,7 @@ FIGURE_15 = ([0, 2, 3, 5], [6400, 4672, 4365, 3241], [473, NAN, 321, NAN], [16, 
 
 
 def test_polyester_double_braid_loses_a_tenth_of_its_strength_a_year():
-    line = fit_exposure_line(*FIGURE_15)
+    line = fit_exposure_trend(*FIGURE_15)
     slope, intercept = np.polyfit(*FIGURE_15[:2], 1, w=np.sqrt(FIGURE_15[3]))
     assert (line.intercept, line.slope) == pytest.approx((intercept, slope))
     # "linear", "approximately 50 %" after five years

@@ -8,7 +8,7 @@ from statsmodels.regression.linear_model import WLS
 from statsmodels.stats.oneway import anova_oneway
 
 from reduction.outcomes.compare import one_way, ratio_of_means
-from reduction.outcomes.exposure import fit_exposure_line
+from reduction.outcomes.exposure import fit_exposure_trend
 from reduction.outcomes.fatigue import fit_load_life, life_at_load
 from reduction.outcomes.life import fit_life, ratio_of_lives
 from reduction.outcomes.strength import censored_mean
@@ -191,7 +191,7 @@ def test_one_way_f_agrees_with_statsmodels_with_one_deviation_and_with_several()
 def test_exposure_line_agrees_with_statsmodels():
     years = np.array([0.0, 0, 0, 2, 3, 3, 5, 5])
     strength = np.array([6300.0, 6500, 6450, 4672, 4400, 4300, 3200, 3280])
-    line = fit_exposure_line(years, strength)
+    line = fit_exposure_trend(years, strength)
     other = WLS(strength, np.column_stack([np.ones(8), years])).fit()
     assert (line.intercept, line.slope) == pytest.approx(tuple(other.params))
     np.testing.assert_allclose(line.covariance, other.cov_params(), rtol=1e-9)
