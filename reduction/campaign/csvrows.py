@@ -8,10 +8,10 @@ from pathlib import Path
 
 from reduction.errors import LogError, ReductionError
 
-__all__ = ["read_rows"]
+__all__ = ["read_csv_rows"]
 
 
-def read_rows(
+def read_csv_rows(
     path: Path, what: str, *, fault: Callable[..., ReductionError] = LogError
 ) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
     """Read a table that is small.

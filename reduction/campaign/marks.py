@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from reduction.campaign.csvrows import read_rows
+from reduction.campaign.csvrows import read_csv_rows
 from reduction.campaign.files import file_inside
 from reduction.errors import LogError
 from reduction.record import SpliceMarks
@@ -100,7 +100,7 @@ def read_marks(path: Path) -> dict[str, SpliceMarks]:
     DataError
         If a row contradicts itself.
     """
-    header, filled = read_rows(path, "the marks file")
+    header, filled = read_csv_rows(path, "the marks file")
     columns = _columns(path, header)
     where = {name: header.index(name) for name in ("test", "specimen", "hold")}
     rows: dict[str, _Rows] = {}

@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TypeVar, get_args
 
-from reduction.campaign.csvrows import read_rows
+from reduction.campaign.csvrows import read_csv_rows
 from reduction.errors import LogError, SettingsError
 from reduction.outcomes.product import IN_THE_TERMINATION, Outcome, OutcomeQuantity, Place
 from reduction.units import Dimension, scale_to_si
@@ -268,7 +268,7 @@ def read_results(path: Path) -> tuple[Outcome, ...]:
     LogError
         With the row and the column, if the header or a row cannot be used.
     """
-    header, rows = read_rows(path, "the table of results")
+    header, rows = read_csv_rows(path, "the table of results")
     _header(path, header)
     measured, others = _columns(path, header)
     outcomes: list[Outcome] = []

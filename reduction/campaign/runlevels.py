@@ -13,7 +13,7 @@ from reduction.errors import DataError, SettingsError
 from reduction.record import Floats
 from reduction.units import scale_of_unit
 
-__all__ = ["check_levels", "coded_levels", "is_of_mean"]
+__all__ = ["check_levels", "is_of_mean", "levels_of_factor"]
 
 _SHARE = re.compile(r"%\s*(RBS|MBS|MBL|of mean)")
 _OFF_PLAN = 1.0
@@ -21,7 +21,7 @@ _OFF_PLAN = 1.0
 levels are in another unit than the plan."""
 
 
-def coded_levels(
+def levels_of_factor(
     sheet: CellSheet, factor: FactorSpec, spec: ExperimentSpec | None, mean: Floats | None
 ) -> tuple[CellColumn, Floats]:
     """Column and coded levels of a factor."""

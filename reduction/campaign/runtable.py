@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from reduction.campaign.cells import CellSheet, read_cells
-from reduction.campaign.runlevels import check_levels, coded_levels, is_of_mean
+from reduction.campaign.runlevels import check_levels, is_of_mean, levels_of_factor
 from reduction.campaign.spec import ExperimentSpec, FactorSpec, ResponseSpec, response_unit
 from reduction.errors import DataError, LogError, SettingsError
 from reduction.record import Floats, freeze_arrays
@@ -146,7 +146,7 @@ def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
     # an amplitude that is a share of the mean comes after the mean
     for place in sorted(range(len(factors)), key=lambda index: is_of_mean(factors[index])):
         factor = factors[place]
-        column, coded[:, place] = coded_levels(sheet, factor, spec, mean)
+        column, coded[:, place] = levels_of_factor(sheet, factor, spec, mean)
         check_levels(sheet, column, factor.name, coded[:, place], stated=factor.levels is not None)
         used.add(column.header)
         unit, low, high = axes[place]

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from reduction.campaign.csvrows import read_rows
+from reduction.campaign.csvrows import read_csv_rows
 from reduction.campaign.faults import faults_of, in_toml, listed
 from reduction.campaign.model import Identifier, TestSection
 from reduction.errors import SettingsError
@@ -72,7 +72,7 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
     SettingsError
         With row and column, if the table or a row cannot be used.
     """
-    header, rows = read_rows(path, "the table of tests", fault=_in_table)
+    header, rows = read_csv_rows(path, "the table of tests", fault=_in_table)
     if "id" not in header or "file" not in header or len(set(header)) != len(header):
         raise _in_table(
             path, "the table of tests has no usable header", row=1, found=", ".join(header),
