@@ -22,6 +22,9 @@ PartName = Literal["surfaces", "outcomes", "predictions", "comparisons", "change
 
 CONVENTIONS = "CF-1.11 ACDD-1.3"
 _SOFTWARE = "mooring-reduction"
+_PROPAGATION = "first order (JCGM 100:2008)"
+# a line bends where E' comes near K_0: each test says by which of both its uncertainty is
+_OF_LINE = "; K_1, tau and K_1 tau as test_line_uncertainty_method says (JCGM 101:2008)"
 _KEYWORDS = "mooring, tension test, elastic modulus, hysteresis"
 _OF_PART: dict[PartName, tuple[str, str]] = {
     "surfaces": (
@@ -65,6 +68,8 @@ def global_attributes(test: ReducedTest, *, version: str, command: str) -> dict[
             "waveform": about.waveform,
             "test_order": "" if about.order is None else str(about.order),
             **_raw_files(test.sources),
+            "uncertainty_propagation": _PROPAGATION
+            + ("" if test.line_spread is None else _OF_LINE),
             "raw_metadata": "" if test.record is None else _as_json(test.record.metadata),
             "settings": test.settings_json,
         },
@@ -105,6 +110,7 @@ def part_attributes(part: PartName, names: Sequence[str] = (), *, origin: Origin
             "id": f"{origin.campaign_id}/{part}",
             "campaign": origin.campaign_id,
             **_raw_files(origin.sources),
+            "uncertainty_propagation": _PROPAGATION,
             "settings": origin.settings_json,
         },
         steps=origin.steps,

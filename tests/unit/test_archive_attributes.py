@@ -35,6 +35,14 @@ def test_provenance_is_complete(rich_test):
     assert found["id"] == "tmt/T-1"
 
 
+def test_how_uncertainty_was_propagated_is_said(rich_test, bare_test):
+    plain = "first order (JCGM 100:2008)"
+    assert attributes(bare_test)["uncertainty_propagation"] == plain
+    assert attributes(rich_test)["uncertainty_propagation"] == (
+        f"{plain}; K_1, tau and K_1 tau as test_line_uncertainty_method says (JCGM 101:2008)"
+    )
+
+
 def test_no_attribute_is_a_list_or_empty(any_test):
     found = attributes(any_test)
     assert all(isinstance(text, str) and text for text in found.values())
