@@ -71,7 +71,7 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
     SettingsError
         If the quantity has no budget, or the place is not one number of it.
     ArchiveError
-        If there is no number at that place.
+        If there is no number at that place, or it is not known how well it is known.
     """
     known = quantities_with_budget(archive)
     name = next((one for one in (quantity, f"test_{quantity}") if one in known), None)
@@ -101,7 +101,14 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
             found=", ".join(f"{place_name(dim)}={text}" for dim, text in shown.items()),
             needed=_where_known(archive, variable, place),
         )
-    return _budget_at(archive, name, place, strain)
+    budget = _budget_at(archive, name, place, strain)
+    if np.isnan(budget.standard_uncertainty):
+        raise ArchiveError(
+            f"the uncertainty of {name} there is not known",
+            found="an error, or a scatter, of which it is not kept what it adds",
+            hint="The notes of the archive say which; reduce what it was made from again.",
+        )
+    return budget
 
 
 def all_budgets(archive: xr.Dataset, quantity: str) -> list[Budget]:
@@ -143,7 +150,9 @@ def _budget_at(
     components = components_of(archive, place.get("experiment"))
     rows = read(contribution)
     found: dict[Component, float] = {
-        one: float(value) for one, value in zip(components, rows, strict=False) if value != 0
+        one: float(value)
+        for one, value in zip(components, rows, strict=False)
+        if one.source and value != 0
     }
     labels = {dim: str(_label(archive, dim, index)) for dim, index in place.items()}
     if strain is not None:

@@ -25,7 +25,7 @@ _CONTRIBUTION = "_uncertainty_contribution"
 _OF_SAMPLES = frozenset({
     "cycle", "selected_cycle", "hold", "held_pair", "slip", "step", "interval", "tension_grid",
     "break_share", "pull_term", "strain_level", "elastomer_parameter", "first_loading_strain_bin",
-    "comparison_point",
+    "comparison_point", "sample", "property",
 })  # fmt: skip
 # read once, from the samples of one rise, one pull or two cycles
 _ONCE = ("bedding_", "pull_", "tensile_strength", "strain_at_failure", "permanent_set",

@@ -140,13 +140,18 @@ def _agreed(facts: Sequence[Facts]) -> dict[str, Any]:
 def _shared(
     dataset: xr.Dataset, row: int, name: str, n_terms: int
 ) -> tuple[tuple[Component, ...], Floats]:
-    """Errors that the runs share, and what each of them adds to the coefficients of a surface."""
+    """Errors that the runs share, and what each of them adds to the coefficients of a surface.
+
+    Not a number, where that is not kept of every run.
+    """
     rows = dataset.get(f"{name}_coefficient_uncertainty_contribution")
     if rows is None:
         return (), np.empty((0, n_terms))
     own = rows.to_numpy()[row, :, :n_terms]
-    known = np.flatnonzero(np.isfinite(own).all(axis=1) & own.any(axis=1))
     component = components_of(dataset, row)
+    # an experiment with fewer errors than another of the archive is filled up
+    is_one = np.array([bool(one.source) for one in component], dtype=bool)
+    known = np.flatnonzero(is_one & own.any(axis=1))
     return tuple(component[place] for place in known), own[known]
 
 
@@ -163,7 +168,13 @@ def _surface(
     n_terms = len(fitted.exponents)
     notes = [] if name == response else [f"from the surface of {name}, brought back"]
     component, rows = shared
-    if not rows.size:
+    sigma = float(fitted.sigma[index])
+    if np.isfinite(fitted.coefficient[index]).all() and np.isnan(rows).any():
+        component, rows, sigma = (), rows[:0], float("nan")
+        notes.append(
+            "no interval is given: of some runs it is not kept what they share with the others"
+        )
+    elif not rows.size:
         notes.append(
             "the intervals are of the scatter of the runs: of what all runs share, as the load "
             "cell, nothing is stated"
@@ -177,7 +188,7 @@ def _surface(
         low=scale * fitted.low,
         high=scale * fitted.high,
         covariance_factor=np.array(covariance[:n_terms, :n_terms]),
-        sigma=float(fitted.sigma[index]),
+        sigma=sigma,
         degrees_of_freedom=float(fitted.degrees_of_freedom[index]),
         greatest_leverage=float(greatest_leverage(fitted, plan)[index]),
         exponent=float(fitted.transform_exponent[index]),

@@ -17,6 +17,7 @@ from reduction.batch.planned import same_logs
 from reduction.batch.runrows import LINE, MEASURED, Row, rows_of_run
 from reduction.batch.waiting import waiting_in_words
 from reduction.campaign.plan import Campaign, ExperimentPlan
+from reduction.errors import FitError
 from reduction.experiment import ExperimentResult, RunTable
 from reduction.ingest.source import source_of
 from reduction.notes import by_severity
@@ -77,19 +78,32 @@ def write_experiments(
     held = {
         name: waiting_in_words(waiting, plan.runs) for name, plan in campaign.experiments.items()
     }
-    ready = {name: plan for name, plan in campaign.experiments.items() if not held[name]}
+
+    def archive_of(run: str) -> Path | None:
+        return None if run in failed else folder / f"{run}.nc"
+
+    empty = {
+        name: _nothing_to_fit(plan)
+        for name, plan in campaign.experiments.items()
+        if not (held[name] or any(_is_there(archive_of(run)) for run in plan.runs))
+    }
+    ready = {
+        name: plan
+        for name, plan in campaign.experiments.items()
+        if not (held[name] or name in empty)
+    }
     path = folder / "surfaces.nc"
     kept = "; surfaces.nc is of an earlier run" if path.exists() and not ready else ""
     statuses = {
-        name: PartStatus(name, "no_work", 0, f"not fitted: {words}{kept}")
+        name: PartStatus(name, "failed", error.exit_status, f"{error}{kept}")
+        if (error := empty.get(name)) is not None
+        else PartStatus(name, "no_work", 0, f"not fitted: {words}{kept}")
         for name, words in held.items()
     }
     if not ready:
         return list(statuses.values())
     results, sources = fit_experiments(
-        replace(campaign, experiments=ready),
-        lambda run: None if run in failed else folder / f"{run}.nc",
-        raw_sha256=raw_sha256,
+        replace(campaign, experiments=ready), archive_of, raw_sha256=raw_sha256
     )
     dataset = surfaces_to_dataset(
         results,
@@ -108,6 +122,19 @@ def write_experiments(
     write_archive(dataset, path)
     statuses |= {result.name: _status(result) for result in results}
     return list(statuses.values())
+
+
+def _is_there(path: Path | None) -> bool:
+    return path is not None and path.exists()
+
+
+def _nothing_to_fit(plan: ExperimentPlan) -> FitError:
+    """What is wrong with an experiment none of whose runs gave a product."""
+    return FitError(
+        "there is nothing to fit",
+        found=f"no product of any of its {len(plan.runs)} runs",
+        hint="The messages of its runs say why.",
+    )
 
 
 def _in_one_line(result: ExperimentResult) -> str:
@@ -235,14 +262,19 @@ def fit_rows(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
 
 
 def _shared(plan: ExperimentPlan, rows: list[Row]) -> Contributions | None:
-    """What errors that runs share add to their responses, and to the levels as reached."""
+    """What errors that runs share add to their responses, and to the levels as reached.
+
+    Not a number, where the archive of a run does not keep it beside those of others that do.
+    """
     given = [row.get("shared", {}) for row in rows]
+    missing = np.array([np.nan if row.get("keeps_shared") is False else 0.0 for row in rows])
     component = tuple(sorted({one for row in given for own in row.values() for one in own}))
     if not component:
         return None
     names = dict.fromkeys((*MEASURED, *plan.responses))
     tables = {
         name: np.array([[row.get(name, {}).get(one, 0.0) for row in given] for one in component])
+        + missing
         for name in names
     }
     values = {name: tables[name] for name in plan.responses}

@@ -78,6 +78,7 @@ def row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specim
         for name in dict.fromkeys((*MEASURED, *plan.responses))
     }
     settings = json.loads(archive.attrs["settings"])
+    row["keeps_shared"] = _keeps_shared(archive, settings)
     begin = int(settings["reduction"]["cycles"]["break_in_cycles"])
     if "peak_tension" in archive:
         peak = archive["peak_tension"].values[place, begin:]
@@ -87,6 +88,18 @@ def row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specim
     strength = archive.get("rated_break_strength")
     row["strength"] = float("nan") if strength is None else float(strength.values[place])
     return row | {"specimen": specimen, "remark": "; ".join(remarks)}
+
+
+def _keeps_shared(archive: xr.Dataset, settings: dict[str, Any]) -> bool:
+    """Whether an archive says what its numbers share with others, be it nothing.
+
+    Archives of earlier versions do not; one without contributions of which something is stated, or
+    that does not say what is stated, is such a one.
+    """
+    if any(str(name).endswith("_uncertainty_contribution") for name in archive.variables):
+        return True
+    stated = settings.get("uncertainty")
+    return stated is not None and not any(stated.values())
 
 
 def _slack(is_slack: Bools) -> list[str]:

@@ -65,7 +65,7 @@ def shared_by_runs(view: ExperimentView, surfaces: ResponseSurfaces) -> list[str
     found: set[str] = set()
     for name in surfaces.response_names:
         rows = _rows(view, f"{name}_coefficient", len(surfaces.term_names))
-        found |= {sources[place] for place in np.flatnonzero(rows.any(axis=1))}
+        found |= {sources[place] for place in np.flatnonzero(np.nan_to_num(rows).any(axis=1))}
     return in_order(found)
 
 
@@ -130,8 +130,11 @@ def expanded_of_runs(view: ExperimentView, name: str, tests: Mapping[str, TestVi
 
 
 def _rows(view: ExperimentView, name: str, n_terms: int) -> Floats:
-    """Contributions to the coefficients, shape (n_components, n_terms); of no length where none."""
+    """Contributions to the coefficients, shape (n_components, n_terms); of no length where none.
+
+    Not a number, where it is not kept of every run what it shares with the others.
+    """
     found = view.array(f"{name}{_CONTRIBUTION}")
     if found.ndim != 2:
         return np.zeros((0, n_terms))
-    return np.nan_to_num(found[:, :n_terms])
+    return np.asarray(found[: sum(map(bool, view.texts("uncertainty_source"))), :n_terms])

@@ -12,6 +12,7 @@ import xarray as xr
 from reduction.archive.schema import SCHEMA
 from reduction.archive.shared import components_of
 from reduction.archive.variable import count, label, measured
+from reduction.moduli.interpolation import curve_at
 from reduction.record import Floats
 from reduction.tables.column import Cell, Column
 from reduction.tables.table import SYNTHETIC
@@ -101,18 +102,7 @@ def read_curve(curve: Curve, grid: Floats, values: Floats) -> Floats:
     strain = curve.strain[known]
     if strain.size == 0:
         return np.full((values.shape[0], grid.size), np.nan)
-    # a grid point that differs from a bin centre by rounding alone is that centre
-    slack = 1e-6 * curve.width
-    nearest = np.abs(grid[:, np.newaxis] - strain).argmin(axis=1)
-    at = np.where(np.abs(grid - strain[nearest]) <= slack, strain[nearest], grid)
-    above = np.clip(np.searchsorted(strain, at), 0, strain.size - 1)
-    below = np.clip(np.searchsorted(strain, at, side="right") - 1, 0, strain.size - 1)
-    inside = (
-        (strain[below] <= at)
-        & (at <= strain[above])
-        & (strain[above] - strain[below] <= 1.5 * curve.width)
-    )
-    found = [np.where(inside, np.interp(at, strain, row[known]), np.nan) for row in values]
+    found = [curve_at(grid, strain, row[known], spacing=curve.width) for row in values]
     return np.array(found).reshape(len(values), grid.size)
 
 

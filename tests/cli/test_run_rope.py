@@ -9,10 +9,17 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
+from experiments import ABOUT
 
+from reduction.archive.budget import budget_from_archive
+from reduction.archive.linesource import line_source_of_experiment
 from reduction.archive.open import open_archive
+from reduction.archive.surfaces import surfaces_to_dataset
+from reduction.batch.experiments import fit_experiments
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
+from reduction.errors import ArchiveError
 
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
@@ -216,6 +223,72 @@ def test_without_a_slow_pull_k_1_and_tau_are_refused_and_the_rest_stands(tmp_pat
     assert any("no slow pull" in note for note in notes)
     assert again.exit_status == 5
     assert "refused: response surfaces" in again.experiments[0].message
+
+
+def test_an_experiment_none_of_whose_runs_gave_a_product_has_nothing_to_fit(tmp_path):
+    folder = tmp_path / "raw"
+    shutil.copytree(RAW, folder)
+    whole = load_campaign(folder / "campaign.toml")
+    kept = ("R01", "R02")
+    for name in kept:
+        (folder / f"{name}.csv").write_text("time_s,stroke_in,load_lbf,extensometer_pct\n")
+    plan = whole.experiments["nylon"]
+    bare = replace(plan, quasi_static={}, runs={name: plan.runs[name] for name in kept})
+    few = replace(
+        whole, tests={name: whole.tests[name] for name in kept}, experiments={"nylon": bare}
+    )
+    found = run_campaign(few, processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0)
+    (one,) = found.experiments
+    assert (one.status, one.exit_status) == ("failed", 5)
+    assert one.message.startswith("there is nothing to fit; found no product of any of its 2 runs")
+    assert not (found.processed / "surfaces.nc").exists()
+
+
+def without_shared(path):
+    """An archive as an earlier version wrote it: what is shared is not kept."""
+    with xr.open_dataset(path, decode_times=False) as opened:
+        dataset = opened.load()
+    gone = [
+        name for name in dataset.variables
+        if str(name).endswith(("_uncertainty_contribution", "_random_standard_uncertainty"))
+        or str(name).startswith("uncertainty_")
+    ]  # fmt: skip
+    dataset.drop_vars(gone).to_netcdf(path)
+
+
+def test_a_run_of_which_it_is_not_kept_what_it_shares_is_not_exact(run, tmp_path):
+    folder = tmp_path / "nylon-synthetic"
+    shutil.copytree(run.processed, folder)
+    without_shared(folder / "R04.nc")
+    campaign = load_campaign(RAW / "campaign.toml")
+    (result,), _ = fit_experiments(campaign, lambda name: folder / f"{name}.nc", raw_sha256={})
+    index = result.surfaces.response_names.index("apparent_spring_constant")
+    assert np.isfinite(result.surfaces.coefficient[index]).all()
+    assert np.isnan(result.shared.coefficient[:, index]).all()
+    assert any("not kept in the archive of R04, which would count as exact" in one
+               for one in result.notes)  # fmt: skip
+    dataset = surfaces_to_dataset([result], origin=ABOUT)
+    spread = dataset["apparent_spring_constant_coefficient_standard_uncertainty"]
+    assert np.isnan(spread.to_numpy()).all()
+    with pytest.raises(ArchiveError, match="uncertainty of apparent.* there is not known"):
+        budget_from_archive(
+            dataset, "apparent_spring_constant_coefficient",
+            {"experiment": "nylon", "term": "B1"},
+        )  # fmt: skip
+    line = line_source_of_experiment(dataset, "nylon")
+    surface = line.surfaces["apparent_spring_constant"]
+    assert np.isnan(surface.sigma) and not surface.component
+    assert any("no interval is given" in one for one in surface.notes)
+
+
+def test_runs_all_of_which_keep_nothing_are_taken_by_their_scatter(run, tmp_path):
+    folder = tmp_path / "nylon-synthetic"
+    shutil.copytree(run.processed, folder)
+    for path in folder.glob("R*.nc"):
+        without_shared(path)
+    campaign = load_campaign(RAW / "campaign.toml")
+    (result,), _ = fit_experiments(campaign, lambda name: folder / f"{name}.nc", raw_sha256={})
+    assert result.shared is None
 
 
 def test_an_experiment_waits_for_runs_that_were_not_asked_for(tmp_path):

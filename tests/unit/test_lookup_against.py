@@ -9,7 +9,9 @@ from scipy import stats
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.against import compare_values
 from reduction.lookup.line import look_up
+from reduction.lookup.product import LineCurve, LineSource
 from reduction.published.linesource import published_sources
+from reduction.uncertainty.product import Component
 
 LBF = 4.4482216152605
 BRAID, PLAIT = "double-braid-0.5in", "8-strand-plaited-0.5in"
@@ -243,3 +245,88 @@ def test_where_no_scatter_between_lines_is_printed_kinds_are_not_compared(lines)
     assert found.is_known
     assert not found.is_kind_known
     assert not found.is_kind_different
+
+
+GAIN, DIAMETER = Component("tension_gain", "load cell"), "diameter"
+
+
+def curve_under(components, moduli, *, share, scatter, freedom=9.0):
+    """A tether of two points whose modulus has relative errors, one a component, and scatter."""
+    at, value = np.array([0.0, 1.0]), np.full(2, moduli)
+    rows = np.outer(share, value)
+    curve = LineCurve(
+        "tangent_modulus", "strain", 0, 1, at=at, value=value,
+        standard_uncertainty=np.sqrt((rows**2).sum(axis=0) + scatter**2),
+        degrees_of_freedom=np.full(2, freedom), component=components, contribution=rows,
+    )  # fmt: skip
+    line = LineSource("a", "", "rubber", "", "", 0.0254, 29e3, curves=(curve,))
+    return look_up(line, "tangent_modulus", strain=0.5)
+
+
+def test_one_load_cell_moves_both_lines_together():
+    # 10 % of gain under both: 10 % of the difference, and the scatter of each
+    new, used = (
+        curve_under((GAIN,), moduli, share=[0.1], scatter=10.0) for moduli in (920.0, 851.0)
+    )
+    found = compare_values(new, used)
+    u = np.sqrt(6.9**2 + 2 * 10.0**2)
+    # nine degrees of freedom each, none of the gain
+    nu = u**4 / (2 * 10.0**4 / 9)
+    half = stats.t.ppf(0.975, nu) * u
+    assert [found.surface_low, found.surface_high] == pytest.approx([-69 - half, -69 + half])
+    assert found.is_different
+    assert found.notes == (
+        "errors that both share count by their difference: tension_gain of load cell",
+    )
+
+
+def test_two_load_cells_are_two_errors():
+    other = Component("tension_gain", "another load cell")
+    found = compare_values(
+        curve_under((GAIN,), 920.0, share=[0.1], scatter=1.0),
+        curve_under((other,), 851.0, share=[0.1], scatter=1.0),
+    )
+    u = np.sqrt(92.0**2 + 85.1**2 + 2)
+    assert found.surface_high - found.difference == pytest.approx(1.96 * u, rel=1e-3)
+    assert not found.is_different
+    assert found.notes == ()
+
+
+def test_diameters_of_three_readings_widen_the_interval_of_a_difference():
+    sides = [
+        curve_under(
+            (Component(DIAMETER, name, degrees_of_freedom=2.0),), 920.0, share=[0.02], scatter=0.0
+        )
+        for name in ("new", "used")
+    ]
+    found = compare_values(*sides)
+    # two errors of two degrees of freedom are four together: t = 2.776
+    assert found.surface_high == pytest.approx(2.776 * np.sqrt(2) * 18.4, rel=1e-3)
+
+
+def test_of_a_published_line_it_is_said_that_it_counts_as_independent(lines):
+    published = at_centre(lines[f"polyester-{BRAID}-new"], "apparent_spring_constant")
+    share = 0.01 * published.value[None]
+    ours = replace(published, component=(GAIN,), contribution=share)
+    (note,) = compare_values(published, ours).notes
+    assert note.startswith("of the first it is not known what it shares")
+    (note,) = compare_values(published, published).notes
+    assert note.startswith("of neither is it known")
+
+
+def test_surfaces_of_one_campaign_lose_what_both_share(lines):
+    value = at_centre(lines[f"polyester-{BRAID}-new"], "apparent_spring_constant")
+    row = 0.1 * value.value[None]
+    wide = 1.96 * np.abs(row[0])
+
+    def under_a_cell(one, moved):
+        spread = {
+            "surface_low": one.value - np.hypot(one.value - one.surface_low, moved),
+            "surface_high": one.value + np.hypot(one.surface_high - one.value, moved),
+        }
+        return replace(one, component=(GAIN,), contribution=row, **spread)
+
+    both = [under_a_cell(value, wide)] * 2
+    apart, without = compare_values(*both), compare_values(value, value)
+    assert apart.surface_low == pytest.approx(without.surface_low)
+    assert apart.surface_high == pytest.approx(without.surface_high)
