@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from reduction.archive.shared import COMPONENT
+from reduction.tables.shared import ERROR
 from reduction.tables.table import Table
 
 __all__ = ["COMPARISON_TABLES"]
@@ -83,9 +84,8 @@ COMPARISON_TABLES = (
         ("comparison", "curve", "comparison_point", COMPONENT),
         (
             "strain",
-            "uncertainty_source",
-            "uncertainty_source_of",
-            "uncertainty_source_number",
+            *ERROR,
+            "uncertainty_source_degrees_of_freedom",
             "measured_tension_uncertainty_contribution",
         ),
         ("measured_tension_uncertainty_contribution",),

@@ -54,6 +54,7 @@ CURVE_TABLES = (
             "tangent_modulus_scatter",
             "tangent_modulus_untrimmed",
             "branch_tension",
+            "branch_tension_count",
         ),
         ("tangent_modulus", "tangent_modulus_untrimmed"),
         with_edges,

@@ -48,6 +48,7 @@ RUBBER_TABLES = (
             "modulus_ratio_low",
             "modulus_ratio_high",
             "modulus_ratio_is_different",
+            "modulus_ratio_degrees_of_freedom",
         ),
         ("modulus_ratio",),
     ),

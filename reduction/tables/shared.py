@@ -7,7 +7,10 @@ from reduction.tables.table import Table
 
 __all__ = ["ERROR", "SHARED_TABLES"]
 
-ERROR = ("uncertainty_source", "uncertainty_source_of", "uncertainty_source_number")
+ERROR = (
+    "uncertainty_source", "uncertainty_source_of", "uncertainty_source_number",
+    "uncertainty_source_degrees_of_freedom",
+)  # fmt: skip
 """Columns that say which error a row is of."""
 _FILES = {
     ("specimen",): "shared_errors",

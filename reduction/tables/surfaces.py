@@ -34,6 +34,7 @@ SURFACE_TABLES = (
             "uncertainty_source",
             "uncertainty_source_of",
             "uncertainty_source_number",
+            "uncertainty_source_degrees_of_freedom",
             "term_name",
             "unit",
             "response_coefficient_uncertainty_contribution",
