@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from reduction.report.coefficientbudgets import (
+    coefficient_budget_table,
+    coefficient_budgets,
+)
 from reduction.report.experimenttables import caution_table, effect_table, run_table
 from reduction.report.experimentview import ExperimentView, in_words
 from reduction.report.experimentwords import (
@@ -14,6 +18,7 @@ from reduction.report.experimentwords import (
     single_time_words,
     stationary_words,
 )
+from reduction.report.figures.budgets import draw_coefficient_budgets
 from reduction.report.figures.cube import draw_cube
 from reduction.report.figures.lines import draw_derived, draw_forms, draw_single_time
 from reduction.report.figures.screening import confounding_words, draw_effects
@@ -97,6 +102,8 @@ def _surface_parts(
                 *draw_surface(view, surfaces, index, planes),
                 *draw_contours(view, surfaces, index, planes),
             ]
+        budgets = coefficient_budgets(view, surfaces, index)
+        shares = f"shares of the variance, coefficients of the {heading}"
         parts.append(
             make_part(
                 _capital(heading),
@@ -113,8 +120,15 @@ def _surface_parts(
                 ],
                 folded=make_part(
                     f"{_capital(heading)}: coefficients, analysis of variance, residuals",
-                    draw_checks(view, surfaces, index, order),
-                    [coefficient_table(view, surfaces, index), anova_table(view, surfaces, index)],
+                    [
+                        *draw_coefficient_budgets(view, f"budget-{index}", shares, budgets),
+                        *draw_checks(view, surfaces, index, order),
+                    ],
+                    [
+                        coefficient_table(view, surfaces, index),
+                        coefficient_budget_table(view, name, budgets),
+                        anova_table(view, surfaces, index),
+                    ],
                 ),
                 warnings=negative_words(view, surfaces, name, negative),
             )

@@ -24,6 +24,8 @@ __all__ = [
 _BLUE, _VERMILION, _GREEN, _PURPLE, _ORANGE, _SKY, _GREY = COLOURS
 _LOOKS: dict[str, tuple[str, str]] = {
     RANDOM: (_GREY, ""),
+    "run_to_run": (_GREY, ""),
+    "regression": (_GREY, "/"),
     "tension_gain": (_BLUE, ""),
     "tension_offset": (_BLUE, "/"),
     "position_gain": (_ORANGE, ""),
@@ -41,6 +43,8 @@ FROM_READINGS = frozenset({"strain_calibration", "splice_method", "quasi_static_
 """Sources that follow from readings of the tests, not from what is stated of the instruments."""
 _MEANINGS = {
     RANDOM: "scatter between cycles, noise, regression",
+    "run_to_run": "scatter of runs at one point of the plan",
+    "regression": "what the surface misses of its runs beside that",
     "lag": "time between the channels",
     "strain_calibration": "fit to the readings at the splice marks",
     "splice_method": "choice of the splice law",

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from reduction.report.answers import AnswerBudget
+from reduction.report.experimentview import ExperimentView
 from reduction.report.figure import Figure, Trace, make_figure, named_axis, plain_numbers
 from reduction.report.sources import bar_look, is_hatched, source_words
 from reduction.report.view import TestView
 
-__all__ = ["draw_budgets"]
+__all__ = ["draw_budgets", "draw_coefficient_budgets"]
 
 _HATCHED = " Hatched: of the same thing as the plain bar of that colour."
 _PER_BAR, _AROUND = 34, 110
@@ -23,23 +24,34 @@ def draw_budgets(view: TestView, answers: Sequence[AnswerBudget]) -> list[Figure
     found = []
     for index, specimen in enumerate(view.specimens):
         own = [one for one in answers if one.specimen == specimen]
-        if not own:
-            continue
-        sources = AnswerBudget.sources_of(own)
-        names = [f"{one.words}\n{one.text}" for one in own]
-        found.append(
-            make_figure(
-                f"{view.key}-budget-{index}", f"{view.id}: shares of the variance, {specimen}",
-                "Share of each source in the variance of a number, which stands with its expanded"
-                f" uncertainty.{_HATCHED if any(map(is_hatched, sources)) else ''}",
-                _bars(own, sources), synthetic=view.is_synthetic, spoken=_spoken(own),
-                height=_AROUND + _PER_BAR * len(own),
-                barmode="stack", bargap=0.25, legend={"traceorder": "normal"},
-                xaxis={"title": {"text": "share of the variance [%]"}, "range": [0, 100]},
-                yaxis={**named_axis("number [its unit]", names), "autorange": "reversed"},
-            )
-        )  # fmt: skip
+        if own:
+            title = f"{view.id}: shares of the variance, {specimen}"
+            found.append(_figure(f"{view.key}-budget-{index}", title, own, view.is_synthetic))
     return found
+
+
+def draw_coefficient_budgets(
+    view: ExperimentView, key: str, title: str, answers: Sequence[AnswerBudget]
+) -> list[Figure]:
+    """Draw the shares of the sources in the variance of the coefficients of a surface."""
+    if not answers:
+        return []
+    return [_figure(f"{view.key}-{key}", f"{view.name}: {title}", answers, view.is_synthetic)]
+
+
+def _figure(key: str, title: str, own: Sequence[AnswerBudget], synthetic: bool) -> Figure:
+    sources = AnswerBudget.sources_of(own)
+    names = [f"{one.words}\n{one.text}" for one in own]
+    return make_figure(
+        key, title,
+        "Share of each source in the variance of a number, which stands with its expanded"
+        f" uncertainty.{_HATCHED if any(map(is_hatched, sources)) else ''}",
+        _bars(own, sources), synthetic=synthetic, spoken=_spoken(own),
+        height=_AROUND + _PER_BAR * len(own),
+        barmode="stack", bargap=0.25, legend={"traceorder": "normal"},
+        xaxis={"title": {"text": "share of the variance [%]"}, "range": [0, 100]},
+        yaxis={**named_axis("number [its unit]", names), "autorange": "reversed"},
+    )  # fmt: skip
 
 
 def _bars(answers: Sequence[AnswerBudget], sources: Sequence[str]) -> list[Trace]:
