@@ -272,7 +272,8 @@ def test_a_gain_of_the_load_cell_is_in_the_rise_and_in_the_stiffness_of_a_workin
 
 
 def test_construction_strain_takes_the_difference_of_a_shared_strain_error():
-    rising = rise(20, 40, 60, 80)
+    # the tension of the valleys, 40 N, is between the first two
+    rising = rise(20, 50, 65, 80)
     of_strain = np.stack([np.full(4, 0.001), 0.01 * rising.strain])
     whole = dataclasses.replace(
         rising, strain_contribution=of_strain, tension_contribution=np.full((2, 4), 9.0)
