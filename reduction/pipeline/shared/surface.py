@@ -8,6 +8,7 @@ import numpy as np
 
 from reduction.experiment import ExperimentResult, SharedSurfaces
 from reduction.pipeline.runcheck import listed
+from reduction.record import Bools, Floats
 from reduction.surface.product import ResponseSurfaces
 from reduction.uncertainty.surface import coefficient_contributions
 
@@ -50,10 +51,12 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
         unknown = np.isnan(shared.values[of]).any(axis=0) | np.isnan(level).any(axis=(0, 2))
         unknown &= np.isfinite(result.runs.response[result.response_names.index(of)])
         without |= unknown
+        several = _of_several_runs(own, level)
         rows.append(
             coefficient_contributions(
                 surfaces.coded, surfaces.exponents, surfaces.coefficient[index],
-                response=own, level=level, blocks=names,
+                response=own * several[:, None], level=level * several[:, None, None],
+                blocks=names,
             )
             if np.isfinite(surfaces.coefficient[index]).all() and not unknown.any()
             else np.full((n_components, surfaces.coefficient.shape[1]), np.nan)
@@ -71,6 +74,12 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
             coefficient_engineering=coded @ surfaces.engineering_matrix.T,
         ),
     )
+
+
+def _of_several_runs(response: Floats, level: Floats) -> Bools:
+    """Errors of more than one run: that of one (its temperature) is in the scatter already."""
+    moves = (np.nan_to_num(response) != 0) | (np.nan_to_num(level) != 0).any(axis=2)
+    return np.asarray(moves.sum(axis=1) > 1)
 
 
 def _without_shared(runs: list[str]) -> tuple[str, ...]:

@@ -1,0 +1,59 @@
+"""Errors of runs in the surface through them: what several share is in it, what one has is scatter."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from experiments import surface_experiment
+
+from reduction.pipeline.shared.surface import with_shared_surfaces
+from reduction.uncertainty.product import Component, Contributions
+
+STIFFNESS = "apparent_spring_constant"
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    return surface_experiment(names=(STIFFNESS,))
+
+
+def with_rows(result, component, row):
+    """The experiment where one error more moves the response of its runs, and no level."""
+    known = result.runs.shared
+    table = {
+        name: np.concatenate([rows, (row if name == STIFFNESS else 0 * row)[None]])
+        for name, rows in known.values.items()
+    }
+    shared = Contributions((*known.component, component), table)
+    return with_shared_surfaces(replace(result, runs=replace(result.runs, shared=shared)))
+
+
+def coefficient(result, component):
+    return result.shared.coefficient[result.shared.component.index(component), 0]
+
+
+def test_an_error_of_one_run_is_in_the_scatter_and_is_not_counted_again(fitted):
+    warm = Component("temperature", "R03")
+    row = np.zeros(15)
+    row[2] = 50.0
+    found = with_rows(fitted, warm, row)
+    assert (coefficient(found, warm) == 0).all()
+
+
+def test_an_error_of_two_runs_is_in_the_surface_as_least_squares_have_it(fitted):
+    pull = Component("quasi_static_fit", "line, Q01")
+    row = np.zeros(15)
+    row[[2, 7]] = 50.0
+    found = coefficient(with_rows(fitted, pull, row), pull)
+    # the fit is linear in its runs: the same fit to the row alone
+    x = fitted.surfaces.coded
+    one = np.ones(len(x))
+    design = np.stack(
+        [one, *(x**2).T, *x.T, x[:, 0] * x[:, 1], x[:, 0] * x[:, 2], x[:, 1] * x[:, 2]], axis=1
+    )
+    assert found == pytest.approx(np.linalg.lstsq(design, row, rcond=None)[0], abs=1e-9)
+
+
+def test_a_load_cell_of_all_runs_stays(fitted):
+    cell = Component("tension_gain", "load cell")
+    assert np.abs(coefficient(with_shared_surfaces(fitted), cell)).max() > 0
