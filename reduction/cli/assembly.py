@@ -76,6 +76,7 @@ def deployed_line(path: Path) -> DeployedLine:
             levels=case.working,
             tolerance=case.tolerance,
             rated_break_strength=strength,
+            has_stated_splices=case.splices is not None,
         )
     except DataError as error:
         # a level brings its own place

@@ -36,6 +36,7 @@ __all__ = ["AssemblyCurve", "assemble"]
 
 # nodes of tension beside those of the curve: denser near slack, where splices stretch fastest
 _N_NODES = 400
+_OF_CELL = ("tension_gain", "tension_offset")
 _APART = 1e-9
 """Share of the range of lengths that two nodes are apart."""
 
@@ -157,8 +158,9 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
     zero tension.  The splices stretch by the tension they carry, as in the test: the length is
     the inverse of the strain correction.  The uncertainty is that of the curve, which equal
     tethers share in full; curves that differ share what their tests do, by its sign, and are
-    independent in the rest.  That of the splices, of the tolerance of the lengths and of parts in
-    line is not in it.
+    independent in the rest.  A load cell is taken as the one under which the splices were marked,
+    unless they are stated: then tension at one length is wrong by as much as at one strain.  The
+    splices' own, that of the tolerance of the lengths and of parts in line are not in it.
 
     Examples
     --------
@@ -278,10 +280,13 @@ def _lengths(tether: Tether) -> _Loaded:
     free = position_by_model(tether.model, strain=strain, tension=np.zeros(force.size))
     # splices take their share of what the curve is wrong by at one length
     share = np.gradient(free, force) / np.gradient(length, force)
-    random, *rows = (
-        np.interp(strain, curve.strain, one) * share
-        for one in (curve.random_standard_uncertainty, *curve.contribution)
-    )
+    random = np.interp(strain, curve.strain, curve.random_standard_uncertainty) * share
+    # the load cell that read the marks is in the law of the splices too, and moves the whole length
+    is_whole = [not tether.is_stated and one.source in _OF_CELL for one in curve.component]
+    rows = [
+        np.interp(strain, curve.strain, row) * (1.0 if whole else share)
+        for whole, row in zip(is_whole, curve.contribution, strict=True)
+    ]
     return _Loaded(length, force, strain, random, curve.component, np.array(rows))
 
 

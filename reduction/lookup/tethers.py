@@ -9,7 +9,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,10 +34,13 @@ class Tether:
         Tension against strain of the free length. [SI]
     model : StrainModel
         How strain and tension give its length, thimble to thimble: the strain correction.
+    is_stated : bool
+        The splices are stated: no load cell of the tests is in them.
     """
 
     curve: CompositeCurve
     model: StrainModel
+    is_stated: bool = False
 
 
 @dataclass(frozen=True)
@@ -145,5 +148,5 @@ def unequal_tethers(tether: Tether, free_length: ArrayLike) -> tuple[Tether, ...
     """
     lengths = np.atleast_1d(as_positive("free_length", free_length))
     return tuple(
-        Tether(tether.curve, with_free_length(tether.model, float(length))) for length in lengths
+        replace(tether, model=with_free_length(tether.model, float(length))) for length in lengths
     )

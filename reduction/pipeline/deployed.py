@@ -138,6 +138,7 @@ def deploy(
     levels: Sequence[WorkingLevel] = (),
     tolerance: float = float("nan"),
     rated_break_strength: float = float("nan"),
+    has_stated_splices: bool = False,
 ) -> DeployedAssembly:
     """Put tethers side by side and parts in line, and work them.
 
@@ -159,6 +160,8 @@ def deploy(
         Of a free length, of tethers that are all alike; NaN where none is stated. [1]
     rated_break_strength : float
         Of one tether; NaN where not known. [N]
+    has_stated_splices : bool
+        The law of the splices is stated, and not of the tests of the curve.
 
     Returns
     -------
@@ -174,7 +177,7 @@ def deploy(
         slack; names the level by its place, ``working.1`` the first.
     """
     first = free_lengths[0] if free_lengths else None
-    tether = Tether(curve, deployed_model(model, first))
+    tether = Tether(curve, deployed_model(model, first), is_stated=has_stated_splices)
     alike = len(set(free_lengths)) < 2
     tethers = equal_tethers(tether, n_tethers) if alike else unequal_tethers(tether, free_lengths)
     assembly = assemble(tethers, parts)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from assemblies import DRIVEN
 
 from reduction.lookup.assembly import assemble
 from reduction.lookup.composite import composite_curve, composite_line_curve
@@ -126,6 +127,24 @@ def test_tethers_of_one_curve_share_all_of_it_and_of_two_curves_what_their_tests
     assert alike.standard_uncertainty == pytest.approx(
         np.hypot(alike.random_standard_uncertainty, alike.shared_standard_uncertainty)
     )
+
+
+@pytest.mark.parametrize("is_stated", [False, True])
+def test_the_cell_of_the_marks_is_in_the_splices_too_and_stated_splices_know_no_cell(is_stated):
+    """Logs 1 % high: the law of the splices is fitted again to loads that are 1 % high, or stated."""
+    step = 0.01
+    known = dict(DRIVEN.coefficients)
+    if not is_stated:
+        known["splice_compliance"] /= (1 + step) ** known["splice_exponent"]
+    rubber = piece(400, 0.1, 2.0, a=step)
+    found = assemble([Tether(composite_curve([rubber]), DRIVEN, is_stated=is_stated)])
+    high = composite_curve([replace(rubber, tension=(1 + step) * rubber.tension)])
+    other = assemble([Tether(high, replace(DRIVEN, coefficients=known))])
+    at = np.linspace(found.total_length[5], 0.98 * found.total_length[-1], 20)
+    moved = other.tension_at(at) / found.tension_at(at) - 1
+    rows = np.interp(at, found.total_length, found.contribution[0]) / found.tension_at(at)
+    assert rows == pytest.approx(moved, rel=0.02)
+    assert bool(rows[-1] > 0.999 * step) is not is_stated
 
 
 def test_a_soft_part_in_line_takes_its_share_of_a_wrong_cell():
