@@ -103,6 +103,8 @@ def test_no_test_of_equal_bins_lies_outside_the_envelope(tests):
     for curve in curves:
         for strain, modulus in zip(curve.strain, curve.modulus, strict=True):
             row = rows[round(strain, 6)]
-            assert row[3] <= modulus <= row[6]
-    seen = {modulus for _, moduli in tests for modulus in moduli}
-    assert {row[3] for row in rows.values()} | {row[6] for row in rows.values()} <= seen
+            # strains of two grids differ by a last digit, and so does what is read between them
+            assert row[3] <= modulus * (1 + 1e-12) and modulus <= row[6] * (1 + 1e-12)
+    seen = np.array(sorted({modulus for _, moduli in tests for modulus in moduli}))
+    ends = np.array([end for row in rows.values() for end in (row[3], row[6])])
+    assert np.isclose(ends[:, None], seen, rtol=1e-12, atol=0).any(axis=1).all()
