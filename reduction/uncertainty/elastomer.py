@@ -29,7 +29,7 @@ from reduction.record import Floats
 
 __all__ = ["elastomer_contributions"]
 
-_STEP = 1e-4  # of a parameter: for first and second differences of a smooth law
+_STEP, _WIDE_STEP = 1e-6, 1e-4  # of a parameter: for first and for second differences
 
 
 def elastomer_contributions(
@@ -92,15 +92,17 @@ def elastomer_contributions(
     grid, fitted = even_grid(at[known], level[known])
     moved = np.stack([even_grid(at[known], row[known])[1] for row in rows])
     centre = np.array([parameters[name] for name in names])
-    step = _STEP * np.maximum(np.abs(centre), _STEP)
+    size = np.maximum(np.abs(centre), _STEP)
 
     def model(place: Floats) -> Floats:
         given = dict(zip(names, place.tolist(), strict=True))
         return hyperelastic_stress(grid, law=law, parameters=given)
 
-    # in steps of its own, every parameter is of one size
-    way = np.diag(step)
-    jacobian = np.stack([(model(centre + one) - model(centre - one)) / 2 for one in way], axis=1)
+    # over its own size, every parameter is a number of one kind
+    near, far = np.diag(_STEP * size), np.diag(_WIDE_STEP * size)
+    jacobian = np.stack(
+        [(model(centre + one) - model(centre - one)) / (2 * _STEP) for one in near], axis=1
+    )
     left = fitted - model(centre)
     bend = np.array(
         [
@@ -112,14 +114,14 @@ def elastomer_contributions(
                     - model(centre - one + other)
                     + model(centre - one - other)
                 )
-                / 4
-                for other in way
+                / (2 * _WIDE_STEP) ** 2
+                for other in far
             ]
-            for one in way
+            for one in far
         ]
     )
-    hessian = jacobian.T @ jacobian - bend
-    scale = np.sqrt(np.abs(np.diag(hessian)))
-    scale = np.where(scale > 0, scale, 1.0)
-    solved = np.linalg.pinv(hessian / np.outer(scale, scale)) / np.outer(scale, scale)
-    return np.asarray(moved @ jacobian @ solved * step)
+    # by the triangle of the first slopes: their product would lose half of the digits
+    turn, triangle = np.linalg.qr(jacobian)
+    inverse = np.linalg.pinv(triangle)
+    inner = np.eye(len(names)) - inverse.T @ bend @ inverse
+    return np.asarray((inverse @ np.linalg.solve(inner, (moved @ turn).T)).T * size)

@@ -68,8 +68,10 @@ def _of_slack(
 ) -> Iterator[Contributions]:
     """Differences of two positions at one small tension, over the relaxed length.
 
-    A zero of the crosshead is in both and cancels; where the load cell reads too much both are
+    A zero of the crosshead is in both and cancels; where the zero of the load cell is high both are
     found at less tension than is meant, and move by as much as the specimen stretches for it there.
+    A gain moves the slack tension with it, which is a share of the greatest tension; of one that is
+    stated it would be a gain's share of that small tension, and is left out.
     """
     component, relative = [], []
     of_model = errors.strain_model or errors.specimen
@@ -95,15 +97,15 @@ def _of_slack(
         if history is None
         else (history.permanent_set, history.permanent_set_by_tension),
     }
-    tension = 0.0 if test.standstills is None else test.standstills.slack_tension
-    field = error_field(errors, model, strain=0.0, tension=tension)
-    moved = np.flatnonzero(field.tension)
-    component += [field.component[place] for place in moved]
+    if errors.tension_offset:
+        component.append(Component("tension_offset", errors.tension_instrument))
+        relative.append(0.0)
     by_length = np.array(relative)
+    by_zero = np.array(
+        [-errors.tension_offset * (one.source == "tension_offset") for one in component]
+    )
     values = {
-        quantity: np.concatenate(
-            [by_length * both[0][index], -field.tension[moved] * both[1][index]]
-        )
+        quantity: by_length * both[0][index] + by_zero * both[1][index]
         for quantity, both in left.items()
         if both is not None
     }
