@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+import coverage_ropes as ropes
 import coverage_tethers as tethers
 
 TESTS = 40
+CAMPAIGNS = 14
 
 
 @pytest.fixture(scope="module")
@@ -44,3 +46,24 @@ def test_shared_errors_are_most_of_what_the_energy_may_be_off_by(found):
     # a lag of 5 ms over ramps of 0.1 1/s, by 246 N and the splices' share, and 0.5 % of gain
     assert np.median(shared) == pytest.approx(0.27, rel=0.05)
     assert np.median(shared / random) > 5
+
+
+@pytest.fixture(scope="module")
+def of_ropes():
+    return ropes.campaigns(CAMPAIGNS)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "apparent_spring_constant of a run", "hysteresis_energy of a run",
+        "dissipation_spring_constant of a run", "relaxation_time of a run",
+        "quasi_static_spring_constant of a run", "apparent_spring_constant, coefficients",
+        "hysteresis_energy, coefficients", "dissipation_spring_constant, coefficients",
+        "relaxation_time, coefficients",
+    ],
+)  # fmt: skip
+def test_errors_of_a_rope_are_of_the_size_that_is_stated(of_ropes, name):
+    # runs of one campaign err together: 14 draws know an rms to a fifth, and of a coefficient
+    # the scatter is judged by five degrees of freedom
+    assert 0.5 < np.sqrt(np.mean(ratio(of_ropes[name]) ** 2)) < 1.7
