@@ -135,7 +135,11 @@ def _all_values(test: ReducedTest) -> Values:
         values,
         test.contributions,
         test.shared_uncertainty_of_cycles,
-        ({} if test.line_of_test is None else random_of_line(test.line_of_test))
+        (
+            {}
+            if test.line is None or test.line_of_test is None
+            else random_of_line(test.line, test.line_of_test)
+        )
         | (
             {}
             if test.contributions is None

@@ -92,7 +92,6 @@ def line_values(
     if constant_spread is not None:
         values["test_quasi_static_spring_constant_standard_uncertainty"] = constant_spread
     for name in _LINE:
-        # a cycle carries its own noise; what K_0 adds all cycles share, and the test's has it
         values[name] = getattr(cycles, name)
         values[f"{name}_standard_uncertainty"] = cycles.uncertainty[name]
         values[f"test_{name}"] = getattr(test, name)
@@ -100,9 +99,10 @@ def line_values(
     return values
 
 
-def random_of_line(test: LineParameters) -> Values:
-    """Return what is random in the line of a test: the fit of its slow pull is shared by runs."""
-    names = {f"test_{name}": test.random_uncertainty[name] for name in _LINE}
+def random_of_line(cycles: LineParameters, test: LineParameters) -> Values:
+    """Return what is random in lines of cycles and test: the fit of a slow pull is shared."""
+    names = {name: cycles.random_uncertainty[name] for name in _LINE}
+    names |= {f"test_{name}": test.random_uncertainty[name] for name in _LINE}
     constant = test.quasi_static_spring_constant
     return names | {"test_quasi_static_spring_constant": np.where(np.isnan(constant), np.nan, 0.0)}
 

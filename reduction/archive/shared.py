@@ -167,6 +167,8 @@ def with_shared(
         )
     found = dict(values)
     for name, shared in of_cycles.items():
+        if random is not None and name in random:
+            found[f"{name}_standard_uncertainty"] = random[name]
         _combine(found, name, shared[None])
     if contributions is None:
         return found
@@ -184,7 +186,7 @@ def with_shared(
     for name, mean in _ALIKE.items():
         if name in values and mean in contributions.values:
             shared = contributions.shared_standard_uncertainty(mean)
-            _combine(found, name, np.nan_to_num(shared)[None, :, None])
+            _combine(found, name, shared[None, :, None])
     return found | component_values(contributions.component)
 
 
@@ -251,8 +253,7 @@ def _combine(values: Values, name: str, rows: Floats) -> Floats:
     if key not in values:
         return np.full(np.shape(values.get(name, np.nan)), np.nan)
     random: Floats = values[key]
-    # where nothing is known of the shared part the random one still stands
-    values[key] = combined_standard_uncertainty(np.nan_to_num(rows), random)
+    values[key] = combined_standard_uncertainty(rows, random)
     return random
 
 

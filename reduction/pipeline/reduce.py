@@ -217,7 +217,7 @@ def _with_shared_errors(
         test,
         contributions=whole if whole.component else None,
         shared_uncertainty_of_cycles=shared_uncertainty_of_cycles(
-            test, instruments, cycles=settings
+            test, instruments, cycles=settings, pulls=pulls, pull_origins=pull_origins
         ),
     )
 

@@ -65,14 +65,14 @@ def test_where_nothing_is_shared_nothing_changes():
     assert found.keys() == before.keys()
 
 
-def test_where_no_contribution_is_known_the_random_part_still_stands():
+def test_where_a_contribution_is_not_known_the_uncertainty_is_not_either():
     unknown = np.full((2, 1, 2, 1), np.nan)
     found = with_shared(
         values() | {"tangent_modulus_standard_uncertainty": np.ones((1, 2, 1))},
         Contributions((CELL, TAPE), {"tangent_modulus": unknown}), {},
     )  # fmt: skip
-    assert (found["tangent_modulus_standard_uncertainty"] == 1.0).all()
-    assert np.isnan(found["tangent_modulus_uncertainty_contribution"]).all()
+    assert np.isnan(found["tangent_modulus_standard_uncertainty"]).all()
+    assert (found["tangent_modulus_random_standard_uncertainty"] == 1.0).all()
 
 
 def test_contributions_without_a_variable_are_refused_and_not_dropped():

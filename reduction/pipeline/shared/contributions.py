@@ -17,7 +17,7 @@ from reduction.pipeline.shared.cycles import of_cycles, of_ends, of_slips
 from reduction.pipeline.shared.holds import of_holds, of_pairs
 from reduction.pipeline.shared.loops import of_dynamic_modulus, of_line, of_loops
 from reduction.pipeline.shared.material import of_elastomers, of_material
-from reduction.pipeline.shared.pulls import PullOrigin, of_pull
+from reduction.pipeline.shared.pulls import PullOrigin, of_pull, of_rest
 from reduction.pipeline.shared.ratio import of_ratios
 from reduction.product import ReducedTest
 from reduction.record import Floats, areas_of
@@ -78,7 +78,12 @@ def contributions_of_test(
 
 
 def shared_uncertainty_of_cycles(
-    test: ReducedTest, errors: Sequence[InstrumentErrors], *, cycles: CycleSettings
+    test: ReducedTest,
+    errors: Sequence[InstrumentErrors],
+    *,
+    cycles: CycleSettings,
+    pulls: Sequence[SlowPull | None] | None = None,
+    pull_origins: Sequence[PullOrigin | None] = (),
 ) -> dict[str, Floats]:
     """Shared standard uncertainty of the quantities of each cycle, shape (n_specimens, n_cycles).
 
@@ -90,30 +95,36 @@ def shared_uncertainty_of_cycles(
         What is stated of the instruments.
     cycles : CycleSettings
         Control and waveform.
+    pulls : sequence of SlowPull or None, length n_specimens, optional
+        From which the test has its K_0.
+    pull_origins : sequence of PullOrigin or None, length n_specimens, optional
+        As in `contributions_of_test`.
 
     Returns
     -------
     shared : dict of str to ndarray
         By name of the quantity; empty where no error is shared.
     """
-    if test.loops is None or test.cycles is None:
+    if test.loops is None:
         return {}
-    found = [
-        of_loops(test.loops, index, one, test.strain_models[index], test.cycles, cycles)
-        for index, one in enumerate(errors)
-    ]
+    found = []
+    for index, one in enumerate(errors):
+        pull = None if pulls is None else pulls[index]
+        origin = pull_origins[index] if pull_origins else None
+        found.append(_of_cycles(test, index, one, cycles, pull, origin))
     if not any(part.component for part in found):
         return {}
-    ends = () if test.end_moduli is None else ("secant_modulus", "chord_modulus")
-    if ends:
-        areas = areas_of(test.specimens)
-        found = [
-            merged([part, *of_ends(test, index, one, float(areas[index]))])
-            for index, (part, one) in enumerate(zip(found, errors, strict=True))
-        ]
-    names = found[0].values
+    # a specimen without a slow pull has no line: nothing is known of it, and nothing said
+    none = np.full(test.loops.mean_tension.shape[1:], np.nan)
+    names = dict.fromkeys(name for part in found for name in part.values)
     return {
-        name: np.stack([part.shared_standard_uncertainty(name) for part in found]) for name in names
+        name: np.stack(
+            [
+                part.shared_standard_uncertainty(name) if name in part.values else none
+                for part in found
+            ]
+        )
+        for name in names
     }
 
 
@@ -152,10 +163,38 @@ def _of_specimen(
         if np.isfinite(area):
             yield _named(of_dynamic_modulus(of_loop, summary, index, errors, area), "test_")
         if test.line_of_test is not None and pull is not None:
-            read_with = origin or PullOrigin(errors, model)
-            yield _named(
-                of_line(test.line_of_test, summary, index, of_loop, pull, read_with), "test_"
-            )
+            rest = of_rest(
+                pull, origin or PullOrigin(errors, model),
+                np.asarray(summary.mean_tension[index]), of_loop,
+            )  # fmt: skip
+            yield _named(rest, "test_")
+            yield _named(of_line(test.line_of_test, summary, index, of_loop, rest), "test_")
+
+
+def _of_cycles(
+    test: ReducedTest,
+    index: int,
+    errors: InstrumentErrors,
+    cycles: CycleSettings,
+    pull: SlowPull | None,
+    origin: PullOrigin | None,
+) -> Contributions:
+    """Quantities of each cycle of a specimen; of its line where it has one."""
+    if test.loops is None or test.cycles is None:
+        return Contributions(())
+    model = test.strain_models[index]
+    of_loop = of_loops(test.loops, index, errors, model, test.cycles, cycles)
+    parts = [of_loop]
+    if test.end_moduli is not None:
+        parts += of_ends(test, index, errors, float(areas_of(test.specimens)[index]))
+    if test.line is not None and test.amplitude is not None and pull is not None:
+        rest = of_rest(
+            pull, origin or PullOrigin(errors, model),
+            np.asarray(test.amplitude.mean_tension[index]),
+            of_loops(test.amplitude, index, errors, model, test.cycles, cycles),
+        )  # fmt: skip
+        parts.append(of_line(test.line, test.loops, index, of_loop, rest))
+    return merged(parts)
 
 
 def _named(found: Contributions, prefix: str, *, left_out: Sequence[str] = ()) -> Contributions:

@@ -97,25 +97,47 @@ def of_curves(
     rate: Floats,
 ) -> Contributions:
     """Both branches of one specimen, by name of the archive."""
-    strain = np.broadcast_to(curves.strain_bin, curves.branch_tension[index].shape)
-    field = error_field(errors, model, strain=strain, tension=curves.branch_tension[index])
-    values = {}
-    for name, moduli in (
-        (f"tangent_modulus{suffix}", curves.tangent_modulus),
-        (f"tangent_modulus_untrimmed{suffix}", curves.tangent_modulus_untrimmed),
-    ):
-        modulus = moduli[index]
-        found = curve_contributions(
-            field, errors, tangent_modulus=modulus, area=area,
-            modulus_slope=np.stack([_smooth_slope(row, curves.strain_bin) for row in modulus]),
+    known = curves.tangent_modulus[index], curves.tangent_modulus_untrimmed[index]
+    slope = np.where(np.isfinite(known[0]), known[0], known[1])
+    tension, slope = _completed(curves.strain_bin, curves.branch_tension[index], slope, area)
+    strain = np.broadcast_to(curves.strain_bin, tension.shape)
+    field = error_field(errors, model, strain=strain, tension=tension)
+
+    def at_slope(modulus: Floats) -> Contributions:
+        bend = np.stack([_smooth_slope(row, curves.strain_bin) for row in modulus])
+        return curve_contributions(
+            field, errors, tangent_modulus=modulus, area=area, modulus_slope=bend,
             strain_rate=rate[0], strain_rate_slope=rate[1],
         )  # fmt: skip
-        values[name] = found.values["tangent_modulus"]
-    # trimmed or not, the tension is known wherever a modulus is
-    values[f"branch_tension{suffix}"] = found.values["branch_tension"]
-    if suffix:
-        del values[f"tangent_modulus_untrimmed{suffix}"]
-    return Contributions(found.component, values)
+
+    of_tension = at_slope(slope)
+    values = {f"branch_tension{suffix}": of_tension.values["branch_tension"]}
+    names = ("tangent_modulus",) if suffix else ("tangent_modulus", "tangent_modulus_untrimmed")
+    for name, modulus in zip(names, known, strict=False):
+        whole = np.where(np.isfinite(modulus), modulus, slope)
+        values[f"{name}{suffix}"] = at_slope(whole).values["tangent_modulus"]
+    return Contributions(of_tension.component, values)
+
+
+def _completed(
+    strain: Floats, tension: Floats, modulus: Floats, area: float
+) -> tuple[Floats, Floats]:
+    """Tension and modulus of each branch where either is known, the other from it.
+
+    A bin may have enough samples for a mean and too few for a slope, or the reverse: an error at
+    its strain moves both.
+    """
+    filled, slopes = tension.copy(), modulus.copy()
+    for row, slope in zip(filled, slopes, strict=True):
+        has = np.isfinite(row)
+        if has.sum() < 2:
+            continue
+        bare = has & ~np.isfinite(slope)
+        slope[bare] = np.gradient(row[has], strain[has])[bare[has]] / area
+        lacks = np.isfinite(slope) & ~has
+        nearest = np.flatnonzero(has)[np.abs(strain[lacks, None] - strain[has]).argmin(axis=1)]
+        row[lacks] = row[nearest] + area * slope[lacks] * (strain[lacks] - strain[nearest])
+    return filled, slopes
 
 
 def of_segments(

@@ -7,6 +7,7 @@ cycles go through the same mean or slope.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -61,7 +62,7 @@ def of_cycles(
         if step is not None and step.bedding_in is not None:
             yield _of_bedding(test.loops, step.bedding_in, index, of_each, errors)
     if step is not None and step.tensile is not None:
-        yield _of_tensile(test, step.tensile, index, errors, model)
+        yield _of_tensile(step.tensile, index, errors, model, cycles)
 
 
 def of_ends(
@@ -214,11 +215,16 @@ def _of_bedding(
 
 
 def _of_tensile(
-    test: ReducedTest, pull: TensilePull, index: int, errors: InstrumentErrors, model: StrainModel
+    pull: TensilePull,
+    index: int,
+    errors: InstrumentErrors,
+    model: StrainModel,
+    cycles: CycleSettings,
 ) -> Contributions:
     """Greatest tension of a pull, and the strain there; of a break both have another name too."""
     peak, strain = pull.peak_tension[index], pull.strain_at_peak[index]
-    field = error_field(errors, model, strain=strain, tension=peak)
+    held: Literal["position", "tension"] = "tension" if cycles.control == "load" else "position"
+    field = error_field(errors, model, strain=strain, tension=peak, held=held)
     share = np.asarray(pull.peak_tension_over_strength[index])
     values = {
         "pull_peak_tension": field.tension,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import ErrorField, error_field
 from reduction.uncertainty.holds import hold_contributions
 from reduction.uncertainty.join import merged, stacked
-from reduction.uncertainty.points import chord_contributions
 from reduction.uncertainty.product import Contributions, InstrumentErrors
 from reduction.uncertainty.strength import over_strength
 
@@ -45,23 +45,24 @@ def of_pairs(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Cont
     if test.rope_step is None or not test.rope_step.held:
         return []
     numbers = hold_numbers(test.holds).tolist()
-    strains = {
-        (hold.specimen, number): hold.hold_strain
-        for number, hold in zip(numbers, test.holds, strict=True)
+    upper = {
+        (hold.specimen, number): hold for number, hold in zip(numbers, test.holds, strict=True)
     }
     own = []
     for pair in test.rope_step.held:
         place = _place(test, pair.specimen)
-        low, high = (
-            strains.get((pair.specimen, number), np.nan)
-            for number in (pair.low_hold, pair.high_hold)
-        )
-        own.append(_of_pair(pair, low, high, errors[place], test.strain_models[place]))
+        high = upper[pair.specimen, pair.high_hold]
+        own.append(_of_pair(pair, high, errors[place], test.strain_models[place]))
     return [stacked(own)]
 
 
 def _place(test: ReducedTest, specimen: str) -> int:
     return [one.name for one in test.specimens].index(specimen)
+
+
+def _held(hold: HoldResult) -> Literal["position", "tension"]:
+    """What the machine keeps to its set value while it holds."""
+    return "tension" if hold.kind == "creep" else "position"
 
 
 def _padded(hold: HoldResult, n_terms: int) -> HoldResult:
@@ -72,7 +73,7 @@ def _padded(hold: HoldResult, n_terms: int) -> HoldResult:
 
 def _of_hold(hold: HoldResult, errors: InstrumentErrors, model: StrainModel) -> Contributions:
     def field_at(strain: Floats, tension: Floats) -> ErrorField:
-        return error_field(errors, model, strain=strain, tension=tension)
+        return error_field(errors, model, strain=strain, tension=tension, held=_held(hold))
 
     return hold_contributions(field_at, hold)
 
@@ -101,29 +102,42 @@ def _of_creep(
 
 
 def _of_pair(
-    pair: HeldPair, low: float, high: float, errors: InstrumentErrors, model: StrainModel
+    pair: HeldPair, high: HoldResult, errors: InstrumentErrors, model: StrainModel
 ) -> Contributions:
-    """Tensions of a pair, and the secant between them; strains are those of the two holds."""
+    """Tensions of a pair, and the secant between them at the reference time."""
     found = pair.stiffness
     secant, slope, over = (
         (np.nan,) * 3
         if found is None
         else (found.stiffness_at_reference, found.slope_per_decade, found.stiffness_over_strength)
     )
+    # of both at the upper hold the machine keeps one, and the secant says the other at that time
+    is_creep = high.kind == "creep"
     rise = pair.high_tension - pair.low_tension
-    stroke = rise / secant
-    begin, end = (
-        error_field(errors, model, strain=at, tension=force)
-        for at, force in ((low, pair.low_tension), (high, pair.high_tension))
+    stroke = rise / secant if is_creep else high.hold_strain - pair.low_strain
+    rise_then = stroke * secant
+    field = error_field(
+        errors, model,
+        strain=pair.low_strain + np.array([0.0, 0.0, stroke]),
+        tension=pair.low_tension + np.array([0.0, rise, rise_then]),
+        held=_held(high),
+    )  # fmt: skip
+    begin, level, then = range(3)
+    low_tension, high_tension = field.tension[:, begin], field.tension[:, level]
+    of_rise = (field.tension[:, then] - low_tension) / rise_then
+    of_stroke = (field.strain[:, then] - field.strain[:, begin]) / stroke
+    chord = secant * (of_rise - of_stroke)
+    # the secant is rise over stroke, of which one goes on with time: what that gains scales by the
+    # slope of its error, and of a stroke that grows the secant changes by its square
+    of_slope = slope * (
+        of_rise + field.strain_slope[:, then] - 2 * of_stroke
+        if is_creep
+        else field.tension_slope[:, then] - of_stroke
     )
-    chord = chord_contributions(begin, end, stroke=stroke, chord=secant).values["chord"]
-    # K is the rise over a + b log t: an error of a is in the slope of K twice, one of b once
-    reach = (end.strain - begin.strain) / stroke
-    of_slope = slope * ((end.tension - begin.tension) / rise + end.strain_slope - 2 * reach)
     per_strength = over / secant
     values = {
-        "held_pair_low_tension": begin.tension,
-        "held_pair_high_tension": end.tension,
+        "held_pair_low_tension": low_tension,
+        "held_pair_high_tension": high_tension,
         "static_stiffness": chord,
         "static_stiffness_per_decade": of_slope,
         "static_stiffness_over_strength": chord * per_strength,
@@ -133,4 +147,4 @@ def _of_pair(
         "static_stiffness_over_strength": (np.array(over), -1.0),
         "static_stiffness_per_decade_over_strength": (np.array(slope * per_strength), -1.0),
     }
-    return over_strength(Contributions(begin.component, values), errors, powers)
+    return over_strength(Contributions(field.component, values), errors, powers)

@@ -9,9 +9,8 @@ from typing import Literal
 import numpy as np
 
 from reduction.cycles.product import Cycles, Loops
-from reduction.line.product import LineParameters, SlowPull
+from reduction.line.product import LineParameters
 from reduction.moduli.product import AmplitudeSummary
-from reduction.pipeline.shared.pulls import PullOrigin, of_rest
 from reduction.record import Floats
 from reduction.settings import CycleSettings
 from reduction.strain.inverse import position_by_model
@@ -100,25 +99,25 @@ def of_dynamic_modulus(
 
 def of_line(
     line: LineParameters,
-    summary: AmplitudeSummary,
+    loops: Loops | AmplitudeSummary,
     index: int,
     of_loop: Contributions,
-    pull: SlowPull,
-    origin: PullOrigin,
+    of_rest: Contributions,
 ) -> Contributions:
-    """K_0 of the pull, whose errors all runs on it share, and what follows from it."""
-    of_pull = of_rest(pull, origin, np.asarray(summary.mean_tension[index]), of_loop)
+    """K_1, tau and K_1 tau of each cycle of a specimen, or of the means of its test."""
     values: Mapping[str, Floats] = {
         item.name: getattr(line, item.name)[index]
         for item in fields(line)
         if isinstance(getattr(line, item.name), np.ndarray)
-    } | {name: np.asarray(getattr(summary, name)[index]) for name in _LOOP if name not in
+    } | {name: np.asarray(getattr(loops, name)[index]) for name in _LOOP if name not in
          ("storage_spring_constant", "loss_spring_constant")}  # fmt: skip
+    # one K_0 a run: its error is that of every cycle
+    rest = of_rest.values[_K_0]
+    shape = (*rest.shape[:1], *np.shape(values[_K_0]))
+    rest = np.broadcast_to(rest.reshape(rest.shape[:1] + (1,) * (len(shape) - 1)), shape)
     reading: Reading = "fundamental" if line.reading == "fundamental" else "amplitude"
-    found = line_contributions(of_loop, of_pull, values, reading=reading)
-    names = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
-    rows = np.zeros(len(found.component))
-    rows[[found.component.index(one) for one in of_pull.component]] = of_pull.values[_K_0]
-    return Contributions(
-        found.component, {_K_0: rows} | {name: found.values[name] for name in names}
+    found = line_contributions(
+        of_loop, Contributions(of_rest.component, {_K_0: rest}), values, reading=reading
     )
+    names = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
+    return Contributions(found.component, {name: found.values[name] for name in names})

@@ -14,7 +14,7 @@ from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import ErrorField, error_field
 from reduction.uncertainty.join import added
 from reduction.uncertainty.line import pull_contributions
-from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
+from reduction.uncertainty.product import Contributions, InstrumentErrors
 from reduction.uncertainty.pullfit import fit_contributions
 from reduction.uncertainty.strength import over_strength
 
@@ -101,25 +101,8 @@ def _at(
     pull: SlowPull, errors: InstrumentErrors, model: StrainModel, tension: Floats
 ) -> tuple[ErrorField, Floats]:
     strain = strain_at_tension(pull, tension)[0]
-    field = error_field(replace(errors, stiffness=0.0), model, strain=strain, tension=tension)
-    if errors.stiffness:
-        # a pull is read at a tension: one that is stiffer has stretched less there
-        none = np.zeros((1, *strain.shape))
-        added_rows = {
-            "tension": none,
-            "strain": -errors.stiffness * strain[None],
-            "tension_slope": none,
-            "strain_slope": none - errors.stiffness,
-            "strain_slope_over_tension": none,
-        }
-        field = replace(
-            field,
-            component=(*field.component, Component("temperature", errors.test)),
-            **{
-                name: np.concatenate([getattr(field, name), rows])
-                for name, rows in added_rows.items()
-            },
-        )
+    # a pull is read at a tension: one that is stiffer has stretched less there
+    field = error_field(errors, model, strain=strain, tension=tension, held="tension")
     return field, quasi_static_spring_constant(pull, tension)[0]
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from reduction.product import ReducedTest
 from reduction.uncertainty.join import merged, stacked
 from reduction.uncertainty.points import section_contributions
@@ -28,9 +30,13 @@ def with_shared_steps(test: ReducedTest, instruments: Sequence[InstrumentErrors]
         return test
     moduli = Contributions(found.component, {name: found.values[name] for name in _MODULI})
     section = section_contributions(errors, area=specimen.area)
+    if np.isnan(result.tension_standard_uncertainty) and np.any(found.values["tension"]):
+        # of a reading of a weight nothing is stated: beside what is, that counts as zero
+        result = replace(result, tension_standard_uncertainty=0.0)
     whole = merged([moduli, stacked([section])] if section.component else [moduli])
     return replace(
         test,
+        stepwise=result,
         contributions=whole,
         shared_uncertainty_of_cycles={
             name: found.shared_standard_uncertainty(name) for name in _OF_READINGS
