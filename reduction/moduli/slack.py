@@ -41,6 +41,8 @@ class SlackCrossings:
         where the record does not show it. [m]
     compliance : ndarray
         Of the specimen there: by how much a crossing moves with the tension that counts. [m N-1]
+    rate : ndarray
+        Of position there, with its sign; NaN where no time is given. [m s-1]
     reason : str
         Why one is missing; empty where none is.
     """
@@ -48,6 +50,7 @@ class SlackCrossings:
     position: Floats
     standard_uncertainty: Floats
     compliance: Floats
+    rate: Floats
     reason: str
 
     def __post_init__(self) -> None:
@@ -65,6 +68,8 @@ class SlackStrain:
         NaN where the record does not begin or does not end slack; from scatter. [1]
     by_tension : ndarray
         Change of it with the tension that counts as slack. [N-1]
+    by_lag : ndarray
+        Change of it with a time by which tension is logged late. [s-1]
     remarks : tuple of str, length n_specimens
         Why the number is missing; empty where it is there.
     """
@@ -72,6 +77,7 @@ class SlackStrain:
     strain: Floats
     standard_uncertainty: Floats
     by_tension: Floats
+    by_lag: Floats
     remarks: tuple[str, ...]
 
     def __post_init__(self) -> None:
@@ -140,7 +146,11 @@ def slack_position(
 
 
 def slack_crossings(
-    position: ArrayLike, tension: ArrayLike, *, slack_tension: float
+    position: ArrayLike,
+    tension: ArrayLike,
+    *,
+    slack_tension: float,
+    time: ArrayLike | None = None,
 ) -> SlackCrossings:
     """Positions at which a record first becomes taut and last goes slack.
 
@@ -152,6 +162,8 @@ def slack_crossings(
         Tension of one specimen; NaN is left out. [N]
     slack_tension : float
         Tension at or below which the specimen is slack. [N]
+    time : array_like, shape (n_samples,), optional
+        For the rate at the crossings. [s]
 
     Returns
     -------
@@ -178,12 +190,13 @@ def slack_crossings(
     as_positive("slack_tension", slack_tension)
     place, load = as_same_shape(position=position, tension=tension)
     known = np.isfinite(place) & np.isfinite(load)
+    moment = np.full(place.shape, np.nan) if time is None else np.asarray(time, dtype=np.float64)
     if not known.all():
-        place, load = place[known], load[known]
+        place, load, moment = place[known], load[known], moment[known]
     is_taut = load > REACH * slack_tension
-    crossing, uncertainty, compliance = np.full((3, 2), np.nan)
+    crossing, uncertainty, compliance, rate = np.full((4, 2), np.nan)
     if not is_taut.any():
-        return SlackCrossings(crossing, uncertainty, compliance, "the specimen is never taut")
+        return SlackCrossings(crossing, uncertainty, compliance, rate, "the specimen is never taut")
     taut_first, taut_last = int(is_taut.argmax()), load.size - 1 - int(is_taut[::-1].argmax())
     before = np.flatnonzero(load[:taut_first] <= slack_tension)
     after = np.flatnonzero(load[taut_last:] <= slack_tension) + taut_last
@@ -195,6 +208,7 @@ def slack_crossings(
         crossing[0], uncertainty[0], compliance[0] = slack_position(
             place[rise], load[rise], slack_tension=slack_tension
         )
+        rate[0] = _rate(moment[rise], place[rise])
     if after.size == 0:
         reasons.append("the record does not return to slack")
     else:
@@ -202,9 +216,16 @@ def slack_crossings(
         crossing[1], uncertainty[1], compliance[1] = slack_position(
             place[fall], load[fall], slack_tension=slack_tension
         )
+        rate[1] = _rate(moment[fall], place[fall])
     if not reasons and not np.isfinite(crossing).all():
         reasons.append("too few samples where the specimen goes slack")
-    return SlackCrossings(crossing, uncertainty, compliance, "; ".join(reasons))
+    return SlackCrossings(crossing, uncertainty, compliance, rate, "; ".join(reasons))
+
+
+def _rate(time: Floats, position: Floats) -> float:
+    """Mean rate between the ends of a part; NaN where it takes no time."""
+    span = time[-1] - time[0]
+    return float((position[-1] - position[0]) / span) if span > 0 else float("nan")
 
 
 def slack_strain_at_unloading(
@@ -213,6 +234,7 @@ def slack_strain_at_unloading(
     *,
     slack_tension: float,
     relaxed_free_length: ArrayLike,
+    time: ArrayLike | None = None,
 ) -> SlackStrain:
     r"""Strain at which a specimen goes slack when a test unloads.
 
@@ -231,6 +253,8 @@ def slack_strain_at_unloading(
         Tension at or below which a specimen is slack. [N]
     relaxed_free_length : array_like, shape (n_specimens,)
         Free length at zero tension before the test; NaN where not known. [m]
+    time : array_like, shape (n_samples,), optional
+        For what a lag does; nothing is said of it without. [s]
 
     Returns
     -------
@@ -270,15 +294,16 @@ def slack_strain_at_unloading(
             found=f"{lengths.size} lengths",
             needed=f"{loads.shape[0]}",
         )
-    found, uncertainty, by_tension = np.full((3, loads.shape[0]), np.nan)
+    found, uncertainty, by_tension, by_lag = np.full((4, loads.shape[0]), np.nan)
     remarks = []
     for row, (load, length) in enumerate(zip(loads, lengths, strict=True)):
-        at = slack_crossings(position, load, slack_tension=slack_tension)
+        at = slack_crossings(position, load, slack_tension=slack_tension, time=time)
         reason = at.reason
         if not reason and not np.isfinite(length):
             reason = "the relaxed free length is not known"
         found[row] = (at.position[1] - at.position[0]) / length
         uncertainty[row] = np.hypot(*at.standard_uncertainty) / length
         by_tension[row] = (at.compliance[1] - at.compliance[0]) / length
+        by_lag[row] = (at.rate[1] - at.rate[0]) / length
         remarks.append(f"slack strain at unloading not given: {reason}" if reason else "")
-    return SlackStrain(found, uncertainty, by_tension, tuple(remarks))
+    return SlackStrain(found, uncertainty, by_tension, by_lag, tuple(remarks))

@@ -144,6 +144,7 @@ def reduce_test(
         tension,
         slack_tension=standstills.slack_tension,
         relaxed_free_length=np.array([model.relaxed_length for model in models]),
+        time=record.time,
     )
     lag, lag_notes = (
         (None, ())

@@ -75,3 +75,15 @@ def test_a_zero_of_the_load_cell_moves_where_a_specimen_goes_slack(stated, tmp_p
     # the slack tension is two hundredths of the greatest tension, which moves too
     assert found == pytest.approx(wanted, rel=0.021)
     assert (wanted < 0).all()
+
+
+def test_a_later_load_goes_slack_when_the_crosshead_is_further_back(stated, tmp_path):
+    name = "slack_strain_at_unloading"
+    late = 0.1  # one sample of this log
+    above, below = (
+        reduced(tmp_path / side, late=way * late)[name].to_numpy()
+        for side, way in (("later", 1), ("earlier", -1))
+    )
+    found = contribution(stated, name, "lag")
+    assert found == pytest.approx((above - below) / 2 * LAG / late, rel=0.15)
+    assert (found < -1e-3).all()

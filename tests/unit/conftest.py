@@ -400,7 +400,11 @@ def rich_test():
         stress_at_strain_standard_uncertainty=array(rng, 2, 2),
         stress_at_strain_levels=(1.0, 0.5),
         slack_strain=SlackStrain(
-            np.array([0.02, np.nan]), np.array([0.001, np.nan]), np.zeros(2), ("", "no slack")
+            np.array([0.02, np.nan]),
+            np.array([0.001, np.nan]),
+            np.zeros(2),
+            np.zeros(2),
+            ("", "no slack"),
         ),
         contributions=make_contributions(np.random.default_rng(5)),
         shared_uncertainty_of_cycles={"apparent_spring_constant": np.full(per_cycle, 3.0)},

@@ -40,6 +40,20 @@ def test_a_specimen_that_is_softer_on_its_way_back_goes_slack_earlier_at_a_highe
     assert later.strain[0] - found.strain[0] == pytest.approx(0.1 * found.by_tension[0])
 
 
+def test_a_lag_moves_both_crossings_by_their_rates():
+    # up at 0.5 m a second, down at 1 m a second; logged a little late
+    time = np.concatenate([UP / 0.5, 4.0 + (2 - DOWN) / 1.0])
+    time[401:] += 0.01
+    load = pull(0.2, 0.25)
+    kwargs = {"slack_tension": SLACK, "relaxed_free_length": [2.5], "time": time}
+    found = slack_strain_at_unloading(POSITION, [load], **kwargs)
+    late = 0.004
+    shifted = np.interp(time - late, time, load)
+    later = slack_strain_at_unloading(POSITION, [shifted], **kwargs)
+    assert found.by_lag[0] == pytest.approx((-1.0 - 0.5) / 2.5)
+    assert later.strain[0] - found.strain[0] == pytest.approx(late * found.by_lag[0], rel=0.01)
+
+
 def test_set_does_not_depend_on_the_datum_of_position():
     load = [pull(0.2, 0.25)]
     kwargs = {"slack_tension": SLACK, "relaxed_free_length": [2.5]}

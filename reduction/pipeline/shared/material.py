@@ -73,44 +73,42 @@ def _of_slack(
     A gain moves the slack tension with it, which is a share of the greatest tension; of one that is
     stated it would be a gain's share of that small tension, and is left out.
     """
-    component, relative = [], []
     of_model = errors.strain_model or errors.specimen
-    for gain, owner in (
-        (errors.position_gain, Component("position_gain", errors.position_instrument)),
-        (errors.strain_gain, Component("strain_gain", of_model)),
-    ):
-        if gain:
-            component.append(owner)
-            relative.append(gain)
+    # of each error: its share of the length, of the tension at the crossings, of their time
+    parts = [
+        (Component("position_gain", errors.position_instrument), errors.position_gain, 0.0, 0.0),
+        (Component("strain_gain", of_model), errors.strain_gain, 0.0, 0.0),
+        (Component("tension_offset", errors.tension_instrument), 0.0, -errors.tension_offset, 0.0),
+        (Component("lag", errors.tension_instrument), 0.0, 0.0, errors.lag),
+    ]
     name = next((one for one in _LENGTHS if one in model.coefficients), None)
     if name is not None:
         # the errors of the tape that are in every strain of the test
         by_tape = coefficient_errors(model)[list(model.coefficients).index(name)]
-        component += [
-            Component("strain_calibration", of_model, number) for number in range(by_tape.size)
+        parts += [
+            (Component("strain_calibration", of_model, number), -share, 0.0, 0.0)
+            for number, share in enumerate((by_tape / model.coefficients[name]).tolist())
         ]
-        relative += [-float(one) / model.coefficients[name] for one in by_tape]
+    parts = [one for one in parts if any(one[1:])]
+    if not parts:
+        return
+    component = tuple(one[0] for one in parts)
+    by_length, by_tension, by_time = np.array([one[1:] for one in parts]).T
     history, slack = test.history, test.slack_strain
-    left = {
-        "slack_strain_at_unloading": None if slack is None else (slack.strain, slack.by_tension),
-        "permanent_set": None
-        if history is None
-        else (history.permanent_set, history.permanent_set_by_tension),
-    }
-    if errors.tension_offset:
-        component.append(Component("tension_offset", errors.tension_instrument))
-        relative.append(0.0)
-    by_length = np.array(relative)
-    by_zero = np.array(
-        [-errors.tension_offset * (one.source == "tension_offset") for one in component]
-    )
-    values = {
-        quantity: by_length * both[0][index] + by_zero * both[1][index]
-        for quantity, both in left.items()
-        if both is not None
-    }
-    if component:
-        yield Contributions(tuple(component), values)
+    values = {}
+    if slack is not None:
+        values["slack_strain_at_unloading"] = (
+            by_length * slack.strain[index]
+            + by_tension * slack.by_tension[index]
+            + by_time * slack.by_lag[index]
+        )
+    if history is not None:
+        # both crossings of a set are on first rises, which go at one rate: a lag leaves it alone
+        values["permanent_set"] = (
+            by_length * history.permanent_set[index]
+            + by_tension * history.permanent_set_by_tension[index]
+        )
+    yield Contributions(component, values)
 
 
 def of_elastomers(
