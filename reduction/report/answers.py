@@ -24,8 +24,9 @@ _ANSWERS: tuple[tuple[str, str, Kind], ...] = (
     ("test_hysteresis_energy", "H", "energy"),
     ("test_dissipation_spring_constant", "K_1", "tension"),
     ("test_relaxation_time", "tau", "time"),
+    ("interval_modulus", "", "stress"),
 )
-_NAMES = "K_ap: apparent spring constant. H: hysteresis energy."
+_NAMES = " K_ap: apparent spring constant. H: hysteresis energy."
 _LINE_NAMES = " K_1, tau: dissipation spring constant and relaxation time of the line."
 _SMALL = 0.005
 
@@ -77,7 +78,7 @@ class AnswerBudget:
 
 
 def answer_budgets(view: TestView) -> list[AnswerBudget]:
-    """Return the budgets of the answers of a test: segments, K_ap, H, K_1, tau.
+    """Return the budgets of the answers of a test: segments, K_ap, H, K_1, tau; of weights slopes.
 
     Parameters
     ----------
@@ -96,10 +97,11 @@ def answer_budgets(view: TestView) -> list[AnswerBudget]:
         for one in all_budgets(view.data, name):
             if not (np.isfinite(one.standard_uncertainty) and one.standard_uncertainty > 0):
                 continue
-            place = places[one.place["specimen"]]
+            # a test with weights has one specimen
+            place = places[one.place["specimen"]] if "specimen" in one.place else 0
             found.append(
                 AnswerBudget(
-                    text or f"segment {one.place['segment']}, {one.place['branch_name']}",
+                    text or _words_of(view, one),
                     view.specimens[place],
                     shown(kind, view.units),
                     one,
@@ -107,6 +109,15 @@ def answer_budgets(view: TestView) -> list[AnswerBudget]:
                 )
             )
     return found
+
+
+def _words_of(view: TestView, one: Budget) -> str:
+    """Which segment it is, or between which readings."""
+    if "segment" in one.place:
+        return f"segment {one.place['segment']}, {one.place['branch_name']}"
+    after = int(one.place["interval"])
+    clock = view.texts("clock")
+    return f"{clock[after - 1]} to {clock[after]}" if all(clock) else f"interval {after}"
 
 
 def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> Table | None:
@@ -125,13 +136,14 @@ def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> Table | Non
         for one in answers
     ]
     has_line = any(one.words == "tau" for one in answers)
+    names = _NAMES if any(one.words in ("K_ap", "H") for one in answers) else ""
     factors = factor_words(k for one in answers for k in one.cell.factors)
     return make_table(
         "Share of each source in the variance of the answers.",
         ("number", "value", "unit", "k [1]", *(f"{source_words(one)} [%]" for one in sources)),
         rows, synthetic=view.is_synthetic, is_compact=True,
         remarks=[
-            f"±: expanded uncertainty, 95 % ({factors}). {_NAMES}{_LINE_NAMES if has_line else ''}",
+            f"±: expanded uncertainty, 95 % ({factors}).{names}{_LINE_NAMES if has_line else ''}",
             *([f"{DRAWN} Shares are of first order."] if any(one.drawn for one in answers) else []),
             source_meanings(sources),
         ],

@@ -34,12 +34,15 @@ _LOOKS: dict[str, tuple[str, str]] = {
     "strain_calibration": (_GREEN, ""),
     "splice_method": (_GREEN, "/"),
     "strain_gain": (_GREEN, "x"),
+    "gauge_length": (_GREEN, "."),
     "diameter": (_VERMILION, ""),
     "quasi_static_fit": (_SKY, ""),
     "temperature": (_VERMILION, "/"),
 }
 _UNKNOWN = (_GREY, "x")
-FROM_READINGS = frozenset({"strain_calibration", "splice_method", "quasi_static_fit"})
+FROM_READINGS = frozenset(
+    {"strain_calibration", "splice_method", "quasi_static_fit", "gauge_length"}
+)
 """Sources that follow from readings of the tests, not from what is stated of the instruments."""
 _MEANINGS = {
     RANDOM: "scatter between cycles, noise, regression",
@@ -48,6 +51,7 @@ _MEANINGS = {
     "lag": "time between the channels",
     "strain_calibration": "fit to the readings at the splice marks",
     "splice_method": "choice of the splice law",
+    "gauge_length": "length that strain is a share of",
     "strain_gain": "what the strain method itself may miss",
     "quasi_static_fit": "fit of the slow pull that gives K_0",
     "temperature": "stiffness at the temperature of the test",

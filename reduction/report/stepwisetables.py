@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from reduction.report.figures.stepwise import flagged_steps
+from reduction.report.figures.stepwise import OF_STEPS, flagged_steps
 from reduction.report.htmltable import Table, factors_of, make_table, measured, number, words
 from reduction.report.style import shown
-from reduction.report.uncertainty import expanded_of, plus_minus_of_steps
+from reduction.report.uncertainty import expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_VALUES
 
@@ -77,5 +77,9 @@ def interval_table(view: TestView) -> Table | None:
         "Slope of stress on strain between two readings; none where a reading is flagged or the"
         " weights turn.",
         columns, rows, synthetic=view.is_synthetic,
-        remarks=[plus_minus_of_steps(factors_of(rows))],
+        remarks=[
+            plus_minus_of_tests(
+                factors_of(rows), [view], ["interval_modulus"], found_from=OF_STEPS
+            )
+        ],
     )  # fmt: skip

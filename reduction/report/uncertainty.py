@@ -24,7 +24,7 @@ from reduction.uncertainty.product import LINE_METHODS
 
 __all__ = [
     "DRAWN", "MANY", "NORMAL", "Expanded", "drawn_interval", "expand", "expanded_of",
-    "factor_words", "plus_minus", "plus_minus_of_steps", "plus_minus_of_tests", "shared_sources",
+    "factor_words", "plus_minus", "plus_minus_of_tests", "shared_sources",
 ]  # fmt: skip
 
 DRAWN = (
@@ -203,13 +203,3 @@ def plus_minus_of_tests(
     if any(f"{name}_uncertainty_contribution" in view.data for view in views for name in names):
         return f"{said} Nothing that is stated of the instruments reaches it."
     return f"{said} Not in it: {_INSTRUMENTS}."
-
-
-def plus_minus_of_steps(factors: Iterable[float], mark: str = "±") -> str:
-    """Return the sentence for a stepwise test, which has readings and no cycles."""
-    return plus_minus(
-        factors,
-        "scatter of the readings of length and tension",
-        left_out="calibration of length and load, diameter, gauge length",
-        mark=mark,
-    )

@@ -6,11 +6,14 @@ import numpy as np
 
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
 from reduction.report.style import COLOURS, DASHES, plot_text, shown
-from reduction.report.uncertainty import NORMAL, expanded_of, plus_minus_of_steps
+from reduction.report.uncertainty import NORMAL, expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_VALUES
 
-__all__ = ["draw_steps", "flagged_steps"]
+__all__ = ["OF_STEPS", "draw_steps", "flagged_steps"]
+
+OF_STEPS = "scatter of the readings of length, and of weight where that is stated"
+"""What a number of a stepwise test has for itself: there are readings and no cycles."""
 
 _TINTS = {"ascending": COLOURS[0], "descending": COLOURS[1]}
 
@@ -106,11 +109,14 @@ def _moduli(view: TestView) -> Figure:
                 marker={"size": 5, "symbol": "diamond", "color": COLOURS[2]},
             )
         )  # fmt: skip
+    said = plus_minus_of_tests(
+        [NORMAL], [view], ["interval_modulus"], found_from=OF_STEPS, mark="Bars, ±"
+    )
     return make_figure(
         f"{view.key}-step-moduli", f"{view.id}: interval and secant modulus",
         "Interval modulus: slope of stress on strain between two readings, at their middle."
         " Secant modulus: stress over strain of one reading."
-        f" {plus_minus_of_steps([NORMAL], 'Bars, ±')}",
+        f" {said}",
         [trace for trace in data if trace["y"]], synthetic=view.is_synthetic, height=400,
         xaxis=axis(in_strain.label("strain")), yaxis=axis(in_stress.label("modulus")),
     )  # fmt: skip
