@@ -50,6 +50,8 @@ class HeldPair:
         Why there is no stiffness; empty where there is.
     low_tension_standard_uncertainty, high_tension_standard_uncertainty : float
         Of the means at the ends (type A). [N]
+    low_strain : float
+        At the end of the lower hold, from which the stiffness counts; NaN where none is known. [1]
     """
 
     specimen: str
@@ -61,6 +63,7 @@ class HeldPair:
     reason: str = ""
     low_tension_standard_uncertainty: float = float("nan")
     high_tension_standard_uncertainty: float = float("nan")
+    low_strain: float = float("nan")
 
 
 def _end_of(values: Floats) -> tuple[float, float]:
@@ -191,6 +194,7 @@ def held_pairs(
             except (DataError, FitError) as error:
                 reason = str(error)
             ends = _level(low, low_mean), _level(high, high_mean)
+            known = low.strain[np.isfinite(low.strain)]
             pairs.append(
                 HeldPair(
                     specimen=name,
@@ -202,6 +206,7 @@ def held_pairs(
                     reason=reason,
                     low_tension_standard_uncertainty=ends[0][1],
                     high_tension_standard_uncertainty=ends[1][1],
+                    low_strain=_end_of(known)[0] if known.size > 2 else float("nan"),
                 )
             )
     return tuple(pairs)

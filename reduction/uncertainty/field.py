@@ -17,6 +17,7 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -73,7 +74,12 @@ class ErrorField:
 
 
 def error_field(
-    errors: InstrumentErrors, model: StrainModel, *, strain: ArrayLike, tension: ArrayLike
+    errors: InstrumentErrors,
+    model: StrainModel,
+    *,
+    strain: ArrayLike,
+    tension: ArrayLike,
+    held: Literal["position", "tension"] = "position",
 ) -> ErrorField:
     r"""What each shared error does to tension and strain at points of the plane.
 
@@ -93,6 +99,9 @@ def error_field(
         How position became strain, with the covariance of its coefficients.
     strain, tension : array_like, shape (...)
         Points, NaN where there is none. [1], [N]
+    held : {"position", "tension"}, optional
+        Which of both the temperature of the specimen leaves alone: what the machine (or a weight)
+        keeps to its set value, or at which a number is read.
 
     Returns
     -------
@@ -135,8 +144,13 @@ def error_field(
                      strain_slope_over_tension=missed[2])  # fmt: skip
         parts.append((Component("splice_method", errors.specimen), rows))
     if errors.stiffness:
-        # the rubber is warmer or colder than the test says: the cell reads what there is
-        rows = field_rows(load, tension=errors.stiffness * load, tension_slope=errors.stiffness)
+        # the rubber is warmer or colder than the test says: the cell reads what there is, or the
+        # specimen stretches less under what is hung on it
+        rows = (
+            field_rows(load, strain=-errors.stiffness * at, strain_slope=-errors.stiffness)
+            if held == "tension"
+            else field_rows(load, tension=errors.stiffness * load, tension_slope=errors.stiffness)
+        )
         parts.append((Component("temperature", errors.test), rows))
     if errors.strain_gain:
         rows = field_rows(load, strain=errors.strain_gain * at, strain_slope=errors.strain_gain)

@@ -38,7 +38,8 @@ def hold_contributions(
     Parameters
     ----------
     field_at : callable
-        Errors at strains [1] and tensions [N] of the specimen.
+        Errors at strains [1] and tensions [N] of the specimen, shape (n_points,); it is asked once.
+        In creep the machine keeps the tension, which the field has to know.
     hold : HoldResult
         As reduced.
 
@@ -81,26 +82,31 @@ def hold_contributions(
     [ 0.    -0.002] [3.2 4. ]
     """
     initial, final = hold.hold_initial_tension, hold.hold_final_tension
-    strain = np.array(hold.hold_strain)
-    middle = field_at(strain, np.array((initial + final) / 2))
-    first, last = (field_at(strain, np.array(one)).tension for one in (initial, final))
+    # the middle of the hold, both its ends, its long time, and the stated times
+    levels = [(initial + final) / 2, initial, final, hold.long_time_tension]
+    n_levels = len(levels)
+    field = field_at(
+        np.concatenate([np.full(n_levels, hold.hold_strain), hold.strain_at_time]),
+        np.concatenate([levels, hold.tension_at_time]),
+    )
+    first, last, long_time = field.tension[:, 1:n_levels].T
+    tension_slope, strain_slope = field.tension_slope[:, 0], field.strain_slope[:, 0]
     rate = hold.rate_per_decade
-    relaxation = middle.tension_slope * rate - rate * first / initial
-    creep = middle.strain_slope * rate
+    relaxation = tension_slope * rate - rate * first / initial
+    creep = strain_slope * rate
     is_creep = hold.kind == "creep"
     nothing = np.full(first.shape, np.nan)
-    over_time = field_at(hold.strain_at_time, hold.tension_at_time)
-    terms = middle.tension_slope[:, None] * hold.prony_tension
+    terms = tension_slope[:, None] * hold.prony_tension
     values = {
-        "hold_strain": middle.strain,
+        "hold_strain": field.strain[:, 0],
         "hold_initial_tension": first,
         "hold_final_tension": last,
         "relaxation_drop": (1 - hold.relaxation_drop) * first / initial - last / initial,
         "relaxation_rate_per_decade": nothing if is_creep else relaxation,
         "creep_rate_per_decade": creep if is_creep else nothing,
-        "tension_at_time": over_time.tension,
-        "strain_at_time": over_time.strain,
+        "tension_at_time": field.tension[:, n_levels:],
+        "strain_at_time": field.strain[:, n_levels:],
         "prony_tension": terms,
-        "long_time_tension": field_at(strain, np.array(hold.long_time_tension)).tension,
+        "long_time_tension": long_time,
     }
-    return Contributions(middle.component, values)
+    return Contributions(field.component, values)
