@@ -1,10 +1,12 @@
-r"""What shared errors do to a stepwise test: weights, a gauge length, a diameter.
+r"""What shared errors do to a stepwise test: weights, a gauge length, strain, warmth, a diameter.
 
 .. math::
 
     \frac{\delta E_{sec}}{E_{sec}} &= \frac{\delta T}{T}
-        + \frac{1 + \varepsilon}{\varepsilon} \frac{\delta g}{g} - 2 \frac{\delta d}{d} \\
-    \frac{\delta E_{int}}{E_{int}} &= g_T + \frac{\delta g}{g} - 2 \frac{\delta d}{d}
+        + \frac{1 + \varepsilon}{\varepsilon} \frac{\delta g}{g} - g_\varepsilon + s
+        - 2 \frac{\delta d}{d} \\
+    \frac{\delta E_{int}}{E_{int}} &= g_T + \frac{\delta g}{g} - g_\varepsilon + s
+        - 2 \frac{\delta d}{d}
 
 References
 ----------
@@ -37,7 +39,7 @@ def stepwise_contributions(
     result : StepwiseResult
         As reduced, with the standard uncertainty of its gauge length.
     errors : InstrumentErrors
-        Of the weights (tension) and of the diameter.
+        Of the weights (tension), of strain, of the temperature and of the diameter.
     area : float
         Nominal. [m2]
 
@@ -80,17 +82,21 @@ def stepwise_contributions(
     for source, gain, offset in (
         ("tension_gain", errors.tension_gain, 0.0),
         ("tension_offset", 0.0, errors.tension_offset),
-        ("temperature", errors.stiffness, 0.0),
     ):
         if gain or offset:
-            of = errors.test if source == "temperature" else errors.tension_instrument
-            component.append(Component(source, of))
+            component.append(Component(source, errors.tension_instrument))
             change = gain * load + offset
             with np.errstate(divide="ignore", invalid="ignore"):
                 of_secant = change / (area * strain)
-            # dead weights are what they are in the warmth: the rubber's modulus is not
-            shown = nothing if source == "temperature" else change
-            rows.append((shown, nothing, of_secant, gain * interval))
+            rows.append((change, nothing, of_secant, gain * interval))
+    for of_strain, own in (
+        # dead weights are what they are in the warmth: a stiffer rubber stretches less under them
+        (-errors.stiffness, Component("temperature", errors.test)),
+        (errors.strain_gain, Component("strain_gain", errors.strain_model or errors.specimen)),
+    ):
+        if of_strain:
+            component.append(own)
+            rows.append((nothing, of_strain * strain, -of_strain * secant, -of_strain * interval))
     relative = result.gauge_length_standard_uncertainty / result.gauge_length
     if np.isfinite(relative) and relative > 0:
         component.append(Component("gauge_length", errors.specimen))

@@ -253,9 +253,15 @@ def stepwise(**changed):
     return reduce_stepwise(replace(STEPS, **changed), area=area, stated_gauge_length=gauge)
 
 
-@pytest.mark.parametrize("source", ["tension_gain", "tension_offset", "gauge", "diameter"])
+SIZE_OF_STEPS = {
+    "tension_gain": 1e-3, "tension_offset": 0.01, "gauge": 1e-5, "diameter": 1e-5,
+    "stiffness": 1e-3, "strain_gain": 1e-3,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("source", SIZE_OF_STEPS)
 def test_a_stepwise_test_changes_as_its_readings_say(source):
-    size = {"tension_gain": 1e-3, "tension_offset": 0.01, "gauge": 1e-5, "diameter": 1e-5}[source]
+    size = SIZE_OF_STEPS[source]
     wide = np.sqrt(4 * AREA / np.pi)
 
     def wrong(way):
@@ -263,6 +269,10 @@ def test_a_stepwise_test_changes_as_its_readings_say(source):
             return stepwise(gauge=0.155 + way * size)
         if source == "diameter":
             return stepwise(area=np.pi * (wide + way * size) ** 2 / 4)
+        if source in ("stiffness", "strain_gain"):
+            # a stiffer tether stretches less under the same weights
+            longer = 1 / (1 + way * size) if source == "stiffness" else 1 + way * size
+            return stepwise(length=0.155 + longer * (STEPS.length - 0.155))
         gain, offset = (size, 0.0) if source == "tension_gain" else (0.0, size)
         return stepwise(tension=STEPS.tension * (1 + way * gain) + way * offset)
 
