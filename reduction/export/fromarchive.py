@@ -17,14 +17,21 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.open import open_archive
+from reduction.archive.pieceparts import parts_of
 from reduction.errors import DataError, SettingsError
 from reduction.export.product import ExportLine
-from reduction.record import Floats
+from reduction.export.spread import CurveSpread
+from reduction.record import Bools, Floats
+from reduction.uncertainty.combine import combined_standard_uncertainty
 
 __all__ = ["CurveName", "line_from_archive"]
 
 CurveName = Literal["mean", "ascending", "descending"]
 _BRANCHES = ("ascending", "descending")
+_NOT_APART = (
+    "what the test shares with others, as a load cell, is not kept apart: all that is known of the "
+    "uncertainty counts as that of the curve alone"
+)
 _STEP_BACK = 1e-3  # of the greatest tension: noise of a mean, not a loop
 
 
@@ -118,8 +125,10 @@ def _of_hose(archive: xr.Dataset, name: str | None) -> dict[str, Any]:
     broken = int(archive["hose_state"].attrs["flag_masks"][flags.index("broken")])
     known = np.isfinite(strain) & np.isfinite(tension) & ((state & broken) == 0)
     strain, tension = strain[known], tension[known]
+    spread = archive.get("tension_standard_uncertainty")
     return {
         "name": str(archive["hose"].values[place]),
+        "spread": None if spread is None else CurveSpread(spread.values[place][known]),
         **_rising(strain, tension),
         "curve": "predicted from construction, up to the break of the cords",
         "tested": (math.nan, math.nan),
@@ -165,8 +174,12 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
     if np.flatnonzero(known).size <= np.ptp(np.flatnonzero(known)):
         notes.append("strain bins without a mean lie within the curve: a straight line joins them")
     strain, tension = strain[known], tension[known]
+    spread = _spread_of(archive, place, rows, known)
+    if spread is not None and spread.random is None:
+        notes.append(_NOT_APART)
     return {
         "name": specimen,
+        "spread": spread,
         **_rising(strain, tension),
         "curve": words,
         "tested": (float(strain[0]), float(strain[-1])),
@@ -181,6 +194,22 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         ),
         "notes": tuple(notes),
     }
+
+
+def _spread_of(
+    archive: xr.Dataset, place: int, branches: list[int], known: Bools
+) -> CurveSpread | None:
+    """Uncertainty of one branch, or of the mean of both; None where the archive has none."""
+    if "branch_tension_standard_uncertainty" not in archive:
+        return None
+    own, shared = parts_of(archive, "branch_tension", place, of="tension")
+    own = own[branches]
+    # what is of each branch alone scatters, what both share is in their mean by its sign
+    random = np.sqrt(np.sum(own**2, axis=0))[known] / len(branches)
+    if shared is None:
+        return CurveSpread(random)
+    rows = shared.values["tension"][:, branches].mean(axis=1)[:, known]
+    return CurveSpread(combined_standard_uncertainty(rows, random), random, shared.component, rows)
 
 
 def _rising(strain: Floats, tension: Floats) -> dict[str, Floats]:

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from reduction.export.product import ExportLine
-from reduction.export.table import TableColumn, ValueTable
+from reduction.export.spread import CurveSpread
+from reduction.export.table import TableColumn, ValueTable, spread_columns
 from reduction.pipeline.deployed import DeployedLine
 
 __all__ = ["assembly_table", "line_from_assembly"]
@@ -38,18 +39,7 @@ def assembly_table(line: DeployedLine) -> ValueTable:
     columns = [
         TableColumn("total_length", "m", "end to end", np.array(assembly.total_length)),
         TableColumn("tension", "N", "of the assembly", np.array(assembly.tension)),
-        TableColumn(
-            "tension_standard_uncertainty", "N", "of the curve, at one length: of both parts "
-            "that follow", np.array(assembly.standard_uncertainty),
-        ),
-        TableColumn(
-            "tension_random_standard_uncertainty", "N", "of the curve by itself",
-            np.array(assembly.random_standard_uncertainty),
-        ),
-        TableColumn(
-            "tension_shared_standard_uncertainty", "N", "of what its tests share with each other "
-            "and with other tests, as a load cell", np.array(assembly.shared_standard_uncertainty),
-        ),
+        *spread_columns(_spread_of(line), both="of the curve, at one length: of both parts"),
         TableColumn(
             "strain", "1", "of the length at which the assembly goes slack",
             np.array(deployed.strain),
@@ -98,6 +88,18 @@ def assembly_table(line: DeployedLine) -> ValueTable:
         sources=(line.splices, *line.source.sources),
         notes=(*deployed.notes, *line.curve.notes, *line.source.notes),
         is_synthetic=line.source.is_synthetic,
+        component=assembly.component,
+        contribution=np.array(assembly.contribution),
+    )
+
+
+def _spread_of(line: DeployedLine) -> CurveSpread:
+    assembly = line.deployed.assembly
+    return CurveSpread(
+        np.array(assembly.standard_uncertainty),
+        np.array(assembly.random_standard_uncertainty),
+        assembly.component,
+        np.array(assembly.contribution),
     )
 
 
@@ -144,6 +146,7 @@ def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
         tension=np.array(assembly.tension),
         curve=f"assembly of {line.words}; tension of all tethers together",
         tested=tested,
+        spread=_spread_of(line),
         sources=(
             line.splices,
             *line.source.sources,

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from reduction.export.product import ExportLine
-from reduction.export.table import TableColumn, ValueTable
+from reduction.export.spread import CurveSpread
+from reduction.export.table import TableColumn, ValueTable, spread_columns
 from reduction.lookup.composite import CompositeCurve
 from reduction.lookup.source import PieceSource, used_of
 from reduction.record import Bools
@@ -74,19 +75,9 @@ def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
         columns=(
             TableColumn("strain", "1", "nominal strain", np.array(curve.strain)),
             TableColumn("tension", "N", "tension", np.array(curve.tension)),
-            TableColumn(
-                "tension_standard_uncertainty", "N", "of both parts that follow",
-                np.array(curve.standard_uncertainty),
-            ),
-            TableColumn(
-                "tension_random_standard_uncertainty", "N", "of the pieces by themselves, of what "
-                "is between them, and of what making the curve rise has moved",
-                np.array(curve.random_standard_uncertainty),
-            ),
-            TableColumn(
-                "tension_shared_standard_uncertainty", "N", "of what the tests share with each "
-                "other and with other tests, as a load cell",
-                np.array(curve.shared_standard_uncertainty),
+            *spread_columns(
+                _spread_of(curve), "of the pieces by themselves, of what is between them, and of "
+                "what making the curve rise has moved",
             ),
             TableColumn("piece", "", "with the greatest weight; none in a gap", piece),
             TableColumn(
@@ -110,7 +101,18 @@ def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
             *([f"DOUBTFUL: {curve.doubt}"] if curve.doubt else []), *curve.notes, *source.notes,
         ),
         is_synthetic=source.is_synthetic,
+        component=curve.component,
+        contribution=np.array(curve.contribution),
     )  # fmt: skip
+
+
+def _spread_of(curve: CompositeCurve) -> CurveSpread:
+    return CurveSpread(
+        np.array(curve.standard_uncertainty),
+        np.array(curve.random_standard_uncertainty),
+        curve.component,
+        np.array(curve.contribution),
+    )
 
 
 def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: Any) -> ExportLine:
@@ -161,6 +163,7 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
         tension=np.array(curve.tension),
         curve=f"composite of {tests}, {_WAYS[source.branch]}; one curve, no loop",
         tested=(float(curve.strain[first]), float(curve.strain[-1])),
+        spread=_spread_of(curve),
         sources=(
             *source.sources,
             *(f"{name.replace('_', ' ')}: stated at the export" for name in given),

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 
 from reduction.errors import SettingsError
 from reduction.export.dynamics import Syrope, Viscoelasticity
+from reduction.export.spread import CurveSpread
 from reduction.record import Floats, freeze_arrays
 
 __all__ = ["CYLINDER", "SEA_WATER", "ExportLine", "Hydrodynamics"]
@@ -72,6 +73,8 @@ class ExportLine:
         Where it was found.
     syrope : Syrope, optional
         Where it is known.
+    spread : CurveSpread, optional
+        Uncertainty of the tensions, where it is known.
     hydrodynamics : Hydrodynamics
         With their source.
     sources : tuple of str
@@ -95,6 +98,7 @@ class ExportLine:
     material: str = ""
     viscoelasticity: Viscoelasticity | None = None
     syrope: Syrope | None = None
+    spread: CurveSpread | None = None
     hydrodynamics: Hydrodynamics = field(default_factory=lambda: CYLINDER)
     sources: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()

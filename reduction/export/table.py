@@ -1,4 +1,4 @@
-"""Curves and look-up tables as CSV, JSON, LaTeX, Markdown and netCDF."""
+"""Curves and look-up tables as CSV, JSON, LaTeX and Markdown."""
 
 from __future__ import annotations
 
@@ -7,24 +7,35 @@ import io
 import json
 import math
 import re
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, field
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from reduction import __version__
-from reduction.archive.whole import whole_file
-from reduction.errors import ArchiveError, SettingsError
+from reduction.errors import SettingsError
 from reduction.export.guards import range_of
 from reduction.export.header import number
 from reduction.export.product import ExportLine
+from reduction.export.spread import CurveSpread
 from reduction.export.thin import curve_from_zero
 from reduction.record import Bools, Floats
+from reduction.uncertainty.product import Component
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["TableColumn", "ValueTable", "curve_table", "table_text_of", "write_netcdf"]
+__all__ = [
+    "CONTRIBUTION",
+    "SIGNED",
+    "TableColumn",
+    "ValueTable",
+    "curve_table",
+    "spread_columns",
+    "table_text_of",
+]
+
+CONTRIBUTION = "tension_uncertainty_contribution"
+SIGNED = "what one standard uncertainty of each shared error adds to the tension"
+"""What stands where a format has a place for contributions."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +50,19 @@ class TableColumn:
 
 @dataclass(frozen=True)
 class ValueTable:
-    """A table, with a sentence on what it is and where its numbers are from."""
+    """A table, with a sentence on what it is and where its numbers are from.
+
+    ``contribution`` is what each of the errors ``component`` adds to the tension of each row,
+    signed, shape (n_components, n_rows), in N; json and netcdf have a place for it.
+    """
 
     title: str
     columns: tuple[TableColumn, ...]
     sources: tuple[str, ...]
     notes: tuple[str, ...] = ()
     is_synthetic: bool = False
+    component: tuple[Component, ...] = ()
+    contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
 
     def __post_init__(self) -> None:
         """Check that the columns are of one length."""
@@ -59,17 +76,38 @@ def curve_table(line: ExportLine) -> ValueTable:
     at, load, words = curve_from_zero(line.strain, line.tension)
     low, high = line.tested
     tested = (at >= low * (1 - 1e-9)) & (at <= high * (1 + 1e-9)) & (at > 0)
+    spread = None if line.spread is None else line.spread.at(at, line.strain)
     return ValueTable(
         title=f"{line.name}: {line.curve}",
         columns=(
             TableColumn("strain", "1", "nominal strain", at),
             TableColumn("tension", "N", "tension", load),
+            *(() if spread is None else spread_columns(spread)),
             TableColumn("is_tested", "", "inside the strains that were tested", tested),
         ),
         sources=line.sources,
         notes=(*line.notes, range_of(line), *((f"at the start: {words}",) if words else ())),
         is_synthetic=line.is_synthetic,
+        component=() if spread is None else spread.component,
+        contribution=np.empty((0, at.size)) if spread is None else spread.contribution,
     )
+
+
+def spread_columns(
+    spread: CurveSpread, random: str = "of the curve by itself", both: str = "of both parts"
+) -> tuple[TableColumn, ...]:
+    """Standard uncertainty of the tensions of a curve, and its parts where they are known."""
+    name = "standard_uncertainty"
+    if spread.random is None:
+        return (TableColumn(f"tension_{name}", "N", "of the tension (k = 1)", spread.standard),)
+    return (
+        TableColumn(f"tension_{name}", "N", f"{both} that follow (k = 1)", spread.standard),
+        TableColumn(f"tension_random_{name}", "N", random, spread.random),
+        TableColumn(
+            f"tension_shared_{name}", "N", "of what the tests share with each other and with other "
+            "tests, as a load cell", spread.shared,
+        ),
+    )  # fmt: skip
 
 
 def _shown(table: ValueTable, units: UnitSystem) -> tuple[list[str], list[list[str]]]:
@@ -166,7 +204,21 @@ def _json(table: ValueTable, units: UnitSystem) -> str:
         unit, factor = display_unit(column.unit, units) if column.unit else ("", 1.0)
         shown[column.name] = unit
         values[column.name] = [_plain(value, factor) for value in column.values.tolist()]
-    return json.dumps(document | {"units": shown, "values": values}, indent=1) + "\n"
+    document |= {"units": shown, "values": values} | _contributions(table, units)
+    return json.dumps(document, indent=1) + "\n"
+
+
+def _contributions(table: ValueTable, units: UnitSystem) -> dict[str, object]:
+    """Signed contributions of the shared errors to the tension; nothing where there are none."""
+    if not table.component:
+        return {}
+    unit, factor = display_unit("N", units)
+    rows = [
+        {"source": one.source, "of": one.of, "number": one.number}
+        | {"contribution": [_plain(value, factor) for value in row]}
+        for one, row in zip(table.component, table.contribution.tolist(), strict=True)
+    ]
+    return {f"{CONTRIBUTION}s": {"unit": unit, "meaning": SIGNED, "sources": rows}}
 
 
 def _latex(table: ValueTable, units: UnitSystem) -> str:
@@ -207,54 +259,3 @@ def _markdown(table: ValueTable, units: UnitSystem) -> str:
             "",
         ]
     )
-
-
-def write_netcdf(table: ValueTable, path: Path) -> None:
-    """Write a table as a netCDF file, SI, with its sources as attributes.
-
-    Parameters
-    ----------
-    table : ValueTable
-        What is written.
-    path : pathlib.Path
-        The file; it appears whole or not at all.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
-    variables = {}
-    for column in table.columns:
-        is_flag = column.values.dtype == np.bool_
-        values = column.values.astype(np.int8) if is_flag else column.values
-        about: dict[str, object] = {"long_name": column.meaning}
-        if is_flag:
-            about |= {"flag_values": np.array([0, 1], np.int8), "flag_meanings": "no yes"}
-        elif column.values.dtype.kind != "U":
-            about["units"] = column.unit
-        variables[column.name] = (("point",), values, about)
-    dataset = xr.Dataset(
-        variables,
-        attrs={
-            "Conventions": "CF-1.11 ACDD-1.3",
-            "title": table.title,
-            "source": "; ".join(table.sources),
-            "comment": "; ".join(table.notes) or "none",
-            "synthetic": "yes" if table.is_synthetic else "no",
-            "history": f"reduction {__version__} export",
-            "software_version": __version__,
-        },
-    )
-    encoding = {
-        name: {"_FillValue": np.nan if array.dtype == np.float64 else None}
-        for name, array in dataset.variables.items()
-        if array.dtype.kind != "U"
-    }
-    try:
-        with whole_file(path) as part:
-            dataset.to_netcdf(part, format="NETCDF4", engine="netcdf4", encoding=encoding)
-    except (OSError, RuntimeError) as error:
-        raise ArchiveError(
-            f"{path} cannot be written", found=getattr(error, "strerror", None) or str(error)
-        ) from error

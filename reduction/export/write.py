@@ -13,10 +13,11 @@ from reduction.errors import SettingsError
 from reduction.export.abaqus import abaqus_text
 from reduction.export.moordyn import MoorDynForm, moordyn_files
 from reduction.export.moorpy import MoorPyForm, moorpy_files
+from reduction.export.netcdftable import write_netcdf
 from reduction.export.openfast import openfast_files
 from reduction.export.orcaflex import orcaflex_text
 from reduction.export.product import ExportLine
-from reduction.export.table import ValueTable, curve_table, table_text_of, write_netcdf
+from reduction.export.table import ValueTable, curve_table, table_text_of
 from reduction.export.whoicable import WhoiCableForm, whoicable_text
 from reduction.units import UnitSystem
 

@@ -8,12 +8,12 @@ import xarray as xr
 from export_lines import line
 
 from reduction.errors import ArchiveError, SettingsError
+from reduction.export.netcdftable import write_netcdf
 from reduction.export.table import (
     TableColumn,
     ValueTable,
     curve_table,
     table_text_of,
-    write_netcdf,
 )
 
 TABLE = ValueTable(
