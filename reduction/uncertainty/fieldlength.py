@@ -36,11 +36,14 @@ def position_parts(
         begin, offset = model.coefficients["reference_position"], 0.0
     if model.method == "extensometer" or not (gain or offset):
         return []
-    position = position_by_model(model, strain=at, tension=load)
     step = steps_of(load)
-    longer = position_by_model(model, strain=at, tension=load + step)
-    shorter = position_by_model(model, strain=at, tension=load - step)
-    slope = 1 / (position_by_model(model, strain=at + 1, tension=load) - position)
+    # all points at once: what a model costs is its call
+    position, further, longer, shorter = position_by_model(
+        model,
+        strain=np.stack([at, at + 1, at, at]),
+        tension=np.stack([load, load, load + step, load - step]),
+    )
+    slope = 1 / (further - position)
     found: list[FieldPart] = []
     if gain:
         rows = field_rows(
@@ -106,28 +109,21 @@ def coefficient_parts(
     root = coefficient_errors(model)
     if not root.size:
         return []
-    position = position_by_model(model, strain=at, tension=load)
-    reach = _REACH * (position_by_model(model, strain=at + 1, tension=load) - position)
+    position, further = position_by_model(
+        model, strain=np.stack([at, at + 1]), tension=np.stack([load, load])
+    )
+    reach = _REACH * (further - position)
     push = steps_of(load)
-
-    def strain_error(place: Floats, force: Floats) -> Floats:
-        _, slope = strain_sensitivity_of(model, position=place, tension=force)
-        return np.tensordot(root.T, slope, axes=1)
-
-    def strain_at(place: Floats, force: Floats) -> Floats:
-        return strain_by_model(model, position=place, tension=force)
-
-    centre = strain_error(position, load)
-    by_position = (strain_error(position + reach, load) - strain_error(position - reach, load)) / (
-        2 * reach
-    )
-    by_tension = (strain_error(position, load + push) - strain_error(position, load - push)) / (
-        2 * push
-    )
-    of_position = (strain_at(position + reach, load) - strain_at(position - reach, load)) / (
-        2 * reach
-    )
-    of_tension = (strain_at(position, load + push) - strain_at(position, load - push)) / (2 * push)
+    # the point itself, then one step of position and one of tension to either side
+    place = np.stack([position, position + reach, position - reach, position, position])
+    force = np.stack([load, load, load, load + push, load - push])
+    _, slope = strain_sensitivity_of(model, position=place, tension=force)
+    centre, farther, nearer, above, below = np.moveaxis(np.tensordot(root.T, slope, axes=1), 1, 0)
+    strain = strain_by_model(model, position=place, tension=force)
+    by_position = (farther - nearer) / (2 * reach)
+    by_tension = (above - below) / (2 * push)
+    of_position = (strain[1] - strain[2]) / (2 * reach)
+    of_tension = (strain[3] - strain[4]) / (2 * push)
     along = by_position / of_position
     across = by_tension - along * of_tension
     of = errors.strain_model or errors.specimen

@@ -102,8 +102,8 @@ def strain_by_tension(model: StrainModel, at: Floats, load: Floats) -> Floats:
         return np.zeros(load.shape)
     position = position_by_model(model, strain=at, tension=load)
     step = steps_of(load)
-    above, below = (
-        strain_by_model(model, position=position, tension=load + way * step) for way in (1, -1)
+    above, below = strain_by_model(
+        model, position=np.stack([position, position]), tension=np.stack([load + step, load - step])
     )
     return np.asarray((above - below) / (2 * step))
 

@@ -119,35 +119,35 @@ def loop_contributions(
     """
     # what the machine holds the temperature does not move, and the field knows no machine
     still = replace(errors, stiffness=0.0)
-    ends = [
-        error_field(
-            still, model, strain=mean_strain + way * strain_amplitude,
-            tension=mean_tension + way * tension_amplitude,
-        )
-        for way in (1, -1)
-    ]  # fmt: skip
-    peak, valley = ends
-    centre = error_field(still, model, strain=mean_strain, tension=mean_tension)
-    tension_half = (peak.tension - valley.tension) / 2
-    strain_half = (peak.strain - valley.strain) / 2
+    field = error_field(
+        still,
+        model,
+        strain=np.stack([mean_strain + way * strain_amplitude for way in (1, -1, 0)]),
+        tension=np.stack([mean_tension + way * tension_amplitude for way in (1, -1, 0)]),
+    )
+    # peak, valley and centre
+    top, foot, _ = np.moveaxis(field.tension, 1, 0)
+    top_strain, foot_strain, _ = np.moveaxis(field.strain, 1, 0)
+    tension_half = (top - foot) / 2
+    strain_half = (top_strain - foot_strain) / 2
     stretch = strain_half / strain_amplitude
     stiffer = tension_half / tension_amplitude - stretch
-    wider = centre.divergence
+    wider = field.divergence[:, 2]
     # E'' is H / (pi strain_amplitude^2)
     lossier = wider - 2 * stretch
     values = {
-        "mean_tension": (peak.tension + valley.tension) / 2,
+        "mean_tension": (top + foot) / 2,
         "tension_amplitude": tension_half,
-        "mean_strain": (peak.strain + valley.strain) / 2,
+        "mean_strain": (top_strain + foot_strain) / 2,
         "strain_amplitude": strain_half,
-        "peak_tension": peak.tension,
-        "valley_tension": valley.tension,
+        "peak_tension": top,
+        "valley_tension": foot,
         "apparent_spring_constant": stiffer * apparent_spring_constant,
         "hysteresis_energy": wider * hysteresis_energy,
         "storage_spring_constant": stiffer * storage_spring_constant,
         "loss_spring_constant": lossier * loss_spring_constant,
     }
-    component = peak.component
+    component = field.component
     if errors.stiffness:
         moved = {
             "apparent_spring_constant": apparent_spring_constant,
@@ -177,7 +177,7 @@ def loop_contributions(
         work = _LAG_SHAPE[waveform] * frequency * tension_amplitude * strain_amplitude
         ramps = 1.0 if waveform == "sinusoidal" else speed_ratio
         # splices that are taken to stretch by the late tension are late too
-        late = 1 - centre.strain_by_tension * apparent_spring_constant
+        late = 1 - field.strain_by_tension[2] * apparent_spring_constant
         of_lag = {
             "hysteresis_energy": -errors.lag * work * ramps * late,
             "storage_spring_constant": turn * loss_spring_constant * late,
