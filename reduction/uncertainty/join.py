@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from reduction.record import Floats
-from reduction.uncertainty.product import Contributions
+from reduction.uncertainty.product import Component, Contributions
 
 __all__ = ["added", "merged", "renamed", "stacked"]
 
@@ -49,10 +49,10 @@ def merged(parts: Sequence[Contributions]) -> Contributions:
     >>> print([one.source for one in both.component], both.values["force"].ravel())
     ['tension_gain', 'tension_offset'] [0. 2.]
     """
-    component = tuple(sorted({one for part in parts for one in part.component}))
+    component, place = _together(parts)
     values = {}
     for part in parts:
-        rows = [component.index(one) for one in part.component]
+        rows = [place[one] for one in part.component]
         for name, array in part.values.items():
             table = np.zeros((len(component), *array.shape[1:]))
             table[rows] = array
@@ -90,10 +90,10 @@ def added(parts: Sequence[Contributions]) -> Contributions:
     >>> print(both.values["force"])
     [1.5]
     """
-    component = tuple(sorted({one for part in parts for one in part.component}))
+    component, place = _together(parts)
     values: dict[str, Floats] = {}
     for part in parts:
-        rows = [component.index(one) for one in part.component]
+        rows = [place[one] for one in part.component]
         for name, array in part.values.items():
             table = values.setdefault(name, np.zeros((len(component), *array.shape[1:])))
             table[rows] += array
@@ -131,15 +131,15 @@ def stacked(entries: Sequence[Contributions]) -> Contributions:
     [[2. 0.]
      [0. 3.]]
     """
-    component = tuple(sorted({one for part in entries for one in part.component}))
+    component, place = _together(entries)
     shapes = {name: array.shape[1:] for part in entries for name, array in part.values.items()}
     values = {}
+    rows = [[place[one] for one in part.component] for part in entries]
     for name, shape in shapes.items():
         table = np.zeros((len(component), len(entries), *shape))
         for index, part in enumerate(entries):
             if name in part.values:
-                rows = [component.index(one) for one in part.component]
-                table[rows, index] = part.values[name]
+                table[rows[index], index] = part.values[name]
         values[name] = table
     return Contributions(component, values)
 
@@ -176,3 +176,11 @@ def renamed(found: Contributions, names: dict[str, str]) -> Contributions:
     ['peak_tension']
     """
     return Contributions(found.component, {new: found.values[name] for name, new in names.items()})
+
+
+def _together(
+    parts: Sequence[Contributions],
+) -> tuple[tuple[Component, ...], dict[Component, int]]:
+    """Components of all parts, each once, and the row of each."""
+    component = tuple(sorted({one for part in parts for one in part.component}))
+    return component, {one: row for row, one in enumerate(component)}
