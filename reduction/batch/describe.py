@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from reduction.batch.instruments import instruments_of
 from reduction.batch.pulls import pull_tests
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
@@ -47,6 +48,37 @@ def _plain(values: Floats) -> list[float | None]:
     return [None if math.isnan(value) else value for value in values.tolist()]
 
 
+def _strain_document(campaign: Campaign, model: StrainModel) -> dict[str, Any]:
+    """A strain model, and all that its covariance and the errors of its load cells follow from."""
+    document: dict[str, Any] = {
+        "method": model.method,
+        "coefficients": model.coefficients,
+        "splice_law": model.splice_law,
+        "marks": [
+            list(row)
+            for row in zip(
+                model.mark_test,
+                model.mark_hold,
+                _plain(model.mark_position),
+                _plain(model.mark_tension),
+                model.mark_load_cell or (None,) * len(model.mark_test),
+                strict=True,
+            )
+        ],
+    }
+    if model.mark_test:
+        # every reading of the specimen: the covariance has no digit that these do not give again
+        tape = campaign.marks[model.specimen]
+        lengths = (tape.near_toe, tape.far_toe, tape.far_thimble)
+        document["tape"] = {
+            "standard_uncertainty": tape.reading_uncertainty,
+            "readings": [
+                list(row) for row in zip(tape.test, tape.hold, *map(_plain, lengths), strict=True)
+            ],
+        }
+    return document
+
+
 def settings_json(
     campaign: Campaign,
     survey: Survey,
@@ -67,22 +99,13 @@ def settings_json(
             for _, layout in plan.files
         },
         "specimens": {name: asdict(campaign.specimens[name]) for name in plan.specimens},
-        "strain": {
-            model.specimen: {
-                "method": model.method,
-                "coefficients": model.coefficients,
-                "marks": [
-                    [test, hold, position, tension]
-                    for test, hold, position, tension in zip(
-                        model.mark_test,
-                        model.mark_hold,
-                        _plain(model.mark_position),
-                        _plain(model.mark_tension),
-                        strict=True,
-                    )
-                ],
+        "strain": {model.specimen: _strain_document(campaign, model) for model in models},
+        "instruments": {
+            errors.specimen: {
+                "tension": errors.tension_instrument,
+                "crosshead_position": errors.position_instrument,
             }
-            for model in models
+            for errors in instruments_of(campaign, survey, models)
         },
         "history": None
         if history is None
@@ -111,6 +134,7 @@ def settings_json(
                 "tension_low": pull.tension_low,
                 "tension_high": pull.tension_high,
                 "instruments": None if origin is None else asdict(origin.errors),
+                "strain": None if origin is None else _strain_document(campaign, origin.model),
             }
             for name, pull, origin in zip(plan.specimens, pulls, read_with, strict=True)
         }

@@ -21,9 +21,10 @@ def instruments_of(
 ) -> tuple[InstrumentErrors, ...]:
     """Stated errors of each specimen, with the names by which tests share them.
 
-    Tests share the load cell and the machine that they name in the same words, and a strain
-    model that was pooled over the campaign; marks of one test are its own.  A diameter of which
-    nothing is stated has the scatter of its readings.
+    Tests share the load cell and the machine that they name in the same words, and the strain
+    model of a specimen where it is of one method and of marks pooled over the campaign; what
+    rests on marks of one test is its own.  A diameter of which nothing is stated has the scatter
+    of its readings.
     """
     plan = survey.plan
     return tuple(
@@ -34,9 +35,7 @@ def instruments_of(
                 test=plan.log,
                 load_cell=plan.attributes.get("load_cell", ""),
                 machine=plan.attributes.get("machine", ""),
-                strain_model=f"{model.specimen}, marks of {plan.log}"
-                if model.marks_from == "this test"
-                else model.specimen,
+                strain_model=_name_of(model, plan.log),
             ),
             campaign.specimens[model.specimen],
         )
@@ -58,6 +57,14 @@ def stepwise_instruments(campaign: Campaign, survey: Survey) -> tuple[Instrument
         )
         for number, name in enumerate(survey.plan.specimens, start=1)
     )
+
+
+def _name_of(model: StrainModel, log: str) -> str:
+    """Name of a strain model: models that differ in their coefficients have names that differ."""
+    # constant-fraction has the relaxed length of its own slack row, wherever its share is from
+    has_own_length = model.method == "constant-fraction" and log in model.mark_test
+    is_own = model.marks_from == "this test" or has_own_length
+    return f"{model.specimen}, {model.method}" + (f", marks of {log}" if is_own else "")
 
 
 def _with_readings(errors: InstrumentErrors, specimen: Specimen) -> InstrumentErrors:

@@ -164,7 +164,12 @@ def _is_complete(history: dict[str, Any] | None) -> bool:
 
 
 def _marks_agree(before: dict[str, Any], now: dict[str, Any], failed: Sequence[str]) -> bool:
-    """Whether the marks of the tests that both have are the same, those that failed left out."""
+    """Whether the tape and the marks of the tests that both have are the same.
+
+    Marks of tests that failed are left out: what their logs said of them is not known now.
+    """
+    if before.get("tape") != now.get("tape"):
+        return False
     tests = {row[0] for row in before["marks"]} & {row[0] for row in now["marks"]} - set(failed)
     old, new = ([row for row in part["marks"] if row[0] in tests] for part in (before, now))
     return bool(old == new)

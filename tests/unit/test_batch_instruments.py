@@ -1,0 +1,73 @@
+"""By what names tests share the errors of their strain models."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from reduction.batch.instruments import instruments_of
+from reduction.batch.survey import Survey
+from reduction.campaign.plan import TestPlan
+from reduction.record import Specimen, SpliceMarks
+from reduction.settings import ReductionSettings, StrainSettings
+from reduction.strain.fit import fit_strain_model
+from reduction.uncertainty.stated import StatedErrors
+
+# lengths of WHOI-2005-10, Table 3, new tether, in feet; the slack row of T-2 reads otherwise
+MARKS = SpliceMarks(
+    "new", ("T-1", "T-1", "T-1", "T-2"), ("slack", "min", "max", "slack"),
+    near_toe=np.array([2.06, 2.42, 2.69, 2.06]), far_toe=np.array([10.44, 17.22, 21.72, 10.48]),
+    far_thimble=np.array([12.26, 19.37, 24.12, 12.26]),
+)  # fmt: skip
+METHODS = ("tension-driven", "marks", "strain-ratio", "constant-fraction", "gauge-length")
+CAMPAIGN = SimpleNamespace(
+    uncertainty=StatedErrors(), specimens={"new": Specimen("new", gauge_length=8.4)}
+)
+
+
+def model_of(log, method):
+    return fit_strain_model(
+        CAMPAIGN.specimens["new"], test_id=log, marks=MARKS,
+        mark_tension=np.array([0.0, 380.0, 600.0, 0.0]), settings=StrainSettings(method=method),
+        reference_position=0.0,
+    )  # fmt: skip
+
+
+def name_of(log, model):
+    plan = TestPlan(
+        id=log, kind="cyclic", files=((f"{log}.csv", "logger"),), specimens=("new",), order=None,
+        control="position", waveform="triangular", target_strain=(), attributes={},
+        settings=ReductionSettings(), log=log, step_place=0,
+    )  # fmt: skip
+    return instruments_of(CAMPAIGN, Survey(plan), [model])[0].strain_model
+
+
+def test_models_of_one_name_have_the_same_coefficients():
+    """Three tests: one with marks of its own, one with a slack row alone, two without any."""
+    coefficients = {}
+    for log in ("T-1", "T-2", "T-3", "T-4"):
+        for method in METHODS:
+            model = model_of(log, method)
+            name = name_of(log, model)
+            assert coefficients.setdefault(name, model.coefficients) == model.coefficients
+            assert name.startswith(f"new, {method}")
+    assert len(coefficients) > len(METHODS)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_tests_without_marks_of_their_own_share_what_is_pooled(method):
+    names = {name_of(log, model_of(log, method)) for log in ("T-3", "T-4")}
+    assert names == {f"new, {method}"}
+
+
+@pytest.mark.parametrize(
+    ("log", "method", "name"),
+    [
+        ("T-1", "tension-driven", "new, tension-driven"),
+        ("T-1", "marks", "new, marks, marks of T-1"),
+        ("T-2", "marks", "new, marks"),
+        ("T-2", "constant-fraction", "new, constant-fraction, marks of T-2"),
+    ],
+)
+def test_a_name_says_specimen_method_and_the_test_whose_marks_they_are(log, method, name):
+    assert name_of(log, model_of(log, method)) == name
