@@ -15,6 +15,7 @@ from reduction.cli.main import app
 
 GAUGE = 10.0
 GAIN, ZERO, POSITION_GAIN, POSITION_ZERO, STRENGTH = 0.01, 200.0, 0.005, 0.01, 0.05
+STIFFER = 0.005
 STATED = f"""
 [uncertainty]
 rated_break_strength = "{100 * STRENGTH:g} %"
@@ -24,6 +25,9 @@ offset = "{ZERO:g} N"
 [uncertainty.crosshead_position]
 gain = "{100 * POSITION_GAIN:g} %"
 offset = "{POSITION_ZERO:g} m"
+[uncertainty.temperature]
+value = "2 K"
+stiffness_per_kelvin = "{50 * STIFFER:g} %"
 """
 CAMPAIGN = f"""
 [campaign]
@@ -88,13 +92,16 @@ def programme():
     return log
 
 
-def reduced(folder, *, gain=0.0, zero=0.0, position_gain=0.0, position_zero=0.0, stated=STATED):
-    """The archive of properties of logs that are wrong by so much."""
+def reduced(
+    folder, *, gain=0.0, zero=0.0, position_gain=0.0, position_zero=0.0, stiffer=0.0, stated=STATED
+):
+    """The archive of properties of logs that are wrong by so much, or of a stiffer rope."""
     folder.mkdir()
     log = programme()
     noise = np.random.default_rng(3)
     time, tension, strain = (np.concatenate(one) for one in (log.time, log.tension, log.strain))
-    position = GAUGE * strain + noise.normal(0, 2e-5, time.size)
+    # the machine keeps the tension: what is stiffer stretches less
+    position = GAUGE * strain / (1 + stiffer) + noise.normal(0, 2e-5, time.size)
     force = tension + noise.normal(0, made.NOISE, time.size)
     columns = [
         time, position * (1 + position_gain) + position_zero, force * (1 + gain) + zero,
@@ -130,6 +137,7 @@ def contribution(archive, name, source):
         ("tension_offset", {"zero": ZERO}),
         ("position_gain", {"position_gain": POSITION_GAIN}),
         ("position_offset", {"position_zero": POSITION_ZERO}),
+        ("temperature", {"stiffer": STIFFER}),
     ],
 )
 def test_logs_that_are_wrong_move_each_property_as_its_contribution_says(
