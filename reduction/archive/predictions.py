@@ -163,8 +163,8 @@ def _nan_where_exact(hose: PredictedHose, values: Floats) -> Floats:
 
 
 def _at_event(hose: PredictedHose, event: str, name: str) -> float:
-    found: EventUncertainty | None = getattr(hose.uncertainty, event, None)
-    if found is None or not hose.uncertainty.source:
+    found: EventUncertainty = getattr(hose.uncertainty, event)
+    if not hose.uncertainty.source:
         return np.nan
     return float(getattr(found, f"{name}_standard_uncertainty"))
 

@@ -71,8 +71,8 @@ class HoseUncertainty:
     is_near_kink : ndarray of bool, shape (..., n_strain)
         Within two standard uncertainties of the strain at pick-up or at break: some of the
         hoses that the design may be have their cords slack, or broken, and others not.
-    pick_up, working, cord_break : EventUncertainty
-        Where the cords pick up, bear the working share of their break load, and break.
+    deepest_slack, pick_up, working, cord_break : EventUncertainty
+        Where the cords are shortest, pick up, bear the working share of their break load, break.
     strain_at_working_load_contribution : ndarray, shape (n_source, ...)
         Of the strain at which the hose carries the *nominal* working load, as it is read from
         a curve at that load; ``working`` is where the cords carry their share. [1]
@@ -87,6 +87,7 @@ class HoseUncertainty:
     tension_standard_uncertainty: Floats
     fill_pressure_standard_uncertainty: Floats
     is_near_kink: Bools
+    deepest_slack: EventUncertainty
     pick_up: EventUncertainty
     working: EventUncertainty
     cord_break: EventUncertainty
@@ -198,6 +199,7 @@ def propagate_hose(
         tension_standard_uncertainty=_together(tension),
         fill_pressure_standard_uncertainty=_together(pressure),
         is_near_kink=is_near[0] | is_near[1],
+        deepest_slack=of_event(slopes.deepest_slack),
         pick_up=pick_up,
         working=working,
         cord_break=cord_break,

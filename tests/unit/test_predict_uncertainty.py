@@ -66,7 +66,7 @@ def test_the_curve_away_from_its_kinks_is_as_uncertain_as_sampled_hoses(hoses):
         assert linear == pytest.approx(getattr(sampled, name).std(axis=0), rel=SAMPLING + BENT)
 
 
-@pytest.mark.parametrize("event", ["pick_up", "working", "cord_break"])
+@pytest.mark.parametrize("event", ["deepest_slack", "pick_up", "working", "cord_break"])
 @pytest.mark.parametrize("quantity", ["strain", "tension", "fill_pressure"])
 def test_the_events_are_as_uncertain_as_those_of_sampled_hoses(hoses, event, quantity):
     found = getattr(propagate_hose(DESIGN, [0.5], KNOWN), event)

@@ -61,7 +61,11 @@ def test_events_have_the_numbers_of_the_closed_forms(both):
     assert [*events] == ["deepest_slack", "pick_up", "working", "cord_break"]
     assert float(events["pick_up"]["event_strain [1]"]) == pytest.approx(pick_up_strain(68))
     assert float(events["working"]["event_tension [N]"]) == pytest.approx(working_tension(68))
-    assert events["deepest_slack"]["event_strain_standard_uncertainty [1]"] == ""
+    # the cords are shortest at a stretch of (tan^2 / 2)^(1/3), half a degree is not known
+    angle, spread = np.radians(68), np.radians(0.5)
+    of_angle = (np.tan(angle) ** 2 / 2) ** (1 / 3) * 2 / 3 / (np.sin(angle) * np.cos(angle))
+    found = float(events["deepest_slack"]["event_strain_standard_uncertainty [1]"])
+    assert found == pytest.approx(of_angle * spread, rel=1e-6)
 
 
 def test_cord_layers_and_idle_layers_are_rows_of_their_own(both):
