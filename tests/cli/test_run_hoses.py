@@ -234,7 +234,7 @@ def test_the_uncertainty_of_the_length_scales_every_strain_of_a_comparison(run):
     measured = of_test.comparison.measured
     # what the layout says of a reading of 0.02 in or 5 lbf is no error that samples share
     assert [one.source for one in measured.component] == ["strain_calibration"]
-    assert [one.of for one in measured.component] == ["hose-64"]
+    assert [one.of for one in measured.component] == ["hose-64, gauge-length"]
     # a length that is 0.05 in of 96 in too great makes every strain too small
     (error,) = measured.strain_error
     np.testing.assert_allclose(np.abs(error), 0.05 / 96 * measured.strain, rtol=1e-6, atol=1e-12)
