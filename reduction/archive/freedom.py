@@ -31,6 +31,7 @@ _OF_SAMPLES = frozenset({
 _ONCE = ("bedding_", "pull_", "tensile_strength", "strain_at_failure", "permanent_set",
          "slack_strain", "test_quasi_static_spring_constant")  # fmt: skip
 _LAST = ("dynamic_stiffness", "dynamic_mean_tension", "dynamic_tension_amplitude")
+_OF_SURFACE = ("_point_value", "_stationary_point", "_eigenvalue")
 _LINES = ("_per_decade", "_per_cycle", "_change", "_drift")
 _READINGS = {"diameter": "diameter_reading", "area": "diameter_reading"}
 # bins are those of the cycles that reach them
@@ -75,6 +76,12 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
     for stated in (f"{base}_term_degrees_of_freedom", f"{name}_degrees_of_freedom"):
         if stated in archive:
             return np.asarray(archive[stated].values, dtype=np.float64)
+    for of in _OF_SURFACE:
+        if f"{name.removesuffix(of)}_term_degrees_of_freedom" in archive and name.endswith(of):
+            found = archive[f"{name.removesuffix(of)}_term_degrees_of_freedom"].values
+            # all terms of a surface together count as the one that is known from the fewest
+            fewest = np.min(found, axis=-1, where=np.isfinite(found), initial=np.inf)
+            return np.asarray(fewest[:, None])
     if _READINGS.get(name) in archive:
         read = np.isfinite(archive[_READINGS[name]].values).sum(axis=-1)
         return np.asarray(np.maximum(read - 1.0, 1.0))

@@ -258,12 +258,10 @@ class _Reader:
         return Canonical(
             stationary_point=self.stack("stationary_point"),
             stationary_point_engineering=self.stack("stationary_point_engineering"),
-            stationary_point_standard_uncertainty=self.stack(
-                "stationary_point_standard_uncertainty"
-            ),
+            stationary_point_standard_uncertainty=self.random("stationary_point"),
             stationary_value=self.stack("stationary_value"),
             eigenvalue=self.stack("eigenvalue"),
-            eigenvalue_standard_uncertainty=self.stack("eigenvalue_standard_uncertainty"),
+            eigenvalue_standard_uncertainty=self.random("eigenvalue"),
             eigenvector=self.stack("eigenvector").transpose(0, 2, 1),
             kind=self.stack("stationary_kind").astype(np.int8),
             is_inside=self.stack("stationary_point_is_inside").astype(bool),

@@ -55,13 +55,7 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
     """
     yield from chain(
         *(
-            chain(
-                measured(of, _T),
-                [
-                    companion(of, "_random_standard_uncertainty", _T),
-                    companion(of, "_uncertainty_contribution", (*_U, "term")),
-                ],
-            )
+            _of_both_parts(of, _T)
             for of in (f"{name}_coefficient", f"{name}_coefficient_engineering")
         ),
         stated(f"{name}_t", _T, STATISTIC),
@@ -101,13 +95,13 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
                 ("p_value", STATISTIC),
             )
         ),
-        measured(f"{name}_stationary_point", _F),
+        _of_both_parts(f"{name}_stationary_point", _F),
         stated(f"{name}_stationary_point_engineering", _F, "see the coded one"),
         flag(f"{name}_stationary_point_is_inside", _E, NO_YES),
         stated(f"{name}_stationary_value", _E, FROM_SURFACE),
         flag(f"{name}_stationary_kind", _E, _STATIONARY_FLAGS),
         label(f"{name}_stationary_refusal", _E),
-        measured(f"{name}_eigenvalue", ("experiment", "direction")),
+        _of_both_parts(f"{name}_eigenvalue", ("experiment", "direction")),
         stated(f"{name}_eigenvector", ("experiment", "direction", "factor"), _BASIS),
         stated(f"{name}_fitted", _R, FROM_SURFACE),
         stated(f"{name}_residual", _R, CHECK),
@@ -128,9 +122,7 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
         stated(f"{name}_block_effect", ("experiment", "block"), NOT_EVALUATED),
         stated(f"{name}_block_standard_deviation", _E, SPREAD),
         flag(f"{name}_block_at_boundary", _E, NO_YES),
-        stated(f"{name}_point_value", _X, "see its intervals")
-        if is_transformed
-        else measured(f"{name}_point_value", _X),
+        _of_both_parts(f"{name}_point_value", _X),
         *(
             stated(f"{name}_point_{kind}_{end}", _X, BOUND)
             for kind in ("confidence", "prediction", "simultaneous")
@@ -150,6 +142,7 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
         return
     yield from chain(
         measured(f"{name}_measured", _R),
+        [companion(f"{name}_measured", "_random_standard_uncertainty", _R)],
         measured(f"{name}_effect", _P, uncertainty_dims=_E),
         stated(f"{name}_effect_t", _P, STATISTIC),
         stated(f"{name}_effect_p_value", _P, STATISTIC),
@@ -161,3 +154,12 @@ def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
         stated(f"{name}_minimum_significant_effect", _E, BOUND),
         stated(f"{name}_simultaneous_minimum_effect", _E, BOUND),
     )
+
+
+def _of_both_parts(name: str, dims: tuple[str, ...]) -> list[Variable]:
+    """A number with what the runs share and what not, in its uncertainty and apart."""
+    return [
+        *measured(name, dims),
+        companion(name, "_random_standard_uncertainty", dims),
+        companion(name, "_uncertainty_contribution", (*_U, *dims[1:])),
+    ]

@@ -8,11 +8,12 @@ import numpy as np
 
 from reduction.archive.effects import alias_values, effect_values
 from reduction.archive.shared import component_values
-from reduction.archive.surface_points import point_values, ridge_values
+from reduction.archive.surface_points import both_parts, point_values, ridge_values
 from reduction.archive.values import Values, texts
 from reduction.errors import ArchiveError
 from reduction.experiment import ExperimentResult, RunTable, SharedSurfaces
 from reduction.line.single import VERDICTS, SingleTimeCheck
+from reduction.surface.canonicalslopes import canonical_slopes
 from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.product import LACK_OF_FIT_REASONS, STATIONARY_REASONS, ResponseSurfaces
 from reduction.surface.select import ReducedSurfaces
@@ -102,11 +103,12 @@ def experiment_values(result: ExperimentResult) -> Values:
         for index, name in enumerate(result.surfaces.response_names):
             values |= _surface_values(result.surfaces, index, name)
             if result.shared is not None:
-                values |= _with_shared(values, result.shared, index, name)
+                values |= _with_shared(values, result.surfaces, result.shared, index, name)
             if result.reduced is not None:
                 values |= _reduced_values(result.reduced, index, name)
         plan = result.runs.coded_plan[:, : len(result.factor_names)]
-        values |= point_values(result.surfaces, plan) | ridge_values(result.surfaces)
+        values |= point_values(result.surfaces, plan, result.shared)
+        values |= ridge_values(result.surfaces, result.shared)
     if result.screening is not None:
         values |= effect_values(result.screening, result.response_names)
         values |= alias_values(result.runs.coded_plan, result.factor_names)
@@ -127,7 +129,17 @@ def _run_values(runs: RunTable, response_names: Sequence[str]) -> Values:
     values |= {f"run_{name}": getattr(runs, name) for name in _RUN_COLUMNS}
     for index, name in enumerate(response_names):
         values[f"{name}_measured"] = runs.response[index]
-        values[f"{name}_measured_standard_uncertainty"] = runs.response_standard_uncertainty[index]
+        random = runs.response_standard_uncertainty[index]
+        values[f"{name}_measured_standard_uncertainty"] = random
+        if runs.shared is not None:
+            # one that does not keep what it shares would count as exact; its budget is its own
+            rows = runs.shared.values[name]
+            values |= {
+                f"{name}_measured_standard_uncertainty": combined_standard_uncertainty(
+                    rows, random
+                ),
+                f"{name}_measured_random_standard_uncertainty": random,
+            }
     return values
 
 
@@ -170,17 +182,26 @@ def _common_values(surfaces: ResponseSurfaces, factor_units: Sequence[str]) -> V
     return values
 
 
-def _with_shared(values: Values, shared: SharedSurfaces, index: int, name: str) -> Values:
+def _with_shared(
+    values: Values, surfaces: ResponseSurfaces, shared: SharedSurfaces, index: int, name: str
+) -> Values:
     """Coefficients with what the errors that runs share add to the scatter of the runs."""
+    coded = shared.coefficient[:, index]
+    slopes = canonical_slopes(
+        surfaces.canonical.stationary_point[[index]],
+        surfaces.canonical.eigenvalue[[index]],
+        surfaces.canonical.eigenvector[[index]],
+        surfaces.exponents,
+    )
     found: Values = {}
-    for of, rows in (
-        (f"{name}_coefficient", shared.coefficient),
-        (f"{name}_coefficient_engineering", shared.coefficient_engineering),
+    for what, rows in (
+        ("coefficient", coded),
+        ("coefficient_engineering", shared.coefficient_engineering[:, index]),
+        ("stationary_point", coded @ slopes[0][0].T),
+        ("eigenvalue", coded @ slopes[1][0].T),
     ):
-        random = values[f"{of}_standard_uncertainty"]
-        found[f"{of}_random_standard_uncertainty"] = random
-        found[f"{of}_uncertainty_contribution"] = rows[:, index]
-        found[f"{of}_standard_uncertainty"] = combined_standard_uncertainty(rows[:, index], random)
+        of = f"{name}_{what}"
+        found |= both_parts(of, values[f"{of}_standard_uncertainty"], rows)
     return found
 
 

@@ -8,6 +8,9 @@ cell under both moves them together:
           \qquad U = d + \sqrt{(u_b - b)^2 + (a - l_a)^2 +
           1.96^2 \textstyle\sum_k (c_{bk} - c_{ak})^2}, \qquad d = b - a
 
+Where the parts of both are known and neither bends, as of a curve or of a surface of a campaign, it
+is Student's t of the degrees of freedom of all parts together.
+
 References
 ----------
 .. [1] G. Y. Zou and A. Donner, "Construction of Confidence Limits about Effect Measures: A
@@ -25,16 +28,24 @@ from dataclasses import dataclass
 import numpy as np
 
 from reduction.errors import SettingsError
-from reduction.lookup.parts import End, own_half_width, shared_half_width, shared_of
+from reduction.lookup.parts import (
+    End,
+    half_width_of_parts,
+    is_even,
+    own_half_width,
+    shared_half_width,
+    shared_of,
+)
 from reduction.lookup.product import DesignValues
 from reduction.record import Bools, Floats, freeze_arrays
-from reduction.uncertainty.combine import (
-    combined_standard_uncertainty,
-    coverage_factor,
-    effective_degrees_of_freedom,
-)
 
 __all__ = ["LineDifference", "compare_values"]
+
+_RANDOM_OF: dict[tuple[End, End], str] = {
+    ("surface_low", "surface_high"): "random_standard_uncertainty",
+    ("low", "high"): "run_standard_uncertainty",
+}
+"""What is of a value alone in an interval, where that is known."""
 
 
 @dataclass(frozen=True)
@@ -204,9 +215,12 @@ def _limits(
 ) -> tuple[Floats, Floats]:
     """Ends of an interval of the difference: what both share by its difference, the rest apart."""
     difference = np.asarray(second.value - first.value)
-    if ends == ("surface_low", "surface_high") and _has_parts(first) and _has_parts(second):
-        half = _half_of_parts(first, second, rows, of)
-        return difference - half, difference + half
+    if ends in _RANDOM_OF and is_even(first) and is_even(second):
+        own = [getattr(one, _RANDOM_OF[ends]) for one in (first, second)]
+        if all(one.size for one in own):
+            few = [one.random_degrees_of_freedom for one in (first, second)]
+            half = half_width_of_parts(np.stack(own), np.stack(few), rows, of)
+            return difference - half, difference + half
     low, high = ends
     shared = shared_half_width(rows)
     down = _root(own_half_width(second, low), own_half_width(first, high), shared)
@@ -216,26 +230,6 @@ def _limits(
 
 def _root(*parts: Floats) -> Floats:
     return np.asarray(np.sqrt(sum(one**2 for one in parts)))
-
-
-def _has_parts(one: DesignValues) -> bool:
-    return bool(one.random_standard_uncertainty.size)
-
-
-def _half_of_parts(first: DesignValues, second: DesignValues, rows: Floats, of: Floats) -> Floats:
-    """Half width by Student's t, where the random part of each and its freedom are known."""
-    own = np.stack([one.random_standard_uncertainty for one in (first, second)])
-    few = np.stack([one.random_degrees_of_freedom for one in (first, second)])
-    freedom = effective_degrees_of_freedom(
-        np.zeros(first.value.shape),
-        np.inf,
-        contribution=np.concatenate([own, rows]),
-        of_contribution=np.concatenate(
-            [few, np.broadcast_to(of.reshape(-1, *(1,) * first.value.ndim), rows.shape)]
-        ),
-    )
-    spread = combined_standard_uncertainty(np.concatenate([own, rows]), 0.0)
-    return np.asarray(coverage_factor(freedom) * spread)
 
 
 def _told(first: DesignValues, second: DesignValues) -> tuple[str, ...]:

@@ -18,7 +18,14 @@ from numpy.typing import ArrayLike
 from reduction.errors import SettingsError
 from reduction.lookup.overcurve import values_of_curve
 from reduction.lookup.oversurface import values_of_surface
-from reduction.lookup.parts import End, own_half_width, shared_half_width, shared_of
+from reduction.lookup.parts import (
+    End,
+    half_width_of_parts,
+    is_even,
+    own_half_width,
+    shared_half_width,
+    shared_of,
+)
 from reduction.lookup.product import DesignValues, LineCurve, LineSource
 from reduction.record import Floats
 from reduction.vocabulary import quantity as quantity_of
@@ -162,7 +169,12 @@ def _dashpot(
     shared = shared_of({"spring": spring, "time": time})
     rows = shared.values["spring"] * time.value + shared.values["time"] * spring.value
 
+    parts = _own_parts(spring, time)
+
     def half(end: End) -> Floats:
+        if parts:
+            random = parts["random" if end.startswith("surface") else "run"]
+            return half_width_of_parts(random, parts["few"], rows, shared.degrees_of_freedom)
         own = (own_half_width(spring, end) * time.value, own_half_width(time, end) * spring.value)
         return np.asarray(np.sqrt(np.square(own).sum(axis=0) + shared_half_width(rows) ** 2))
 
@@ -177,6 +189,10 @@ def _dashpot(
         high=value + half("high"),
         surface_low=value - half("surface_low"),
         surface_high=value + half("surface_high"),
+        # of two surfaces together: to be read from the intervals
+        random_standard_uncertainty=np.empty(0),
+        random_degrees_of_freedom=np.empty(0),
+        run_standard_uncertainty=np.empty(0),
         errata=tuple(dict.fromkeys((*spring.errata, *time.errata))),
         notes=tuple(
             dict.fromkeys(
@@ -204,3 +220,25 @@ def _of_branch(line: LineSource, curves: list[LineCurve], branch: Branch | None)
         found=branch or "no branch",
         needed="branch = " + " or ".join(branches),
     )
+
+
+def _own_parts(spring: DesignValues, time: DesignValues) -> dict[str, Floats]:
+    """What the scatter of K_1 and of tau adds to N, a row each; empty where one is not so known."""
+    if not (is_even(spring) and is_even(time)):
+        return {}
+    by = (time.value, spring.value)
+    return {
+        "random": np.stack(
+            [
+                one.random_standard_uncertainty * other
+                for one, other in zip((spring, time), by, strict=True)
+            ]
+        ),
+        "run": np.stack(
+            [
+                one.run_standard_uncertainty * other
+                for one, other in zip((spring, time), by, strict=True)
+            ]
+        ),
+        "few": np.stack([one.random_degrees_of_freedom for one in (spring, time)]),
+    }

@@ -121,6 +121,12 @@ def values_of_surface(
     kind_low, kind_high = between(surface_low, surface_high, is_another=False)
     line_low, line_high = between(low, high, is_another=True)
     has_interval = bool(np.isfinite(surface.sigma))
+    # where other surfaces may be the right one the interval is not of two parts
+    is_apart = bool(surface.component) and not others
+
+    def part(values: Floats) -> Floats:
+        return values.reshape(shape) if is_apart else np.empty(0)
+
     return design_values(
         line,
         surface,
@@ -130,6 +136,9 @@ def values_of_surface(
         words=(_RUN, _SURFACE) if has_interval else ("", ""),
         component=surface.component,
         contribution=points.contribution.reshape(len(surface.component), *shape),
+        random_standard_uncertainty=part(points.random),
+        random_degrees_of_freedom=part(np.full(points.random.shape, surface.degrees_of_freedom)),
+        run_standard_uncertainty=part(points.run_random),
         value=value,
         low=low,
         high=high,

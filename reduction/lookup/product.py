@@ -226,6 +226,9 @@ class DesignValues:
         What each of them adds to the value, signed; in the intervals too. [unit]
     random_standard_uncertainty, random_degrees_of_freedom : ndarray
         What is of the value alone; empty where that is known as an interval only. [unit], [1]
+    run_standard_uncertainty : ndarray
+        The same of one more run, with those degrees of freedom; empty where ``low`` and ``high``
+        are of none. [unit]
     interval_of, surface_interval_of : str
         What ``low`` and ``high``, and ``surface_low`` and ``surface_high``, are of, in words;
         empty where there is no such interval.
@@ -261,6 +264,7 @@ class DesignValues:
     contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
     random_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     random_degrees_of_freedom: Floats = field(default_factory=lambda: np.empty(0))
+    run_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     interval_of: str = ""
     surface_interval_of: str = ""
 

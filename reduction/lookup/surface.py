@@ -1,15 +1,18 @@
 r"""A quadratic surface at points, with its intervals, in one pass over blocks of points.
 
 .. math:: \hat y = x^T b, \qquad
-          \hat y \pm \sqrt{t_\nu^2 s^2 (1 + h) + 1.96^2 \textstyle\sum_k (x^T c_k)^2}, \qquad
+          \hat y \pm t_{\nu_{eff}} \sqrt{s^2 (1 + h) + \textstyle\sum_k (x^T c_k)^2}, \qquad
           h = x^T C x
 
-with the contribution c_k of each error that the runs share.
+with the contribution c_k of each error that the runs share, and the degrees of freedom of Welch and
+Satterthwaite; of the surface itself with h in place of 1 + h.
 
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard
    R&D Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, App. C.
+.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
+   measurement," 5.2.2, G.4.1.
 """
 
 from __future__ import annotations
@@ -18,7 +21,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from reduction.errors import DataError
 from reduction.lookup.linesurface import LineSurface
@@ -27,15 +29,18 @@ from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import box_behnken
 from reduction.surface.terms import model_matrix, quadratic_exponents
 from reduction.surface.tested import is_within_levels
-from reduction.surface.transform import back_transform
+from reduction.surface.transform import back_transform, back_transformed_change
 from reduction.surface.variance import variance_factor
+from reduction.uncertainty.combine import (
+    combined_standard_uncertainty,
+    coverage_factor,
+    effective_degrees_of_freedom,
+)
 from reduction.workers import run_blocks
 
 __all__ = ["SurfacePoints", "evaluate_surface", "sigma_from_r2"]
 
 _BLOCK = 16_384
-_BOTH_SIDES = 0.975
-_NORMAL = 1.96
 
 
 @dataclass(frozen=True)
@@ -45,7 +50,8 @@ class SurfacePoints:
     ``low`` and ``high`` hold one more run there with 95 %, ``surface_low`` and
     ``surface_high`` the surface itself; NaN where sigma is not known. [unit of the quantity]
     ``contribution``, of shape (n_components, n_points), is what each error that the runs share adds
-    to the value. [unit of the quantity]
+    to the value; ``random`` and ``run_random`` are one standard uncertainty of what is of the
+    surface alone, and of one more run beside that. [unit of the quantity]
     """
 
     value: Floats
@@ -55,6 +61,8 @@ class SurfacePoints:
     surface_high: Floats
     leverage: Floats
     contribution: Floats
+    random: Floats
+    run_random: Floats
     is_inside: Bools
 
     def __post_init__(self) -> None:
@@ -85,7 +93,8 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
     Notes
     -----
     Source: [1]_, eq. 5 with the coding of App. C.  A transformed quantity is brought back: value
-    and intervals are of its median.
+    and intervals are of its median.  The factor of an interval is that of [2]_, as of every other
+    number.
 
     Examples
     --------
@@ -106,53 +115,59 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
             found=f"shape {given.shape}", needed=f"(n_points, {surface.low.size})",
         )  # fmt: skip
     size = given.shape[0]
-    names = ("value", "low", "high", "surface_low", "surface_high", "leverage")
+    names = ("value", "low", "high", "surface_low", "surface_high", "leverage", "random",
+             "run_random")  # fmt: skip
     out = {name: np.empty(size) for name in names}
     moved = np.empty((surface.contribution.shape[0], size))
     inside = np.empty(size, dtype=bool)
-    factor = _t_factor(surface)
+    sigma = surface.sigma if surface.degrees_of_freedom > 0 else float("nan")
+    few = np.array([one.degrees_of_freedom for one in surface.component])
     # a level in round shares of a strength may lie beyond the one that is printed in whole units
     rounded = surface.rounding if surface.rounding.size else np.zeros(surface.low.size)
     allowed = 2 * rounded / (surface.high - surface.low)
+
+    def half_of(random: Floats, rows: Floats) -> Floats:
+        """Half width of a 95 % interval."""
+        if not rows.size:
+            return coverage_factor(surface.degrees_of_freedom) * random
+        effective = effective_degrees_of_freedom(
+            random, surface.degrees_of_freedom, contribution=rows, of_contribution=few
+        )
+        return coverage_factor(effective) * combined_standard_uncertainty(rows, random)
 
     def fill(block: slice) -> None:
         coded = coded_from_engineering(given[block], low=surface.low, high=surface.high)
         terms = model_matrix(coded, surface.exponents)
         leverage = variance_factor(terms, surface.covariance_factor)
         centre = terms @ surface.coefficient
-        half, own = factor * np.sqrt(1 + leverage), factor * np.sqrt(leverage)
-        if surface.contribution.size:
-            # one error of all runs moves the whole surface, and the next run with it
-            rows = surface.contribution @ terms.T
-            shared = _NORMAL * np.sqrt(np.sum(rows**2, axis=0))
-            moved[:, block] = rows
-            half, own = np.hypot(half, shared), np.hypot(own, shared)
+        # one error of all runs moves the whole surface, and the next run with it
+        rows = surface.contribution @ terms.T if surface.component else np.empty((0, centre.size))
+        random, run_random = sigma * np.sqrt(leverage), sigma * np.sqrt(1 + leverage)
+        half, own = half_of(run_random, rows), half_of(random, rows)
         for name, values in (
             ("value", centre),
             ("low", centre - half),
             ("high", centre + half),
             ("surface_low", centre - own),
             ("surface_high", centre + own),
+            ("leverage", leverage),
+            ("random", random),
+            ("run_random", run_random),
         ):
             out[name][block] = values
-        out["leverage"][block] = leverage
+        moved[:, block] = rows
         inside[block] = is_within_levels(coded, allowed=allowed)
 
     run_blocks(fill, [slice(start, start + _BLOCK) for start in range(0, size, _BLOCK)])
     if surface.exponent != 1:
-        # of one standard uncertainty to either side: the slope there, to the second order
-        ends = [back_transform(out["value"] + side * moved, surface.exponent) for side in (1, -1)]
-        moved = (ends[0] - ends[1]) / 2
+        # of one standard uncertainty to either side
+        scaled = out["value"]
+        moved = back_transformed_change(scaled, moved, surface.exponent)
+        for name in ("random", "run_random"):
+            out[name] = back_transformed_change(scaled, out[name], surface.exponent)
         for name in ("value", "low", "high", "surface_low", "surface_high"):
             out[name] = back_transform(out[name], surface.exponent)
     return SurfacePoints(**out, contribution=moved, is_inside=inside)
-
-
-def _t_factor(surface: LineSurface) -> float:
-    """Half width of a 95 % interval over the root of a variance factor."""
-    if not (np.isfinite(surface.sigma) and surface.degrees_of_freedom > 0):
-        return float("nan")
-    return float(stdtrit(surface.degrees_of_freedom, _BOTH_SIDES)) * surface.sigma
 
 
 def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> float:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.archive.shared import FREEDOM
 from reduction.record import Floats
 from reduction.report.experimentview import ExperimentView
 from reduction.report.sources import in_order
@@ -15,8 +16,8 @@ from reduction.report.uncertainty import Expanded, expand, expanded_of
 from reduction.report.view import TestView
 from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
-from reduction.surface.terms import model_matrix
-from reduction.surface.transform import back_transform
+from reduction.uncertainty.combine import coverage_factor, effective_degrees_of_freedom
+from reduction.uncertainty.surfacepoints import with_shared_at_points
 
 __all__ = [
     "CoefficientSpread", "expanded_of_coefficients", "expanded_of_runs", "interval_of_surfaces",
@@ -50,13 +51,16 @@ def expanded_of_coefficients(
         name += "_engineering"
         random = surfaces.coefficient_engineering_standard_uncertainty[index]
     contribution = _rows(view, name, random.size)
-    shared = np.sqrt(np.sum(contribution**2, axis=0))
-    found = expand(
-        np.hypot(random, shared),
-        random=random,
-        degrees_of_freedom=surfaces.term_degrees_of_freedom[index],
+    factor = coverage_factor(
+        effective_degrees_of_freedom(
+            random,
+            surfaces.term_degrees_of_freedom[index],
+            contribution=contribution,
+            of_contribution=_freedom(view),
+        )
     )
-    return CoefficientSpread(found, found.factor * shared)
+    shared = np.sqrt(np.sum(contribution**2, axis=0))
+    return CoefficientSpread(Expanded(factor * np.hypot(random, shared), factor), factor * shared)
 
 
 def shared_by_runs(view: ExperimentView, surfaces: ResponseSurfaces) -> list[str]:
@@ -88,24 +92,14 @@ def interval_of_surfaces(
     low, high : ndarray, shape (n_responses, n_points)
         NaN where there is no surface or no scatter. [unit of the response]
     """
-    points = np.asarray(coded, dtype=np.float64)
-    scatter = evaluate_surfaces(surfaces, points, units="coded", outside="flag")
-    terms = model_matrix(points, surfaces.exponents)
-    low, high = np.empty_like(scatter.value), np.empty_like(scatter.value)
-    for k, name in enumerate(surfaces.response_names):
-        shared = _rows(view, f"{name}_coefficient", terms.shape[1]) @ terms.T
-        random = scatter.fitted_standard_uncertainty[k]
-        half = expand(
-            np.sqrt(random**2 + np.sum(shared**2, axis=0)),
-            random=random,
-            degrees_of_freedom=scatter.degrees_of_freedom[k],
-        ).half
-        fitted = terms @ surfaces.coefficient[k]
-        low[k], high[k] = fitted - half, fitted + half
-        if surfaces.transform[k] != "none":
-            power = surfaces.transform_exponent[k]
-            low[k], high[k] = back_transform(low[k], power), back_transform(high[k], power)
-    return low, high
+    at = evaluate_surfaces(surfaces, coded, units="coded", outside="flag")
+    rows = [
+        _rows(view, f"{name}_coefficient", len(surfaces.term_names))
+        for name in surfaces.response_names
+    ]
+    both = with_shared_at_points(surfaces, at, np.stack(rows, axis=1), _freedom(view))
+    ends = both.confidence_interval
+    return np.array(ends[..., 0]), np.array(ends[..., 1])
 
 
 def expanded_of_runs(view: ExperimentView, name: str, tests: Mapping[str, TestView]) -> Expanded:
@@ -130,11 +124,19 @@ def expanded_of_runs(view: ExperimentView, name: str, tests: Mapping[str, TestVi
 
 
 def _rows(view: ExperimentView, name: str, n_terms: int) -> Floats:
-    """Contributions to the coefficients, shape (n_components, n_terms); of no length where none.
+    """Contributions to the coefficients, shape (n_components, n_terms): zero where none.
 
     Not a number, where it is not kept of every run what it shares with the others.
     """
     found = view.array(f"{name}{_CONTRIBUTION}")
+    n_components = _freedom(view).size
     if found.ndim != 2:
-        return np.zeros((0, n_terms))
-    return np.asarray(found[: sum(map(bool, view.texts("uncertainty_source"))), :n_terms])
+        return np.zeros((n_components, n_terms))
+    return np.asarray(found[:n_components, :n_terms])
+
+
+def _freedom(view: ExperimentView) -> Floats:
+    """Degrees of freedom of each shared error of the experiment."""
+    sources = list(filter(None, view.texts("uncertainty_source")))
+    known = view.array(FREEDOM)[: len(sources)]
+    return np.where(known > 0, known, np.inf) if known.size else np.full(len(sources), np.inf)

@@ -54,6 +54,8 @@ class SurfaceValues:
         The mean response: the same where it was not transformed. [unit of the response]
     fitted_standard_uncertainty : ndarray
         Of the surface, on the scale it was fitted on. [unit of the fitted response]
+    run_standard_uncertainty : ndarray
+        Of one more run at the point, on the same scale. [unit of the fitted response]
     variance_factor : ndarray
         Leverage of the point. [1]
     confidence_interval : ndarray
@@ -81,6 +83,7 @@ class SurfaceValues:
     value: Floats
     mean_value: Floats
     fitted_standard_uncertainty: Floats
+    run_standard_uncertainty: Floats
     variance_factor: Floats
     confidence_interval: Floats
     prediction_interval: Floats
@@ -188,6 +191,7 @@ def evaluate_surfaces(
     if surfaces.blocks is not None and surfaces.blocks.treatment == "random":
         between = surfaces.blocks.standard_deviation[:, None]
     deviation = sigma * np.sqrt(factor)
+    of_run = np.sqrt(sigma**2 + between**2 + deviation**2)
     student = np.asarray(stdtrit(freedom, (1 + confidence) / 2))[:, None]
     n_terms = len(surfaces.term_names)
     scheffe = np.sqrt(n_terms * np.asarray(fdtri(n_terms, freedom, confidence)))[:, None]
@@ -208,9 +212,10 @@ def evaluate_surfaces(
         value=back(fitted),
         mean_value=np.where(plain, fitted, mean),
         fitted_standard_uncertainty=deviation,
+        run_standard_uncertainty=of_run,
         variance_factor=factor,
         confidence_interval=interval(student * deviation),
-        prediction_interval=interval(student * np.sqrt(sigma**2 + between**2 + deviation**2)),
+        prediction_interval=interval(student * of_run),
         simultaneous_interval=interval(scheffe * deviation),
         is_inside=is_inside,
         above_leverage=is_inside & (factor > ABOVE_LEVERAGE * greatest[:, None]),

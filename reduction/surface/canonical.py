@@ -25,9 +25,10 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_finite
 from reduction.errors import SettingsError
 from reduction.record import Floats, Integers
+from reduction.surface.canonicalslopes import canonical_slopes
 from reduction.surface.coding import engineering_from_coded
 from reduction.surface.parts import Canonical
-from reduction.surface.terms import gradient_matrix, model_matrix
+from reduction.surface.terms import model_matrix
 from reduction.surface.variance import variance_factor
 
 __all__ = ["canonical_analysis", "curvature", "ridge_path"]
@@ -171,15 +172,10 @@ def canonical_analysis(
     point = np.einsum("rij,rj->ri", eigenvector, along)
     at = np.where(sound[:, None], point, 0.0)
     value = np.sum(model_matrix(at, exponents) * values, axis=1)
-    inverse = (eigenvector / double[:, None, :]) @ eigenvector.swapaxes(1, 2)
-    by_term = inverse @ gradient_matrix(at, exponents)
-    # v'Bv, term by term: what a change of each coefficient does to an eigenvalue
-    squared = model_matrix(np.nan_to_num(eigenvector.swapaxes(1, 2)), exponents)
-    squared *= exponents.sum(axis=1) == 2
     deviation = np.asarray(sigma, dtype=np.float64)[:, None]
     spread = [
         deviation * np.sqrt(variance_factor(rows, covariance_factor, pattern=pattern))
-        for rows in (by_term, squared)
+        for rows in canonical_slopes(point, eigenvalue, eigenvector, exponents)
     ]
     rising_count = np.sum(eigenvalue > 0, axis=1)
     kind = np.where(rising_count == 0, 2, np.where(rising_count == exponents.shape[1], 1, 3))

@@ -31,7 +31,10 @@ from reduction.record import Bools, Floats
 from reduction.surface.rows import patterns_of, times
 from reduction.surface.search import highest_of_each
 
-__all__ = ["Transform", "back_transform", "box_cox_exponent", "retransformed_mean", "transform"]
+__all__ = [
+    "Transform", "back_transform", "back_transformed_change", "box_cox_exponent",
+    "retransformed_mean", "transform",
+]  # fmt: skip
 
 Transform = Literal["none", "log", "box-cox"]
 
@@ -140,6 +143,44 @@ def back_transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
     with np.errstate(over="ignore"):
         root = safe**inverse
     return np.asarray(np.where(log, result, np.where(ended, np.inf, root)))
+
+
+def back_transformed_change(values: ArrayLike, change: ArrayLike, exponent: ArrayLike) -> Floats:
+    """What a small change on the transformed scale is of the response.
+
+    Parameters
+    ----------
+    values, change : array_like, shape (...)
+        Transformed. [unit of the response to the power of the exponent]
+    exponent : array_like, shape broadcast against values
+        Of the transform. [1]
+
+    Returns
+    -------
+    change : ndarray, shape (...)
+        Signed; NaN where the scale ends within the change. [unit of the response]
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not pair up.
+
+    Notes
+    -----
+    Half of the difference of the two ends: the slope there, to the second order.
+
+    Examples
+    --------
+    0.1 of a logarithm is a tenth:
+
+    >>> print(back_transformed_change(np.log(50.0), 0.1, 0.0).round(2))
+    5.01
+    """
+    at, moved = np.asarray(values, dtype=np.float64), np.asarray(change, dtype=np.float64)
+    ends = back_transform(at + moved, exponent), back_transform(at - moved, exponent)
+    with np.errstate(invalid="ignore"):
+        half = (ends[0] - ends[1]) / 2
+    return np.asarray(np.where(np.isfinite(half), half, np.nan))
 
 
 def retransformed_mean(values: ArrayLike, exponent: ArrayLike, *, sigma: ArrayLike) -> Floats:

@@ -51,15 +51,18 @@ def test_a_surface_is_looked_up_as_it_was_fitted(surfaces):
     )
     assert found.value == pytest.approx(expected.value[0], rel=1e-12)
     # scatter of the runs, and what the load cell and the extensometer do to all of them
-    scatter = np.ptp(expected.prediction_interval[0], axis=-1) / 2
+    scatter = expected.run_standard_uncertainty[0]
     coded = (points - centre) / half
     terms = np.prod(coded[:, None, :] ** fitted.exponents, axis=-1)
     rows = surfaces["apparent_spring_constant_coefficient_uncertainty_contribution"].to_numpy()[0]
     assert (np.abs(rows).max(axis=1) > 0).sum() == 3
-    shared = 1.96 * np.sqrt(((terms @ rows.T) ** 2).sum(axis=1))
-    assert shared.min() > 0.5 * scatter.max()
-    assert found.high - found.value == pytest.approx(np.hypot(scatter, shared), rel=1e-9)
-    assert found.value - found.low == pytest.approx(np.hypot(scatter, shared), rel=1e-9)
+    shared = np.sqrt(((terms @ rows.T) ** 2).sum(axis=1))
+    assert shared.min() > scatter.max()
+    u = np.hypot(scatter, shared)
+    # Welch and Satterthwaite: the instruments are stated
+    t = stats.t.ppf(0.975, expected.degrees_of_freedom[0] * (u / scatter) ** 4)
+    assert found.high - found.value == pytest.approx(t * u, rel=1e-9)
+    assert found.value - found.low == pytest.approx(t * u, rel=1e-9)
     # [1, 0, -1] is the plan of R07, which missed it by a ten-thousandth: it was tested
     assert found.is_untested.tolist() == [False, False, True]
 

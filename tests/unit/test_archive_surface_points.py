@@ -8,19 +8,31 @@ import statsmodels.api as sm
 from experiments import ABOUT, FACTORS, HIGH, LOW, surface_experiment
 from scipy import stats
 
+from reduction.archive.budget import all_budgets
+from reduction.archive.linesource import line_source_of_experiment
 from reduction.archive.surface_points import point_values, ridge_values
 from reduction.archive.surfaces import surfaces_to_dataset
+from reduction.experiment import SharedSurfaces
+from reduction.lookup.line import look_up
+from reduction.report.experimentview import ExperimentView
+from reduction.report.surfaceuncertainty import expanded_of_coefficients, interval_of_surfaces
 from reduction.surface.bands import evaluate_surfaces
-from reduction.surface.canonical import ridge_path
+from reduction.surface.canonical import canonical_analysis, ridge_path
 from reduction.surface.designs import box_behnken
 from reduction.surface.surfaces import fit_surfaces
 from reduction.surface.terms import model_matrix
+from reduction.uncertainty.product import Component, Contributions
 from reduction.vocabulary import RESPONSES
 
-ONE = surface_experiment()
-SHORT = surface_experiment("short", seed=4, names=RESPONSES[:1], missing=(3,))
-RANDOM = surface_experiment(
-    "random", seed=6, names=RESPONSES[:2], specimens=("a", "b", "c"), treatment="random"
+SHARED = surface_experiment()
+# of scatter alone: nothing is known that the runs share
+ONE = replace(SHARED, shared=None)
+SHORT = replace(surface_experiment("short", seed=4, names=RESPONSES[:1], missing=(3,)), shared=None)
+RANDOM = replace(
+    surface_experiment(
+        "random", seed=6, names=RESPONSES[:2], specimens=("a", "b", "c"), treatment="random"
+    ),
+    shared=None,
 )
 
 
@@ -125,10 +137,12 @@ def test_a_transformed_response_comes_back_to_its_own_unit(dataset, name):
     np.testing.assert_allclose(found["value"], expected, rtol=1e-9)
     assert (found["confidence_low"] < expected).all()
     assert (found["confidence_high"] > expected).all()
-    for what in ("point_value", "point_prediction_high", "ridge_value", "ridge_simultaneous_low"):
+    for what in (
+        "point_value", "point_value_standard_uncertainty", "point_prediction_high", "ridge_value",
+        "ridge_simultaneous_low",
+    ):  # fmt: skip
         units = dataset[f"{base}_sigma"].attrs["units"]
         assert dataset[f"{name}_{what}"].attrs["units"] == units
-    assert f"{name}_point_value_standard_uncertainty" not in dataset
     words = dataset[f"{name}_point_value"].attrs["long_name"]
     assert words.startswith(f"{base.replace('_', ' ')}, by the ")
 
@@ -250,3 +264,149 @@ def test_a_response_without_a_surface_has_neither_points_nor_a_ridge():
         assert np.isnan(dataset[f"hysteresis_energy_{what}"].values).all()
         assert np.isfinite(dataset[f"apparent_spring_constant_{what}"].values).all()
     assert not dataset["hysteresis_energy_point_is_above_leverage"].values.any()
+
+
+def under_a_cell(coefficient, *, freedom=np.inf):
+    """The experiment with one error that adds this to the coefficients, and nothing else shared."""
+    rows = np.zeros_like(SHARED.shared.coefficient)
+    rows[0] = coefficient
+    shared = SharedSurfaces(
+        component=(Component("tension_gain", "load cell", degrees_of_freedom=freedom),),
+        coefficient=rows,
+        coefficient_engineering=rows @ SHARED.surfaces.engineering_matrix.T,
+    )
+    return replace(SHARED, shared=shared)
+
+
+@pytest.mark.parametrize("freedom", [np.inf, 2.0])
+def test_a_gain_of_all_runs_widens_every_interval_by_welch_and_satterthwaite(freedom):
+    surfaces = ONE.surfaces
+    found = point_values(
+        surfaces, ONE.runs.coded_plan, under_a_cell(0.03 * surfaces.coefficient, freedom=freedom).shared
+    )  # fmt: skip
+    name = "apparent_spring_constant"
+    plain = evaluate_surfaces(surfaces, found["point_coded_level"], units="coded", outside="flag")
+    value = plain.value[0]
+    gain, own = 0.03 * value, plain.fitted_standard_uncertainty[0]
+    run = np.sqrt(own**2 + surfaces.sigma[0] ** 2)
+    np.testing.assert_allclose(found[f"{name}_point_value_uncertainty_contribution"][0], gain)
+    np.testing.assert_allclose(found[f"{name}_point_value_random_standard_uncertainty"], own)
+    np.testing.assert_allclose(
+        found[f"{name}_point_value_standard_uncertainty"], np.hypot(own, gain)
+    )
+    for kind, random in (("confidence", own), ("prediction", run), ("simultaneous", own)):
+        u = np.hypot(random, gain)
+        nu = u**4 / (random**4 / 5 + gain**4 / freedom)
+        k = stats.t.ppf(0.975, nu)
+        if kind == "simultaneous":
+            k = np.sqrt(10 * stats.f.ppf(0.95, 10, nu))
+        for end, sign in (("low", -1), ("high", 1)):
+            np.testing.assert_allclose(
+                found[f"{name}_point_{kind}_{end}"], value + sign * k * u, rtol=1e-9
+            )
+
+
+def test_a_point_of_a_logarithm_has_the_uncertainty_of_the_response():
+    name, base = "log_hysteresis_energy", "hysteresis_energy"
+    index = ONE.surfaces.response_names.index(name)
+    rows = np.zeros_like(ONE.surfaces.coefficient)
+    rows[index, 0] = 0.02  # two per cent of all
+    result = under_a_cell(rows)
+    dataset = surfaces_to_dataset([result], origin=ABOUT)
+    value = dataset[f"{name}_point_value"].values[0]
+    spread = dataset[f"{name}_point_value_standard_uncertainty"]
+    scaled = evaluate_surfaces(
+        ONE.surfaces, dataset["point_coded_level"].values[0], units="coded", outside="flag"
+    ).fitted_standard_uncertainty[index]
+    # a small change of a logarithm is that share of the response
+    u = np.hypot(scaled, 0.02)
+    np.testing.assert_allclose(spread.values[0], value * u, rtol=2e-3)
+    assert spread.attrs["units"] == dataset[f"{base}_sigma"].attrs["units"]
+    k = stats.t.ppf(0.975, u**4 / (scaled**4 / 5))
+    np.testing.assert_allclose(
+        dataset[f"{name}_point_confidence_high"].values[0], value * np.exp(k * u), rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        dataset[f"{name}_point_confidence_low"].values[0], value * np.exp(-k * u), rtol=1e-9
+    )
+
+
+def test_a_gain_moves_curvatures_by_its_share_and_no_stationary_point():
+    result = under_a_cell(0.03 * ONE.surfaces.coefficient)
+    dataset = surfaces_to_dataset([result], origin=ABOUT)
+    name = "apparent_spring_constant"
+    np.testing.assert_allclose(
+        dataset[f"{name}_eigenvalue_uncertainty_contribution"].values[0, 0],
+        0.03 * dataset[f"{name}_eigenvalue"].values[0],
+    )
+    np.testing.assert_allclose(
+        dataset[f"{name}_stationary_point_uncertainty_contribution"].values[0, 0], 0.0, atol=1e-12
+    )
+
+
+def test_a_shared_error_moves_stationary_points_and_curvatures_as_a_surface_moved_by_it():
+    step = 1e-5 * np.random.default_rng(5).normal(size=10) * ONE.surfaces.sigma[0]
+    rows = np.zeros_like(ONE.surfaces.coefficient)
+    rows[0] = step
+    dataset = surfaces_to_dataset([under_a_cell(rows)], origin=ABOUT)
+    there = [
+        canonical_analysis(
+            ONE.surfaces.coefficient[:1] + side * step, ONE.surfaces.exponents,
+            covariance_factor=ONE.surfaces.covariance_factor[:1], pattern=np.array([0]),
+            sigma=[0.0], low=LOW, high=HIGH,
+        )
+        for side in (1, -1)
+    ]  # fmt: skip
+    for what, field in (("stationary_point", "stationary_point"), ("eigenvalue", "eigenvalue")):
+        moved = (getattr(there[0], field) - getattr(there[1], field))[0] / 2
+        found = dataset[f"apparent_spring_constant_{what}_uncertainty_contribution"].values[0, 0]
+        np.testing.assert_allclose(found, moved, rtol=1e-4, atol=1e-12)
+
+
+def test_a_run_holds_what_it_shares_and_one_that_does_not_keep_it_says_so():
+    name = "apparent_spring_constant"
+    known = SHARED.runs.shared
+    table = {one: np.array(row) for one, row in known.values.items()}
+    table[name][:, 2] = np.nan
+    runs = replace(SHARED.runs, shared=Contributions(known.component, table))
+    dataset = surfaces_to_dataset([replace(SHARED, runs=runs)], origin=ABOUT)
+    value = dataset[f"{name}_measured"].values[0]
+    both = dataset[f"{name}_measured_standard_uncertainty"].values[0]
+    # 0.2 % of its own, 1 % of gain
+    np.testing.assert_allclose(np.delete(both / value, 2), np.hypot(0.002, 0.01))
+    assert np.isnan(both[2])
+    random = dataset[f"{name}_measured_random_standard_uncertainty"].values[0]
+    np.testing.assert_allclose(random / value, 0.002)
+
+
+@pytest.mark.parametrize("name", ["apparent_spring_constant", "log_hysteresis_energy"])
+def test_point_look_up_page_and_budget_say_one_interval(name):
+    """The middle of the plan, where a surface is its first coefficient."""
+    dataset = surfaces_to_dataset([SHARED], origin=ABOUT)
+    response = name.removeprefix("log_")
+    at = at_points(dataset, name)
+    view = ExperimentView("k", dataset, 0)
+    index = view.surfaces.response_names.index(name)
+    low, high = interval_of_surfaces(view, view.surfaces, np.zeros((1, 3)))
+    line = line_source_of_experiment(dataset, "half-inch")
+    centre = dict(zip(line.factor_names, (LOW + HIGH) / 2, strict=True))
+    found = look_up(line, response, **centre)
+    assert at["confidence_low"][0] == pytest.approx(float(found.surface_low), rel=1e-9)
+    assert at["confidence_high"][0] == pytest.approx(float(found.surface_high), rel=1e-9)
+    assert at["prediction_high"][0] == pytest.approx(float(found.high), rel=1e-9)
+    assert low[index, 0] == pytest.approx(at["confidence_low"][0], rel=1e-9)
+    assert high[index, 0] == pytest.approx(at["confidence_high"][0], rel=1e-9)
+    (b1,) = [
+        one for one in all_budgets(dataset, f"{name}_coefficient")
+        if one.place == {"experiment": "half-inch", "term": "B1"}
+    ]  # fmt: skip
+    (point,) = [
+        one for one in all_budgets(dataset, f"{name}_point_value") if one.place["point"] == "1"
+    ]
+    assert point.coverage_factor == pytest.approx(b1.coverage_factor, rel=1e-4)
+    if name == response:
+        half = b1.expanded_uncertainty
+        assert point.expanded_uncertainty == pytest.approx(half, rel=1e-9)
+        assert at["confidence_high"][0] - at["value"][0] == pytest.approx(half, rel=1e-9)
+        coefficient = expanded_of_coefficients(view, view.surfaces, index)
+        assert coefficient.all.half[0] == pytest.approx(half, rel=1e-9)

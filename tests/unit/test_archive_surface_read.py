@@ -140,7 +140,7 @@ def test_a_response_that_cannot_be_fitted_comes_back_with_its_reason():
         low=LOW, high=HIGH, run_names=runs.names,
     )  # fmt: skip
     assert surfaces.reason.tolist()[:3] == [0, 1, 4]
-    about = replace(result, runs=runs, surfaces=surfaces)
+    about = replace(result, runs=runs, surfaces=surfaces, shared=None)
     found = surfaces_of(surfaces_to_dataset([about], origin=ABOUT), result.name)
     np.testing.assert_array_equal(found.reason, surfaces.reason)
     np.testing.assert_array_equal(found.is_used, surfaces.is_used[surfaces.pattern])

@@ -4,12 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from reduction.errors import DataError
+from reduction.lookup.against import compare_values
 from reduction.lookup.line import look_up
 from reduction.lookup.linesurface import LineSurface
 from reduction.lookup.parts import own_half_width, shared_half_width, shared_of
 from reduction.lookup.product import LineSource
+from reduction.lookup.surface import evaluate_surface
 from reduction.surface.designs import box_behnken
 from reduction.surface.terms import model_matrix, quadratic_exponents
 from reduction.uncertainty.product import Component
@@ -45,7 +48,7 @@ def test_a_gain_of_all_runs_is_that_share_of_the_value_at_every_point():
     found = look_up(line(surface(NAME, B, -0.02 * B[None], (CELL,))), NAME, **AT)
     assert found.component == (CELL,)
     assert found.contribution == pytest.approx(-0.02 * found.value[None])
-    assert found.surface_high - found.value == pytest.approx(1.96 * 0.02 * found.value)
+    assert found.surface_high - found.value == pytest.approx(1.95996 * 0.02 * found.value, rel=1e-5)
     # nothing scatters here: all of it is shared
     assert own_half_width(found, "surface_high") == pytest.approx(0.0, abs=1e-3)
 
@@ -66,6 +69,45 @@ def test_what_is_of_a_value_alone_is_the_interval_without_it():
         assert own_half_width(found, end) == pytest.approx(expected)
     assert own_half_width(alone, "low") == pytest.approx(alone.value - alone.low)
     assert shared_half_width(found.contribution) == pytest.approx(1.96 * 0.02 * found.value)
+
+
+def test_a_surface_beside_a_load_cell_has_the_factor_of_all_its_degrees_of_freedom():
+    """As large a part of five degrees of freedom as of a load cell: 20 of them, 2.086."""
+    # in the middle of the design a third of the variance of a run
+    random = 150.0 / np.sqrt(3)
+    row = np.append(random, np.zeros(9))[None]
+    found = look_up(
+        line(surface(NAME, B, row, (CELL,), sigma=150.0)), NAME,
+        frequency=0.3, mean_tension=200.0, tension_amplitude=100.0,
+    )  # fmt: skip
+    half = 2.0859634 * np.sqrt(2) * random
+    assert found.surface_high - found.value == pytest.approx(half, rel=1e-7)
+    assert found.value - found.surface_low == pytest.approx(half, rel=1e-7)
+    # of a run four times the variance: (4 + 1)^2 / (16 / 5) = 7.8125, 2.3161 by the t table between
+    t = stats.t.ppf(0.975, 7.8125)
+    assert found.high - found.value == pytest.approx(t * np.sqrt(5) * random, rel=1e-9)
+
+
+def test_a_reading_of_two_degrees_of_freedom_takes_them_into_a_surface():
+    diameter = Component("diameter", "line", degrees_of_freedom=2.0)
+    found = look_up(line(surface(NAME, B, 0.02 * B[None], (diameter,))), NAME, **AT)
+    # Student's t of two
+    half = 4.30265 * 0.02 * found.value
+    assert found.surface_high - found.value == pytest.approx(half, rel=1e-5)
+
+
+def test_two_surfaces_under_one_cell_differ_by_what_is_of_each_alone():
+    """The load cell falls out; five degrees of freedom each are ten."""
+    row = np.append(500.0, np.zeros(9))[None]
+    one = look_up(line(surface(NAME, B, row, (CELL,), sigma=150.0)), NAME, **AT)
+    found = compare_values(one, one)
+    h = np.asarray(
+        evaluate_surface(
+            surface(NAME, B, row, (CELL,), sigma=150.0), [[0.2, 150.0, 70.0], [0.4, 150.0, 70.0]]
+        ).leverage
+    )
+    assert found.surface_high == pytest.approx(2.2281389 * 150 * np.sqrt(2 * h), rel=1e-6)
+    assert found.high == pytest.approx(2.2281389 * 150 * np.sqrt(2 * (1 + h)), rel=1e-6)
 
 
 def test_what_k_1_gains_and_tau_loses_leaves_their_product():
