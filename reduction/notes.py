@@ -42,7 +42,7 @@ _DOUBT = re.compile(
     r"|goes slack|drifts over the order|goes below zero"
     r"|does not hold there|is (stretched|compressed) by|no angle keeps it|load is uncertain by"
     r"|this curve (cannot tell|does not show)|stopped at a bound|was allowed: not determined"
-    r"|where no stated error|is one that the stated errors",
+    r"|where no stated error|is one that the stated errors|uncertainties are too small",
     re.IGNORECASE,
 )
 

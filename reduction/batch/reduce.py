@@ -82,8 +82,8 @@ def reduce_survey(
         )
     located = located_again(campaign, survey)
     instruments = instruments_of(campaign, survey, models)
-    check_stated_errors(located, instruments, place=f"{campaign.path}: uncertainty")
-    return reduce_test(
+    notes = check_stated_errors(located, instruments, place=f"{campaign.path}: uncertainty")
+    reduced = reduce_test(
         located,
         description=description,
         specimens=specimens,
@@ -97,6 +97,7 @@ def reduce_survey(
         pull_conditions=pull_conditions(campaign, survey),
         instruments=instruments,
     )
+    return replace(reduced, notes=(*reduced.notes, *notes))
 
 
 def bring_up_to_date(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.errors import SettingsError
+from reduction.notes import severity_of
 from reduction.pipeline.statedlimits import check_stated_errors
 from reduction.uncertainty.product import InstrumentErrors
 
@@ -13,44 +14,48 @@ TIME = np.arange(0.0, 41.0)
 PLACE = "campaign.toml: uncertainty"
 
 
-def located(cycles=True):
+def located(cycles=True, **record):
     found = SimpleNamespace(first=np.array([0, 20]), last=np.array([20, 36]), n_cycles=2)
+    readings = {"tension_standard_uncertainty": (), "position_standard_uncertainty": np.nan}
     return SimpleNamespace(
-        record=SimpleNamespace(test_id="T-1", time=TIME),
+        record=SimpleNamespace(test_id="T-1", time=TIME, **(readings | record)),
         position=np.where(TIME == 7, np.nan, 2.0 + 0.1 * TIME),
         tension=np.array([10.0 * TIME - 50.0]),
         cycles=found if cycles else None,
     )
 
 
-def check(cycles=True, **stated):
-    check_stated_errors(located(cycles), [InstrumentErrors("new", **stated)], place=PLACE)
+def check(cycles=True, record=(), **stated):
+    errors = [InstrumentErrors("new", **stated)]
+    return check_stated_errors(located(cycles, **dict(record)), errors, place=PLACE)
 
 
 @pytest.mark.parametrize(
     ("stated", "words"),
     [
         (
-            {"tension_offset": 351.0},
+            {"tension_offset": 3501.0},
             r"campaign.toml: uncertainty.tension.offset: this is no standard uncertainty for test "
-            r"'T-1'; found 351 N; needed at most 350 N, the greatest tension of 'new'",
+            r"'T-1'; found 3501 N; needed at most 3500 N, ten times the greatest tension of 'new'",
         ),
+        ({"tension_offset": 1e9 * 4.448}, r"uncertainty.tension.offset: .*found 4.448e\+09 N"),
         (
             {"tension_reading": 4448.0},
-            r"uncertainty.tension.noise and resolution: .*found 4448 N; needed at most 350 N",
+            r"uncertainty.tension.noise and resolution: .*found 4448 N; needed at most 3500 N",
         ),
         (
-            {"position_offset": 6.1},
-            r"uncertainty.crosshead_position.offset: .*found 6.1 m; needed at most 6 m, the great",
+            {"position_offset": 60.1},
+            r"uncertainty.crosshead_position.offset: .*found 60.1 m; needed at most 60 m, ten times",
         ),
         (
-            {"position_reading": 7.0},
-            r"uncertainty.crosshead_position.noise and resolution: .*needed at most 6 m",
+            {"position_reading": 70.0},
+            r"uncertainty.crosshead_position.noise and resolution: .*needed at most 60 m",
         ),
         (
             {"lag": 3600.0},
-            r"uncertainty.lag: .*found 3600 s; needed at most 4 s, a quarter of the shortest cycle",
+            r"uncertainty.lag: .*found 3600 s; needed at most 20 s, the longest cycle",
         ),
+        ({"lag": 20.1}, r"uncertainty.lag: .*needed at most 20 s, the longest cycle"),
     ],
 )
 def test_what_the_log_makes_impossible_is_refused_with_its_key(stated, words):
@@ -59,10 +64,40 @@ def test_what_the_log_makes_impossible_is_refused_with_its_key(stated, words):
 
 
 def test_without_cycles_a_lag_is_held_against_the_record():
-    check(cycles=False, lag=9.9)
+    assert check(cycles=False, lag=9.9) == ()
     with pytest.raises(SettingsError, match="needed at most 10 s, a quarter of the record"):
         check(cycles=False, lag=10.1)
 
 
-def test_what_can_be_meant_passes():
-    check(tension_offset=350.0, tension_reading=1.0, position_offset=6.0, lag=4.0)
+def test_a_zero_of_a_large_instrument_in_a_small_test_can_be_meant():
+    assert check(tension_offset=3500.0, tension_reading=400.0, position_offset=60.0) == ()
+
+
+def test_a_reading_of_which_the_layout_says_something_is_not_looked_at():
+    assert check(record={"tension_standard_uncertainty": (1.0,)}, tension_reading=1e6) == ()
+    assert check(record={"position_standard_uncertainty": 1e-3}, position_reading=1e6) == ()
+
+
+@pytest.mark.parametrize(
+    ("lag", "words"),
+    [
+        (0.79, None),
+        (0.81, "0.81 s is more than a twentieth of 1 of 2 cycles, the shortest of 16 s"),
+        (1.01, "1.01 s is more than a twentieth of 2 of 2 cycles, the shortest of 16 s"),
+    ],
+)
+def test_a_lag_that_turns_a_loop_beyond_the_first_order_is_noted_as_a_doubt(lag, words):
+    notes = check(lag=lag)
+    if words is None:
+        assert notes == ()
+        return
+    (note,) = notes
+    assert words in note
+    assert severity_of("test", note) == "doubt"
+
+
+def test_beyond_a_twentieth_of_a_cycle_a_loop_loses_a_twentieth_of_its_stiffness():
+    turn = 2 * np.pi / 20
+    phase = np.linspace(0, 2 * np.pi, 1000, endpoint=False)
+    late = np.sin(phase - turn)  # tension of a spring of 1 N/m, logged late
+    assert 2 * np.mean(late * np.sin(phase)) == pytest.approx(0.95, abs=0.002)
