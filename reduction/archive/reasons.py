@@ -22,6 +22,7 @@ __all__ = [
     "SPREAD",
     "STATED",
     "STATISTIC",
+    "STRENGTH",
     "TWO_METHODS",
     "WHERE_IT_STOOD",
 ]
@@ -31,6 +32,7 @@ CLOCK = "a reading of the clock"
 BOUND = "bound"
 SETTING = "setting"
 STATED = "stated by the laboratory"
+STRENGTH = "as stated; what is stated of its error is in the numbers that are shares of it"
 AXIS = "axis of the curve"
 CHECK = "residual of a check"
 CRITERION = "criterion of a fit"

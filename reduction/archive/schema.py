@@ -75,6 +75,7 @@ from reduction.archive.reasons import (
     SEE_PER_DECADE,
     SETTING,
     STATED,
+    STRENGTH,
     TWO_METHODS,
     WHERE_IT_STOOD,
 )
@@ -155,7 +156,7 @@ _ROWS = chain(
     stated("stretched_diameter", ("specimen", "stretched_reading"), STATED),
     stated("stretched_diameter_strain", ("specimen", "stretched_reading"), STATED),
     measured("area", _S),
-    stated("rated_break_strength", _S, STATED),
+    stated("rated_break_strength", _S, STRENGTH),
     label("rated_break_strength_source", _S),
     stated("linear_density", _S, STATED),
     stated("wet_linear_density", _S, STATED),

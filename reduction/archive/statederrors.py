@@ -10,7 +10,7 @@ import xarray as xr
 from reduction.errors import ArchiveError
 from reduction.uncertainty.stated import StatedErrors
 
-__all__ = ["stated_errors_of"]
+__all__ = ["says_what_is_shared", "stated_errors_of"]
 
 _ONE_CELL = "has_one_load_cell"
 
@@ -51,6 +51,19 @@ def stated_errors_of(archive: xr.Dataset) -> StatedErrors | None:
             raise _fault(name, value, "a number in SI")
         known[name] = float(value)
     return StatedErrors(has_one_load_cell=one_cell, **known)
+
+
+def says_what_is_shared(archive: xr.Dataset) -> bool:
+    """Whether an archive of a test says what its numbers share with others, be it nothing.
+
+    Archives of earlier versions do not; one without contributions of which something is stated, or
+    that does not say what is stated, is such a one.
+    """
+    if any(str(name).endswith("_uncertainty_contribution") for name in archive.variables):
+        return True
+    settings = json.loads(str(archive.attrs.get("settings") or "{}"))
+    stated = settings.get("uncertainty")
+    return stated is not None and not any(stated.values())
 
 
 def _fault(name: str, value: object, needed: str) -> ArchiveError:

@@ -42,8 +42,8 @@ from reduction.archive.reasons import (
     PART,
     SETTING,
     SPREAD,
-    STATED,
     STATISTIC,
+    STRENGTH,
 )
 from reduction.archive.shared import COMPONENT, FREEDOM
 from reduction.archive.surface_rows import (
@@ -136,7 +136,7 @@ _ROWS = chain(
             "minimum_tension",
         )
     ),
-    stated("run_rated_break_strength", _R, STATED),
+    stated("run_rated_break_strength", _R, STRENGTH),
     count("run_cell", _R),
     stated("derived_dissipation_spring_constant", _R, NOT_EVALUATED),
     stated("derived_relaxation_time", _R, NOT_EVALUATED),

@@ -13,6 +13,7 @@ from reduction import __version__
 from reduction.archive.open import open_archive
 from reduction.archive.properties import properties_to_dataset
 from reduction.archive.rope_steps import CHANGES_LENGTH, step_of_archive
+from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.write import write_archive
 from reduction.batch.instruments import instruments_of
 from reduction.batch.survey import Survey
@@ -34,7 +35,8 @@ _Models = Callable[[Survey], Sequence[StrainModel]]
 class _Found:
     """What the archives of the tests of one rope give.
 
-    ``is_programme`` where one is a step; ``component`` are the shared errors of each step.
+    ``is_programme`` where one is a step; ``component`` are the shared errors of each step,
+    ``silent`` those steps whose archives do not say what they share.
     """
 
     steps: tuple[StepOfProgramme, ...]
@@ -42,6 +44,7 @@ class _Found:
     missing: tuple[str, ...]
     is_programme: bool
     component: dict[str, tuple[Component, ...]]
+    silent: tuple[str, ...]
 
 
 def tests_of_ropes(campaign: Campaign, surveys: Sequence[Survey]) -> set[str]:
@@ -110,6 +113,7 @@ def write_change_in_length(
     sources: dict[str, Source] = {}
     used: dict[str, list[str]] = {}
     component: dict[tuple[str, str], tuple[Component, ...]] = {}
+    silent: set[tuple[str, str]] = set()
     for name, specimen in campaign.specimens.items():
         if not specimen.is_rope:
             continue
@@ -132,6 +136,7 @@ def write_change_in_length(
         sources |= {source.name: source for source in given.sources}
         used[name] = [one.name for one in given.steps]
         component |= {(name, step): own for step, own in given.component.items()}
+        silent |= {(name, step) for step in given.silent}
     if not found:
         return None
     settings = {
@@ -148,7 +153,10 @@ def write_change_in_length(
         command=command,
     )
     path = folder / "change_in_length.nc"
-    write_archive(properties_to_dataset(found, component, origin=origin), path)
+    if silent == set(component):
+        # with no other beside them they are as they were kept
+        silent = set()
+    write_archive(properties_to_dataset(found, component, origin=origin, silent=silent), path)
     return path
 
 
@@ -189,7 +197,7 @@ def _read(
     waiting: Mapping[str, str],
 ) -> _Found:
     steps, sources, missing, is_programme = [], [], [], False
-    component = {}
+    component, silent = {}, []
     for entry in own:
         test = entry.plan.id
         if test in failed or test in waiting:
@@ -201,10 +209,14 @@ def _read(
             found = step_of_archive(archive, specimen, *known[test])
             steps.append(found.step)
             component[found.step.name] = found.component
+            if not says_what_is_shared(archive):
+                silent.append(found.step.name)
             kind = str(archive["programme_step"].values) if "programme_step" in archive else ""
             is_programme |= kind in CHANGES_LENGTH
         sources.append(source_of(path.read_bytes(), path.name))
-    return _Found(tuple(steps), tuple(sources), tuple(missing), is_programme, component)
+    return _Found(
+        tuple(steps), tuple(sources), tuple(missing), is_programme, component, tuple(silent)
+    )
 
 
 def _instruments(

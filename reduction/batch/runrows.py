@@ -11,6 +11,7 @@ import xarray as xr
 
 from reduction.archive.open import open_archive
 from reduction.archive.shared import shared_contributions
+from reduction.archive.statederrors import says_what_is_shared
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.errors import ArchiveError
 from reduction.line.product import REASONS
@@ -78,7 +79,7 @@ def row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specim
         for name in dict.fromkeys((*MEASURED, *plan.responses))
     }
     settings = json.loads(archive.attrs["settings"])
-    row["keeps_shared"] = _keeps_shared(archive, settings)
+    row["keeps_shared"] = says_what_is_shared(archive)
     begin = int(settings["reduction"]["cycles"]["break_in_cycles"])
     if "peak_tension" in archive:
         peak = archive["peak_tension"].values[place, begin:]
@@ -88,18 +89,6 @@ def row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specim
     strength = archive.get("rated_break_strength")
     row["strength"] = float("nan") if strength is None else float(strength.values[place])
     return row | {"specimen": specimen, "remark": "; ".join(remarks)}
-
-
-def _keeps_shared(archive: xr.Dataset, settings: dict[str, Any]) -> bool:
-    """Whether an archive says what its numbers share with others, be it nothing.
-
-    Archives of earlier versions do not; one without contributions of which something is stated, or
-    that does not say what is stated, is such a one.
-    """
-    if any(str(name).endswith("_uncertainty_contribution") for name in archive.variables):
-        return True
-    stated = settings.get("uncertainty")
-    return stated is not None and not any(stated.values())
 
 
 def _slack(is_slack: Bools) -> list[str]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.archive.freedom import effective_freedom
+from reduction.archive.statederrors import says_what_is_shared
 from reduction.record import Floats
 from reduction.report.instruments import NOTHING_STATED, is_stated
 from reduction.report.sources import FROM_READINGS, in_order, source_words
@@ -194,7 +195,7 @@ def plus_minus_of_tests(
     held = found_from
     if shared:
         held += f"; and what all samples share: {', '.join(source_words(one) for one in shared)}"
-    said = plus_minus(factors, held, left_out="", mark=mark)
+    said = plus_minus(factors, held, left_out="", mark=mark) + _not_kept(views, names)
     if set(shared) - FROM_READINGS:
         return said
     if not any(is_stated(view) for view in views):
@@ -203,3 +204,17 @@ def plus_minus_of_tests(
     if any(f"{name}_uncertainty_contribution" in view.data for view in views for name in names):
         return f"{said} Nothing that is stated of the instruments reaches it."
     return f"{said} Not in it: {_INSTRUMENTS}."
+
+
+def _not_kept(views: Sequence[TestView], names: Sequence[str]) -> str:
+    """Which tests have their scatter alone, beside others with what they share."""
+    kept = [f"{name}_uncertainty_contribution" for name in names]
+    if not any(name in view.data for view in views for name in kept):
+        return ""
+    silent = dict.fromkeys(view.id for view in views if not says_what_is_shared(view.data))
+    if not silent:
+        return ""
+    return (
+        f" Not of {', '.join(silent)}: their archives do not keep what they share, and ± is their"
+        " scatter alone; reduce them again."
+    )

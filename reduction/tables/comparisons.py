@@ -85,7 +85,6 @@ COMPARISON_TABLES = (
         (
             "strain",
             *ERROR,
-            "uncertainty_source_degrees_of_freedom",
             "measured_tension_uncertainty_contribution",
         ),
         ("measured_tension_uncertainty_contribution",),

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from reduction.archive.open import open_archive
+from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.variable import label
 from reduction.archive.write import write_whole
 from reduction.tables.column import Cell, Column, csv_text
@@ -15,11 +16,13 @@ from reduction.tables.comparisons import COMPARISON_TABLES
 from reduction.tables.definitions import TABLES
 from reduction.tables.envelope import ENVELOPE_COLUMNS, Curve, curves_of, envelope_rows
 from reduction.tables.experiments import EXPERIMENT_TABLES
+from reduction.tables.holes import column_descriptions
 from reduction.tables.outcomes import OUTCOME_TABLES, GroupColumn, outcome_table_rows
 from reduction.tables.predictions import PREDICTION_TABLES
 from reduction.tables.properties import PROPERTY_TABLES
 from reduction.tables.responses import by_response
 from reduction.tables.rows import table_rows
+from reduction.tables.silent import as_silent, quantities_kept
 from reduction.tables.static_dynamic import (
     STATIC_DYNAMIC_COLUMNS,
     Slope,
@@ -86,15 +89,16 @@ def write_tables(
     }
     columns |= {"envelope": ENVELOPE_COLUMNS, "static_dynamic": STATIC_DYNAMIC_COLUMNS}
     columns |= OUTCOME_TABLES
-    rows = _all_rows(archives) | _experiment_rows(surfaces) | _outcome_rows(outcomes)
+    of_tests, silent = _all_rows(archives)
+    rows = of_tests | _experiment_rows(surfaces) | _outcome_rows(outcomes)
     rows |= _rows_as_they_are(predictions, PREDICTION_TABLES)
     rows |= _rows_as_they_are(comparisons, COMPARISON_TABLES)
     rows |= _rows_as_they_are(change_in_length, PROPERTY_TABLES)
     filled = [name for name in columns if rows[name]]
     rows["columns"] = [
-        [f"{name}.csv", *column.description]
+        [f"{name}.csv", *described]
         for name, listed in [*((name, columns[name]) for name in filled), ("columns", _ABOUT)]
-        for column in listed
+        for described in column_descriptions(listed, rows.get(name, ()), silent)
     ]
     columns["columns"] = _ABOUT
     paths = []
@@ -115,10 +119,17 @@ def _place(attributes: dict[str, Any]) -> _Place:
     return float(attributes.get("test_order", "inf")), digits
 
 
-def _all_rows(archives: Sequence[Path]) -> dict[str, list[list[Cell]]]:
-    tests: list[tuple[_Place, dict[str, list[list[Cell]]], list[Curve], list[Slope]]] = []
+def _all_rows(archives: Sequence[Path]) -> tuple[dict[str, list[list[Cell]]], set[str]]:
+    """Rows of every table of tests, and what some have no uncertainty of for being silent."""
+    kept, says = set[str](), set[bool]()
     for path in archives:
         with open_archive(path) as archive:
+            kept |= quantities_kept(archive)
+            says.add(says_what_is_shared(archive))
+    tests: list[tuple[_Place, dict[str, list[list[Cell]]], list[Curve], list[Slope]]] = []
+    for path in archives:
+        with open_archive(path) as whole:
+            archive = as_silent(whole, kept)
             of_test = {table.name: table_rows(archive, table) for table in TABLES}
             curves, slopes = list(curves_of(archive)), list(slopes_of(archive))
             tests.append((_place(archive.attrs), of_test, curves, slopes))
@@ -129,10 +140,11 @@ def _all_rows(archives: Sequence[Path]) -> dict[str, list[list[Cell]]]:
     }
     curves = [curve for _, _, own, _ in tests for curve in own]
     slopes = [slope for *_, own in tests for slope in own]
-    return rows | {
+    rows |= {
         "envelope": envelope_rows(curves),
         "static_dynamic": static_dynamic_rows(slopes, curves),
     }
+    return rows, kept if False in says else set()
 
 
 def _experiment_rows(surfaces: Path | None) -> dict[str, list[list[Cell]]]:

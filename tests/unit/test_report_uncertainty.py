@@ -383,3 +383,14 @@ def test_a_run_that_is_a_test_has_the_uncertainty_of_its_archive():
     elsewhere = SimpleNamespace(array=lambda _: np.array([1.0]), specimens=("another",))
     same = expanded_of_runs(view, "apparent_spring_constant", {names[0]: elsewhere})
     assert same.half[0] == pytest.approx(NORMAL * given[0], nan_ok=True)
+
+
+def test_a_test_of_scatter_alone_is_named_beside_one_with_what_it_shares():
+    old, new = make_view(None, is_old=True, test="T-0"), make_view()
+    said = plus_minus_of_tests([2.0], [old, new], ["segment_modulus"])
+    assert said.endswith(
+        f" Not of {old.id}: their archives do not keep what they share, and ± is their scatter"
+        " alone; reduce them again."
+    )
+    for views in ([new], [old], [new, make_view(test="T-2")]):
+        assert "reduce" not in plus_minus_of_tests([2.0], views, ["segment_modulus"])
