@@ -44,7 +44,7 @@ class StrainModel:
         Far thimble [m], strain at the marks [1], tension while they were read
         [N], strain by the method minus strain at the marks [1].
     mark_load_cell : tuple of str, length n_marks or 0
-        Of which load cell the tension at each mark is; empty: that of the test.
+        Of which load cell the tension at each mark is; where it is empty, that of the test.
     strain_slope_ratio : float
         d(strain)/d(position) by ``constant-fraction`` over that of this method,
         mean over the test's own marked range: a modulus by ``constant-fraction``

@@ -69,7 +69,8 @@ def load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> li
     found: list[FieldPart] = []
     step = steps_of(load)
     read = _used(model)
-    cells = model.mark_load_cell or (errors.tension_instrument,) * len(model.mark_tension)
+    told = model.mark_load_cell or ("",) * len(model.mark_tension)
+    cells = tuple(cell or errors.tension_instrument for cell in told)
     others = (cell for cell, is_used in zip(cells, read, strict=True) if is_used)
     for cell in dict.fromkeys((errors.tension_instrument, *others)):
         is_own = cell == errors.tension_instrument

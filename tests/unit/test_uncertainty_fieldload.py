@@ -84,6 +84,16 @@ def test_a_cell_that_read_no_mark_of_the_law_and_no_sample_is_in_nothing():
     assert {one.of for one, _ in parts} == {"A"}
 
 
+def test_a_mark_of_which_no_cell_is_known_was_read_by_that_of_the_samples():
+    errors = InstrumentErrors("new", tension_instrument="A", **SIZE)
+    unknown = dict(load_parts(errors, model(("A", "", "B", "", "A")), POINTS))
+    named = dict(load_parts(errors, model(("A", "A", "B", "A", "A")), POINTS))
+    assert set(unknown) == set(named)
+    assert {one.of for one in unknown} == {"A", "B"}
+    for one, rows in named.items():
+        np.testing.assert_array_equal(unknown[one], rows)
+
+
 def test_a_method_that_knows_no_tension_has_the_cell_of_the_samples_alone():
     line = StrainModel(
         "new", "marks", {}, mark_hold=("min",), mark_tension=np.array([300.0]),
