@@ -16,7 +16,7 @@ from reduction.errors import ArchiveError
 __all__ = ["build_dataset"]
 
 _COMPRESSED_FROM = 4096  # values; below it a chunk and its index cost more than they save
-_CHUNK = 65536
+_CHUNK = 65536  # values; half a megabyte, which a cycle of a long record costs to read
 
 
 def build_dataset(
@@ -120,11 +120,24 @@ def _encoding(array: NDArray[Any], row: Variable, auxiliary: str) -> dict[str, A
     if auxiliary and auxiliary in row.dims and row.name != "time":
         encoding["coordinates"] = "time"
     if array.size >= _COMPRESSED_FROM:
-        rows = (1,) * (array.ndim - 1)
         encoding |= {
             "zlib": True,
             "complevel": 1,
             "shuffle": True,
-            "chunksizes": (*rows, min(array.shape[-1], _CHUNK)),
+            "chunksizes": _chunk_sizes(array.shape),
         }
     return encoding
+
+
+def _chunk_sizes(shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Chunk of `_CHUNK` values at most: the last dimension first, then as much of those before.
+
+    By the last dimension alone a table of many cycles and two branches would be of chunks of
+    two values.
+    """
+    sizes: list[int] = []
+    left = _CHUNK
+    for length in reversed(shape):
+        sizes.append(min(length, left))
+        left //= sizes[-1]
+    return tuple(reversed(sizes))

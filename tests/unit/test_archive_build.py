@@ -1,0 +1,46 @@
+"""Long variables are stored in chunks of which a reader may take one, and no more of them than that needs."""
+
+import math
+
+import netCDF4
+import numpy as np
+import pytest
+
+from reduction.archive.build import build_dataset
+from reduction.archive.schema import SCHEMA
+
+# 65,536 doubles are half a megabyte: a few milliseconds to read, and 1,526 chunks in 1e8 samples
+LARGEST = 65536
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "chunk"),
+    [
+        ("crosshead_position", (200_000,), (LARGEST,)),
+        ("tension", (2, 200_000), (1, LARGEST)),
+        ("tension", (2, 30_000), (2, 30_000)),
+        ("hysteresis_energy", (2, 100_000), (1, LARGEST)),
+        ("crosshead_rate", (100_000, 2), (LARGEST // 2, 2)),
+        ("chord_modulus", (2, 40_000, 2), (1, LARGEST // 2, 2)),
+        ("tangent_modulus_by_cycle", (2, 24, 2, 60), (2, 24, 2, 60)),
+    ],
+)
+def test_a_chunk_holds_the_last_dimensions_up_to_half_a_megabyte(name, shape, chunk, tmp_path):
+    values = {name: np.zeros(shape)}
+    build_dataset(values, SCHEMA, attributes={}).to_netcdf(tmp_path / "long.nc", engine="netcdf4")
+    with netCDF4.Dataset(tmp_path / "long.nc") as file:
+        stored = file[name]
+        sizes = stored.chunking()
+        filters = stored.filters()
+    # the library keeps a chunk within the variable
+    assert tuple(sizes) == tuple(min(one, length) for one, length in zip(chunk, shape, strict=True))
+    assert filters["zlib"]
+    assert filters["shuffle"]
+    assert math.prod(sizes) <= LARGEST
+
+
+def test_a_short_variable_is_not_cut(tmp_path):
+    values = {"crosshead_position": np.zeros(4095)}
+    build_dataset(values, SCHEMA, attributes={}).to_netcdf(tmp_path / "short.nc", engine="netcdf4")
+    with netCDF4.Dataset(tmp_path / "short.nc") as file:
+        assert file["crosshead_position"].chunking() == "contiguous"
