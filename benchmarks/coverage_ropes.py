@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 from coverage_tethers import Found, table
-from scipy import stats
 
 from reduction.archive.dataset import to_dataset
 from reduction.archive.linesource import line_source_of_experiment
@@ -245,7 +244,7 @@ def campaign(seed: int) -> list[Found]:
 
 
 def looked_up(result: ExperimentResult, pair: int, rng: np.random.Generator) -> list[Found]:
-    """Design values of the surface at three points of the box, with the interval they are given."""
+    """Design values of the surface at three points of the box, with the parts of their interval."""
     line = line_source_of_experiment(surfaces_to_dataset([result], origin=ORIGIN), "rope")
     found: list[Found] = []
     for coded in rng.uniform(-0.8, 0.8, (3, 3)):
@@ -254,11 +253,16 @@ def looked_up(result: ExperimentResult, pair: int, rng: np.random.Generator) -> 
         at = dict(zip(line.factor_names, level, strict=True))
         for name in OF_PAIR[pair]:
             value = look_up(line, name, **at)
-            freedom = line.surfaces[name].degrees_of_freedom
-            half = float(value.surface_high - value.surface_low) / 2
-            spread = half / float(stats.t.ppf(0.975, freedom))
+            # both parts of the interval that is given, and the freedom of its scatter
             found.append(
-                (f"{name}, looked up", float(value.value), truth[name], spread, 0.0, freedom)
+                (
+                    f"{name}, looked up",
+                    float(value.value),
+                    truth[name],
+                    float(value.random_standard_uncertainty),
+                    float(np.sqrt(np.sum(value.contribution**2))),
+                    float(value.random_degrees_of_freedom),
+                )
             )
     return found
 

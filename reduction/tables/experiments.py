@@ -63,6 +63,7 @@ EXPERIMENT_TABLES = (
             *RUN,
             "unit",
             "response_measured",
+            "response_measured_random_standard_uncertainty",
             "response_fitted",
             "response_residual",
             "response_leverage",

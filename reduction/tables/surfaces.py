@@ -6,6 +6,13 @@ from reduction.tables.ofexperiments import table_of_experiments
 
 __all__ = ["SURFACE_TABLES"]
 
+_ERRORS = (
+    "uncertainty_source",
+    "uncertainty_source_of",
+    "uncertainty_source_number",
+    "uncertainty_source_degrees_of_freedom",
+)
+
 SURFACE_TABLES = (
     table_of_experiments(
         "surfaces",
@@ -31,10 +38,7 @@ SURFACE_TABLES = (
         "shared_errors_surfaces",
         ("experiment", "response", "uncertainty_component", "term"),
         (
-            "uncertainty_source",
-            "uncertainty_source_of",
-            "uncertainty_source_number",
-            "uncertainty_source_degrees_of_freedom",
+            *_ERRORS,
             "term_name",
             "unit",
             "response_coefficient_uncertainty_contribution",
@@ -42,6 +46,19 @@ SURFACE_TABLES = (
             "coefficient_engineering_unit",
         ),
         ("response_coefficient_uncertainty_contribution",),
+    ),
+    *(
+        table_of_experiments(
+            f"shared_errors_{table}",
+            ("experiment", "response", "uncertainty_component", dim),
+            (*_ERRORS, *about, f"response_{name}_uncertainty_contribution"),
+            (f"response_{name}_uncertainty_contribution",),
+        )
+        for table, dim, name, about in (
+            ("surface_points", "point", "point_value", ("point_name", "response_unit")),
+            ("stationary_points", "factor", "stationary_point", ("factor_name",)),
+            ("eigenvalues", "direction", "eigenvalue", ("unit",)),
+        )
     ),
     table_of_experiments(
         "surface_quality",
@@ -99,6 +116,7 @@ SURFACE_TABLES = (
         (
             "factor_name",
             "response_stationary_point",
+            "response_stationary_point_random_standard_uncertainty",
             "response_stationary_point_engineering",
             "factor_unit",
         ),
@@ -107,7 +125,13 @@ SURFACE_TABLES = (
     table_of_experiments(
         "eigenvalues",
         ("experiment", "response", "direction", "factor"),
-        ("unit", "response_eigenvalue", "factor_name", "response_eigenvector"),
+        (
+            "unit",
+            "response_eigenvalue",
+            "response_eigenvalue_random_standard_uncertainty",
+            "factor_name",
+            "response_eigenvector",
+        ),
         ("response_eigenvector",),
     ),
     table_of_experiments(
@@ -118,6 +142,7 @@ SURFACE_TABLES = (
             "point_kind",
             "response_unit",
             "response_point_value",
+            "response_point_value_random_standard_uncertainty",
             "response_point_mean_value",
             *(
                 f"response_point_{kind}_{end}"

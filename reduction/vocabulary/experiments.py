@@ -83,8 +83,22 @@ OF_EXPERIMENTS = (
     Quantity("stiffness_coefficient_name", "", "coefficient of the form"),
     Quantity("stiffness_coefficient_unit", "", "unit of the coefficient of the form"),
     Quantity("stiffness_coefficient", "1", "coefficient of the form, as a number of its unit"),
-    Quantity("stiffness_coefficient_low", "1", "lower end of the interval of the coefficient"),
-    Quantity("stiffness_coefficient_high", "1", "upper end of the interval of the coefficient"),
+    Quantity(
+        "stiffness_coefficient_standard_uncertainty",
+        "1",
+        "standard uncertainty (k=1) of that coefficient by the scatter of the runs alone, without "
+        "what they share",
+    ),
+    Quantity(
+        "stiffness_coefficient_low",
+        "1",
+        "lower end of the interval of the coefficient, by the scatter of the runs alone",
+    ),
+    Quantity(
+        "stiffness_coefficient_high",
+        "1",
+        "upper end of the interval of the coefficient, by the scatter of the runs alone",
+    ),
     Quantity("stiffness_p_value", "1", "probability of the coefficient if it were nil"),
     Quantity("stiffness_covariance", "1", "covariance of two coefficients of the form"),
     Quantity("stiffness_confidence", "1", "confidence of the intervals of the coefficients"),
@@ -103,8 +117,21 @@ OF_EXPERIMENTS = (
     Quantity("stiffness_residual", "N", "apparent spring constant less that by the form"),
     # whether one relaxation time holds over frequency
     Quantity("single_time_exponent", "1", "n of relaxation time ~ frequency**-n"),
-    Quantity("single_time_exponent_low", "1", "lower end of the interval of n"),
-    Quantity("single_time_exponent_high", "1", "upper end of the interval of n"),
+    Quantity(
+        "single_time_exponent_standard_uncertainty",
+        "1",
+        "standard uncertainty (k=1) of n by the scatter of the runs alone, without what they share",
+    ),
+    Quantity(
+        "single_time_exponent_low",
+        "1",
+        "lower end of the interval of n, by the scatter of the runs alone",
+    ),
+    Quantity(
+        "single_time_exponent_high",
+        "1",
+        "upper end of the interval of n, by the scatter of the runs alone",
+    ),
     Quantity("single_time_p_value_one_time", "1", "probability of such an n if it were 0"),
     Quantity("single_time_p_value_inverse_frequency", "1", "probability of such an n if it were 1"),
     Quantity(

@@ -44,6 +44,12 @@ RESPONSE_PATTERNS = (
         "coefficient, coded units, of the terms that AICc keeps; 0 where it does not",
     ),
     Quantity(
+        "<response>_reduced_coefficient_standard_uncertainty",
+        "<unit>",
+        "standard uncertainty (k=1) of that coefficient by the scatter of the runs alone, without "
+        "what they share",
+    ),
+    Quantity(
         "<response>_reduced_coefficient_engineering",
         "<unit>",
         "coefficient, of the kept terms, of the factors as numbers of their SI units",
@@ -115,6 +121,12 @@ RESPONSE_PATTERNS = (
     Quantity("<response>_block_standard_deviation", "<unit>", "standard deviation between blocks"),
     Quantity("<response>_block_at_boundary", "1", "whether the blocks differ no more than runs"),
     Quantity("<response>_effect", "<unit>", "mean at the high level less that at the low one"),
+    Quantity(
+        "<response>_effect_standard_uncertainty",
+        "<unit>",
+        "standard uncertainty (k=1) of an effect by the scatter of the runs alone, without what "
+        "they share",
+    ),
     Quantity("<response>_effect_t", "1", "Student's t of the effect"),
     Quantity("<response>_effect_p_value", "1", "probability of the effect if it were nil"),
     Quantity("<response>_effect_is_significant", "1", "whether the effect is above the minimum"),

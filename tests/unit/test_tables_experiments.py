@@ -11,6 +11,7 @@ from reduction.surface.canonical import ridge_path
 from reduction.tables.experiments import EXPERIMENT_TABLES
 from reduction.tables.responses import by_response
 from reduction.tables.rows import table_rows
+from reduction.uncertainty.surfacepoints import with_shared_at_points
 from reduction.vocabulary import RESPONSE_PATTERNS, RESPONSES, SURFACE_NAMES
 
 ONE = surface_experiment()
@@ -73,8 +74,14 @@ def test_a_run_shows_plan_levels_responses_and_residuals(dataset):
     assert (run["run_name"], run["run_specimen"]) == ("R02", "line")
     assert run["run_mean_tension"] == ONE.runs.mean_tension[1]
     assert run["relaxation_time_measured"] == ONE.runs.response[3, 1]
+    # the scatter of the run, and the gain of the load cell that it shares
+    assert run["relaxation_time_measured_standard_uncertainty"] == pytest.approx(
+        np.hypot(ONE.runs.response_standard_uncertainty[3, 1], 0.01 * ONE.runs.response[3, 1])
+    )
+    responses = [row for row in rows_of(dataset, "run_responses") if row["run_name"] == "R02"]
+    time = next(row for row in responses if row["response"] == "relaxation_time")
     assert (
-        run["relaxation_time_measured_standard_uncertainty"]
+        time["response_measured_random_standard_uncertainty"]
         == ONE.runs.response_standard_uncertainty[3, 1]
     )
     levels = rows_of(dataset, "run_levels")[3:6]
@@ -130,17 +137,18 @@ def test_an_eigenvector_has_a_row_a_factor(dataset):
 def test_a_surface_has_a_row_a_point_with_three_intervals(dataset):
     rows = [row for row in rows_of(dataset, "surface_points") if row["experiment"] == "half-inch"]
     assert len(rows) == 21 * len(ONE.surfaces.response_names)
-    wanted = evaluate_surfaces(ONE.surfaces, np.zeros((1, 3)), units="coded")
+    at = evaluate_surfaces(ONE.surfaces, np.zeros((1, 3)), units="coded")
+    wanted = with_shared_at_points(ONE.surfaces, at, ONE.shared.coefficient, [np.inf])
     for row in rows[::21]:
         assert (row["point_name"], row["point_kind"]) == ("(0, 0, 0)", "centre")
         place = ONE.surfaces.response_names.index(row["response"])
-        assert row["response_point_value"] == wanted.value[place, 0]
+        assert row["response_point_value"] == at.value[place, 0]
         for kind in ("confidence", "prediction", "simultaneous"):
             ends = [row[f"response_point_{kind}_{end}"] for end in ("low", "high")]
-            assert ends == getattr(wanted, f"{kind}_interval")[place, 0].tolist()
+            assert ends == pytest.approx(getattr(wanted, f"{kind}_interval")[place, 0], rel=1e-12)
         assert row["interval_confidence"] == 0.95
-        has_spread = row["response_point_value_standard_uncertainty"] is not None
-        assert has_spread == (ONE.surfaces.transform[place] == "none")
+        both = row["response_point_value_standard_uncertainty"]
+        assert both > row["response_point_value_random_standard_uncertainty"] > 0
     units = {row["response"]: row["response_unit"] for row in rows}
     assert units["hysteresis_energy"] == units["log_hysteresis_energy"] == "J m-1"
     assert {row["response_point_is_above_leverage"] for row in rows} == {"no", "yes"}
@@ -248,9 +256,15 @@ def test_every_number_of_an_archive_of_experiments_is_in_a_table():
         for name in SURFACE_NAMES
     }
     of_responses |= {
-        f"{name}_coefficient{kind}_uncertainty_contribution"
+        f"{name}_{of}_uncertainty_contribution"
         for name in SURFACE_NAMES
-        for kind in ("", "_engineering")
+        for of in (
+            "coefficient",
+            "coefficient_engineering",
+            "point_value",
+            "stationary_point",
+            "eigenvalue",
+        )
     }
     missing = set(SURFACE_SCHEMA) - sources - of_responses
     assert {name for name in missing if not name.endswith("_standard_uncertainty")} == {
