@@ -23,11 +23,14 @@ from reduction.pipeline.deployed import DeployedLine, WorkingState, deploy
 from reduction.published.piecesource import published_piece_sources
 from reduction.report.curvepage import write_assembly_page
 from reduction.strain.model import StrainModel
+from reduction.uncertainty.combine import coverage_factor
 from reduction.units import UnitSystem, display_unit
 
 __all__ = ["assemble_spec", "deployed_line"]
 
 _ROWS = 16
+_KNOWN = float(coverage_factor(np.inf))
+"""Coverage factor of a curve of many tests, whose degrees of freedom are not counted. [1]"""
 
 
 def assemble_spec(path: Path, *, out: Path | None, output: CommandOutput) -> None:
@@ -210,7 +213,7 @@ def _show_working(
     point = state.point
     told = (
         f"working.{number}: {per_newton * float(point.mean_tension):.4g} {force} "
-        f"+- {per_newton * state.standard_uncertainty:.3g} at "
+        f"+- {per_newton * _KNOWN * state.standard_uncertainty:.3g} (95 %, k = {_KNOWN:.2f}) at "
         f"{per_metre * float(point.total_length):.5g} {length}, strain of a tether "
         f"{100 * float(state.strain.max()):.4g} %, EA "
         f"{per_newton * state.secant_spring_constant:.4g} {force} over "

@@ -352,3 +352,11 @@ def test_stiffness_where_the_curve_was_moved_is_flagged_and_has_a_secant(command
     assert "by the rule of rising, DOUBTFUL" in first
     rows = [line for line in said.splitlines() if "moved: local EA is the rule's" in line]
     assert rows and any("join" in row for row in rows)
+
+
+def test_the_uncertainty_of_a_working_state_is_expanded_and_says_so(command):
+    path = DOCS / "new-hampshire.toml"
+    found, said = assembly(command, path), command("assembly", path, "--units", "us").stdout
+    half = 1.96 * found["working"][0]["tension_standard_uncertainty"] / LBF
+    told = re.search(r"working\.1: [\d.]+ lbf \+- (\d+) \(95 %, k = 1\.96\) at ", said)
+    assert float(told[1]) == pytest.approx(half, abs=0.5)
