@@ -270,6 +270,20 @@ def test_a_run_of_which_it_is_not_kept_what_it_shares_is_not_exact(run, tmp_path
     dataset = surfaces_to_dataset([result], origin=ABOUT)
     spread = dataset["apparent_spring_constant_coefficient_standard_uncertainty"]
     assert np.isnan(spread.to_numpy()).all()
+    # nor has a point of the surface an interval, and the run none but its own scatter
+    point = {
+        what: dataset[f"apparent_spring_constant_{what}"].to_numpy()[0]
+        for what in (
+            "point_value", "point_value_standard_uncertainty", "point_confidence_low",
+            "point_prediction_high", "ridge_simultaneous_low", "stationary_point_standard_uncertainty",
+        )
+    }  # fmt: skip
+    assert np.isfinite(point.pop("point_value")).all()
+    assert all(np.isnan(values).all() for values in point.values())
+    own = dataset["apparent_spring_constant_measured_standard_uncertainty"].to_numpy()[0]
+    assert np.flatnonzero(np.isnan(own)).tolist() == [3]
+    random = dataset["apparent_spring_constant_measured_random_standard_uncertainty"].to_numpy()[0]
+    assert np.isfinite(random).all()
     with pytest.raises(ArchiveError, match="uncertainty of apparent.* there is not known"):
         budget_from_archive(
             dataset, "apparent_spring_constant_coefficient",
