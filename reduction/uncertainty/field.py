@@ -33,6 +33,8 @@ from reduction.uncertainty.splicemethod import splice_method_error
 
 __all__ = ["ErrorField", "error_field"]
 
+_PIECE = 4096  # points
+
 
 @dataclass(frozen=True)
 class ErrorField:
@@ -133,6 +135,29 @@ def error_field(
     ['tension_gain', 'strain_calibration'] [9. 0.] [ 0.    -0.001]
     """
     at, load = as_same_shape(strain=strain, tension=tension)
+    # point by point, in pieces that stay in the cache of a processor
+    pieces = [
+        _table_at(errors, model, at.ravel()[begin : begin + _PIECE],
+                  load.ravel()[begin : begin + _PIECE], held)
+        for begin in range(0, max(load.size, 1), _PIECE)
+    ]  # fmt: skip
+    components, tables, by_tension = zip(*pieces, strict=True)
+    table = np.concatenate(tables, axis=-1).reshape(len(components[0]), len(ROWS), *load.shape)
+    return ErrorField(
+        components[0],
+        **dict(zip(ROWS, np.moveaxis(table, 1, 0), strict=True)),
+        strain_by_tension=np.concatenate(by_tension).reshape(load.shape),
+    )
+
+
+def _table_at(
+    errors: InstrumentErrors,
+    model: StrainModel,
+    at: Floats,
+    load: Floats,
+    held: Literal["position", "tension"],
+) -> tuple[tuple[Component, ...], Floats, Floats]:
+    """Errors at points in a row, what each does there, and the strain by tension."""
     parts = [
         *load_parts(errors, model, load),
         *position_parts(errors, model, at, load),
@@ -155,10 +180,5 @@ def error_field(
     if errors.strain_gain:
         rows = field_rows(load, strain=errors.strain_gain * at, strain_slope=errors.strain_gain)
         parts.append((Component("strain_gain", errors.strain_model or errors.specimen), rows))
-    table = np.stack([rows for _, rows in parts]) if parts else np.empty((0, 5, *load.shape))
-    arrays = dict(zip(ROWS, np.moveaxis(table, 1, 0), strict=True))
-    return ErrorField(
-        tuple(one for one, _ in parts),
-        **arrays,
-        strain_by_tension=strain_by_tension(model, at, load),
-    )
+    table = np.stack([rows for _, rows in parts]) if parts else np.empty((0, len(ROWS), load.size))
+    return tuple(one for one, _ in parts), table, strain_by_tension(model, at, load)
