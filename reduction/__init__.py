@@ -1,3 +1,21 @@
 """Reduction of cyclic tension tests on compliant mooring elements."""
 
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from reduction.archive.tree import open_campaign
+else:
+
+    def __getattr__(name: str) -> Any:
+        """Load what needs xarray at its first use: the package itself imports in milliseconds."""
+        if name == "open_campaign":
+            return import_module("reduction.archive.tree").open_campaign
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+__all__ = ["__version__", "open_campaign"]
+
 __version__ = "0.1.0"

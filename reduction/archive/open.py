@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from importlib.util import find_spec
 from pathlib import Path
+from typing import Literal
 
 import xarray as xr
 
 from reduction.archive.schema import SCHEMA_VERSION
-from reduction.errors import ArchiveError
+from reduction.errors import ArchiveError, SettingsError
 
-__all__ = ["open_archive"]
+__all__ = ["Chunks", "open_archive"]
+
+Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
+"""Values of a chunk, or by dimension, as `xarray.open_dataset` takes them."""
 
 
-def open_archive(path: Path) -> xr.Dataset:
+def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
     """Open an archive; values are read from the disk when they are asked for.
 
     Parameters
     ----------
     path : pathlib.Path
         A file that `write_archive` wrote.
+    chunks : int or mapping of str to int or "auto", optional
+        Values of a chunk, by dimension; with them every variable is a Dask array, cut as it
+        is stored where nothing is said of a dimension.
 
     Returns
     -------
@@ -29,6 +38,8 @@ def open_archive(path: Path) -> xr.Dataset:
     ------
     ArchiveError
         If there is no such file, it is not netCDF, or it has another schema.
+    SettingsError
+        If Dask is wanted and not installed, or refuses the chunks.
     """
     if not path.is_file():
         raise ArchiveError(f"there is no archive {path}", hint="Run the campaign first.")
@@ -51,4 +62,29 @@ def open_archive(path: Path) -> xr.Dataset:
             needed=f"version {SCHEMA_VERSION}",
             hint="Reduce the test again with this version.",
         )
-    return dataset
+    if chunks is None:
+        return dataset
+    # what is known to be an archive is opened again, so that a fault is one of the chunks
+    dataset.close()
+    return _open_in_chunks(path, chunks)
+
+
+def _open_in_chunks(path: Path, chunks: Chunks) -> xr.Dataset:
+    if find_spec("dask") is None:
+        raise SettingsError(
+            "chunks need Dask",
+            found="no package of that name",
+            needed="dask",
+            hint='Install "mooring-reduction[cluster]", or leave chunks out: values are read '
+            "when they are asked for all the same.",
+        )
+    try:
+        return xr.open_dataset(
+            path, engine="netcdf4", decode_times=False, decode_timedelta=False, chunks=chunks
+        )
+    except (AttributeError, TypeError, ValueError, NotImplementedError) as error:
+        raise SettingsError(
+            "archives cannot be cut in these chunks",
+            found=f"{chunks!r}: {str(error).splitlines()[0]}",
+            needed='a number of values, or "auto", by the name of a dimension',
+        ) from error
