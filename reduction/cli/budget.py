@@ -9,9 +9,11 @@ from typing import cast
 
 import xarray as xr
 
-from reduction.archive.budget import budget_from_archive, place_name, quantities_with_budget
+from reduction.archive.budget import budget_from_archive, quantities_with_budget
+from reduction.archive.budgetplaces import place_name
 from reduction.archive.open import open_archive
 from reduction.cli.commandoutput import CommandOutput
+from reduction.cli.lookupsource import name_of_quantity
 from reduction.cli.numbers import plain, short, table_of
 from reduction.errors import SettingsError
 from reduction.uncertainty.budget import Budget
@@ -22,16 +24,24 @@ from reduction.units import UnitSystem, display_unit, parse_quantity
 __all__ = ["list_budgets", "show_budget"]
 
 _WIDTH = 30
+# what a look-up calls a curve of a slow pull
+_OVER_TENSION = {"strain": "quasi_static_strain"}
 
 
 def list_budgets(path: Path, *, output: CommandOutput) -> None:
     """Print what PRODUCT keeps a budget of."""
     with open_archive(path) as archive:
         names = {name: list(archive[name].dims) for name in quantities_with_budget(archive)}
-    table = table_of("quantity", "--at", texts=2)
-    for name, dims in names.items():
-        table.add_row(name, ", ".join(place_name(str(dim)) for dim in dims))
-    output.show(table)
+    if names:
+        table = table_of("quantity", "--at", texts=2)
+        for name, dims in names.items():
+            table.add_row(name, ", ".join(place_name(str(dim)) for dim in dims))
+        output.show(table)
+    else:
+        output.say(
+            f"{path.name} keeps no errors that its numbers share, and has no budgets: what it has "
+            "is of scatter alone, or was made by an earlier version"
+        )
     output.answer(
         {"quantities": {name: [str(dim) for dim in dims] for name, dims in names.items()}}
     )
@@ -40,11 +50,14 @@ def list_budgets(path: Path, *, output: CommandOutput) -> None:
 def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: CommandOutput) -> None:
     """Print the budget of one number, largest source first."""
     with open_archive(path) as archive:
-        budget = budget_from_archive(archive, quantity, _places(places))
+        budget = budget_from_archive(archive, _name_in(archive, quantity), _places(places))
         synthetic = archive.attrs.get("synthetic", "no") == "yes"
         drawn = _drawn_uncertainty(archive, budget)
     unit, scale = display_unit(budget.unit, cast("UnitSystem", output.units))
-    where = ", ".join(f"{place_name(dim)} {label}" for dim, label in budget.place.items())
+    where = ", ".join(
+        f"{place_name(dim)} {label}" + _in_brackets(label, budget.words.get(dim, ""))
+        for dim, label in budget.place.items()
+    )
     table = table_of(
         "source", "of", f"contribution [{unit}]", "share of u2", texts=2,
         title=f"{budget.quantity}, {where}" + (" (synthetic data)" if synthetic else ""),
@@ -70,6 +83,20 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: Com
     output.answer(_document(budget, synthetic))
 
 
+def _name_in(archive: xr.Dataset, quantity: str) -> str:
+    """Name of a quantity that is asked for as a look-up takes it; itself where none is known."""
+    known = quantities_with_budget(archive)
+    over = _OVER_TENSION.get(quantity, quantity)
+    return next((one for one in (quantity, over) if one in known), name_of_quantity(quantity))
+
+
+def _in_brackets(label: str, words: str) -> str:
+    if words.startswith(label):
+        # the same with its unit
+        return words.removeprefix(label)
+    return f" ({words})" if words else ""
+
+
 def _drawn_uncertainty(archive: xr.Dataset, budget: Budget) -> float | None:
     """Standard uncertainty that stands in an archive where linear propagation bends."""
     method = archive.get("test_line_uncertainty_method")
@@ -87,7 +114,7 @@ def _short_name(text: str) -> str:
 
 
 def _places(texts: Sequence[str]) -> dict[str, str]:
-    """``dimension=label`` of each option; a strain may carry a percent sign."""
+    """``dimension=label`` of each option; a strain may carry a percent sign, a tension a unit."""
     found = {}
     for text in texts:
         name, sign, label = text.partition("=")
@@ -96,8 +123,12 @@ def _places(texts: Sequence[str]) -> dict[str, str]:
                 "--at is no place", found=repr(text), needed='such as "branch=ascending"'
             )
         key = name.strip()
-        is_strain = key.endswith(("strain", "strain_bin"))
-        found[key] = str(parse_quantity(label, "strain")) if is_strain else label.strip()
+        if key.endswith(("strain", "strain_bin")):
+            found[key] = str(parse_quantity(label, "strain"))
+        elif key in ("tension", "tension_grid"):
+            found[key] = str(parse_quantity(label, "force"))
+        else:
+            found[key] = label.strip()
     return found
 
 
@@ -106,6 +137,7 @@ def _document(budget: Budget, synthetic: bool) -> dict[str, object]:
         "quantity": budget.quantity,
         "unit": budget.unit,
         "at": budget.place,
+        "at_words": {dim: words for dim, words in budget.words.items() if words},
         "value": plain(budget.value),
         "standard_uncertainty": plain(budget.standard_uncertainty),
         "expanded_uncertainty": plain(budget.expanded_uncertainty),

@@ -9,7 +9,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from reduction.uncertainty.product import Component
 
 __all__ = ["RANDOM", "Budget", "BudgetRow", "budget_of"]
 
+_ROUNDING = 1e-9
 RANDOM = "random"
 """Source of what is not shared: scatter, noise, regression."""
 
@@ -58,6 +59,8 @@ class Budget:
         Of the random part, and of all parts together, from which k follows. [1]
     rows : tuple of BudgetRow
         Largest first; their shares add up to 1.
+    words : dict of str to str
+        What a place is, where its label alone does not say it.
     """
 
     quantity: str
@@ -70,6 +73,7 @@ class Budget:
     degrees_of_freedom: float
     effective_degrees_of_freedom: float
     rows: tuple[BudgetRow, ...]
+    words: dict[str, str] = field(default_factory=dict)
 
 
 def budget_of(
@@ -81,6 +85,7 @@ def budget_of(
     random: float,
     degrees_of_freedom: float,
     place: Mapping[str, str] | None = None,
+    words: Mapping[str, str] | None = None,
 ) -> Budget:
     """Put the sources of one number in order.
 
@@ -96,8 +101,8 @@ def budget_of(
         Standard uncertainty of what is not shared. [unit]
     degrees_of_freedom : float
         Of the random part. [1]
-    place : mapping of str to str, optional
-        Which one of its kind.
+    place, words : mapping of str to str, optional
+        Which one of its kind, and what that is.
 
     Returns
     -------
@@ -112,7 +117,8 @@ def budget_of(
     Notes
     -----
     Contributions of one source to one owner are of independent errors (the coefficients of a fit)
-    and add by their squares; a single one keeps its sign.
+    and add by their squares; a single one keeps its sign.  What is below a billionth of the largest
+    is the rounding of an error that cancels, and no source.
 
     Examples
     --------
@@ -132,10 +138,12 @@ def budget_of(
         for key, own in groups.items()
     }
     amounts[RANDOM, ""] = float(random)
+    greatest = max(amount**2 for amount in amounts.values())
     total = float(combined_standard_uncertainty(list(amounts.values()), 0.0))
     rows = [
         BudgetRow(source, of, amount, (amount / total) ** 2 if total > 0 else 0.0)
         for (source, of), amount in amounts.items()
+        if source == RANDOM or amount**2 > _ROUNDING * greatest
     ]
     effective = effective_degrees_of_freedom(
         random,
@@ -154,5 +162,6 @@ def budget_of(
         coverage_factor=factor,
         degrees_of_freedom=degrees_of_freedom,
         effective_degrees_of_freedom=float(effective),
+        words=dict(words or {}),
         rows=tuple(sorted(rows, key=lambda row: (-row.share, row.source, row.of))),
     )

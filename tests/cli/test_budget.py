@@ -157,3 +157,20 @@ def test_a_budget_of_what_was_drawn_says_that_the_product_states_another(tmp_pat
     assert found.exit_code == 0, found.output
     said = "the product states 0.75 s, by Monte Carlo" in " ".join(found.output.split())
     assert said == is_said
+
+
+def test_the_names_of_a_look_up_are_known(product):
+    at = ("--at", "specimen=new")
+    assert answer(product, "--quantity", "K_ap", *at)["quantity"] == "test_apparent_spring_constant"
+    at = (*at, "--at", "branch=ascending", "--at", "strain=100 %")
+    assert answer(product, "--quantity", "tension", *at)["quantity"] == "branch_tension"
+
+
+def test_a_product_that_keeps_nothing_shared_says_so_in_a_sentence(product, tmp_path):
+    with open_archive(product) as archive:
+        kept = [name for name in archive.variables if "uncertainty_contribution" not in str(name)]
+        archive[kept].load().to_netcdf(tmp_path / "old.nc", engine="netcdf4")
+    found = run("budget", tmp_path / "old.nc")
+    assert found.exit_code == 0
+    assert "old.nc keeps no errors that its numbers share" in " ".join(found.output.split())
+    assert "--at" not in found.output

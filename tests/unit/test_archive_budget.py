@@ -7,9 +7,9 @@ import xarray as xr
 from reduction.archive.budget import (
     all_budgets,
     budget_from_archive,
-    place_name,
     quantities_with_budget,
 )
+from reduction.archive.budgetplaces import place_name, words_of
 from reduction.archive.freedom import effective_freedom, random_freedom
 from reduction.errors import ArchiveError, SettingsError
 
@@ -220,3 +220,84 @@ def test_a_number_counts_what_it_was_found_from(archive, name, expected):
 def test_a_mean_of_one_cycle_is_known_by_the_samples_of_it(archive):
     archive["tangent_modulus_count"][0, 1] = 1
     assert random_freedom(archive, "tangent_modulus").tolist() == [[9, np.inf]]
+
+
+@pytest.fixture
+def properties():
+    """Two stiffnesses of a rope, and a strain that it has none of; one error cancels."""
+    along, of = "property", "uncertainty_component"
+    return xr.Dataset(
+        {
+            "property_name": (along, ["dynamic stiffness", "dynamic stiffness"]),
+            "property_specimen": (along, ["line-1", "line-1"]),
+            "property_test": (along, ["R01", "R02"]),
+            "property_remark": (along, ["", "no step beds the rope in"]),
+            "property_stiffness": (along, [1e5, np.nan], {"units": "N"}),
+            "property_stiffness_random_standard_uncertainty": (along, [10.0, np.nan]),
+            "property_stiffness_uncertainty_contribution": (
+                (of, along), [[300.0, np.nan], [1e-13, np.nan]],
+            ),
+            "uncertainty_source": (of, ["tension_gain", "tension_offset"]),
+            "uncertainty_source_of": (of, ["cell", "cell"]),
+            "uncertainty_source_number": (of, [0, 0]),
+        },
+        coords={along: [1, 2]},
+    )  # fmt: skip
+
+
+def test_a_place_is_told_by_what_it_is_and_asked_for_by_that(properties):
+    found = budget_from_archive(properties, "property_stiffness", {"property": "1"})
+    words = "dynamic stiffness, line-1, R01"
+    assert found.words == {"property": words}
+    same = budget_from_archive(properties, "property_stiffness", {"property": words})
+    assert same == found
+    with pytest.raises(SettingsError, match=r"which property.*2 \(dynamic stiffness, line-1, R02"):
+        budget_from_archive(properties, "property_stiffness", {})
+
+
+def test_the_rounding_of_an_error_that_cancels_is_no_source(properties):
+    found = budget_from_archive(properties, "property_stiffness", {"property": "1"})
+    assert [row.source for row in found.rows] == ["tension_gain", "random"]
+
+
+def test_where_there_is_no_number_the_archive_says_why(properties):
+    with pytest.raises(ArchiveError, match="The archive says: no step beds the rope in"):
+        budget_from_archive(properties, "property_stiffness", {"property": "2"})
+
+
+def test_a_slow_pull_is_read_between_its_tensions_and_told_with_the_unit():
+    grid, of = "tension_grid", "uncertainty_component"
+    name = "quasi_static_strain"
+    pull = xr.Dataset(
+        {
+            name: (grid, [0.01, 0.02, 0.04], {"units": "1"}),
+            f"{name}_random_standard_uncertainty": (grid, [0.0, 0.0, 0.0]),
+            f"{name}_uncertainty_contribution": ((of, grid), [[1e-4, 2e-4, 4e-4]]),
+            "uncertainty_source": (of, ["strain_gain"]),
+            "uncertainty_source_of": (of, ["rope"]),
+            "uncertainty_source_number": (of, [0]),
+        },
+        coords={grid: (grid, [100.0, 200.0, 300.0], {"units": "N"})},
+    )
+    found = budget_from_archive(pull, name, {"tension": "250"})
+    assert (found.value, found.standard_uncertainty) == pytest.approx((0.03, 3e-4))
+    assert found.words == {grid: "250 N"}
+    with pytest.raises(SettingsError, match=r"which tension is meant.*\(100 N to 300 N\)"):
+        budget_from_archive(pull, name, {})
+
+
+def test_an_archive_without_parts_says_what_it_has_and_names_no_empty_list():
+    old = xr.Dataset(
+        {"segment_modulus": ((), 1e6), "segment_modulus_standard_uncertainty": ((), 5.0)}
+    )
+    with pytest.raises(
+        SettingsError, match=r"no budget in this archive.*as a whole.*Reduce it again"
+    ):
+        budget_from_archive(old, "segment_modulus", {})
+
+
+def test_a_ratio_says_of_which_two(archive):
+    archive = archive.assign(
+        ratio_numerator=("comparison", ["used"]), ratio_denominator=("comparison", ["new"])
+    )
+    assert words_of(archive, "comparison", 0, {}) == "used over new"
