@@ -40,7 +40,9 @@ def slack_contributions(**stated):
     """Of a strain at slack of 3 %, found where 5 N more would be 1 mm per metre more."""
     test = SimpleNamespace(
         stress_at_strain=None, first_loading=None, history=None, standstills=None,
-        slack_strain=SimpleNamespace(strain=np.array([0.03]), by_tension=np.array([2e-4])),
+        slack_strain=SimpleNamespace(
+            strain=np.array([0.03]), by_tension=np.array([2e-4]), by_lag=np.array([0.1])
+        ),
     )  # fmt: skip
     (found,) = of_material(test, 0, InstrumentErrors("new", **stated), MODEL, np.nan)
     return dict(zip(found.component, found.values["slack_strain_at_unloading"], strict=True))
