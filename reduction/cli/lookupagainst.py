@@ -13,6 +13,7 @@ from reduction.cli.lookup import fold_last, said_of_lines, shown_levels, span, w
 from reduction.cli.lookuppoints import Wanted, points_of
 from reduction.cli.lookupsource import lines_of, one_of
 from reduction.cli.numbers import plain, short, table_of
+from reduction.errors import SettingsError
 from reduction.export.lookuptable import format_of_file, table_of_difference
 from reduction.lookup.against import LineDifference, compare_values
 from reduction.lookup.line import look_up
@@ -30,7 +31,7 @@ def look_up_against(source: str, other: str, wanted: Wanted, *, output: CommandO
     form = None if wanted.out is None else format_of_file(wanted.out)
     lines = lines_of(source)
     first = one_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
-    second = _other(lines, other, wanted.quantity)
+    second = _other(lines, other, wanted.quantity, first)
     (points, others), left_out = points_of(wanted, first, second)
     if left_out:
         output.say("combinations whose amplitude is above the mean tension are left out")
@@ -46,10 +47,26 @@ def look_up_against(source: str, other: str, wanted: Wanted, *, output: CommandO
     output.answer(document | {"files": files})
 
 
-def _other(lines: list[LineSource], name: str, quantity: str) -> LineSource:
-    """The second line: one of SOURCE by its name, else what the name means by itself."""
+def _other(lines: list[LineSource], name: str, quantity: str, first: LineSource) -> LineSource:
+    """The second line: one of SOURCE by its name, else what the name means by itself.
+
+    Of several that it means the one that is called as the first: the same specimen in two tests.
+    """
     of_source = [line for line in lines if line.name == name]
-    return one_of(of_source or lines_of(name), quantity, None)
+    found = of_source or lines_of(name)
+    having = [line for line in found if quantity in line.quantities]
+    if len(having) < 2:
+        return one_of(found, quantity, None)
+    alike = [line for line in having if line.name == first.name]
+    if len(alike) != 1:
+        raise SettingsError(
+            f"--against {name} means several lines with {quantity}: which is not said",
+            found=", ".join(f"{line.name} ({line.source})" for line in having),
+            needed=f"the name of one line, or one called {first.name} as the first is",
+            hint='Of tests of one campaign: lookup processed/CAMPAIGN --line "T-1 new" --against '
+            '"T-2 used".',
+        )
+    return alike[0]
 
 
 def _show(
@@ -63,7 +80,12 @@ def _show(
     system = cast("UnitSystem", output.units)
     unit, factor = display_unit(found.unit, system)
     branch = f", {found.first.branch} branch" if found.first.branch else ""
-    output.say(f"{found.quantity} of {second.name} (second) against {first.name} (first){branch}")
+    # one specimen in two tests has one name
+    told = [
+        f"{line.name} of {line.source}" if first.name == second.name else line.name
+        for line in (second, first)
+    ]
+    output.say(f"{found.quantity} of {told[0]} (second) against {told[1]} (first){branch}")
     if any(not np.array_equal(values, others[name]) for name, values in points.items()):
         output.say(
             "levels in %RBS are shares of each line's own break strength: "

@@ -184,6 +184,25 @@ def test_two_lines_of_one_source_stand_against_each_other(command, synthetic):
     assert "synthetic data" in answer["first"]["notes"]
 
 
+def test_the_line_that_was_said_is_that_of_both_tests_and_another_has_to_be_named(
+    command, synthetic
+):
+    ask = ("lookup", synthetic.processed / "T-1.nc", "--quantity", "branch_tension", "--strain",
+           "100 %", "--branch", "ascending", "--against", synthetic.processed / "T-2.nc")  # fmt: skip
+    done = command(*ask, "--line", "new", "--json")
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout)
+    for side, test in (("first", "T-1"), ("second", "T-2")):
+        assert f"{test}, specimen new" in answer[side]["source"]
+    said = command(*ask, "--line", "new").stdout
+    assert "T-2, specimen new (second)" in " ".join(said.split())
+    other = command("lookup", "rubber-tether-used-T-1", *ask[2:])
+    assert other.returncode == 2
+    words = " ".join(other.stderr.split())
+    assert "means several lines with branch_tension: which is not said" in words
+    assert '--line "T-1 new" --against "T-2 used"' in words
+
+
 def test_boxes_without_anything_in_common_make_no_grid(command):
     done = command(
         "lookup", NYLON, "--quantity", "apparent_spring_constant", "--table", "--against",
