@@ -43,6 +43,6 @@ def law_experiment(laws, *, noise=1e-4, transforms=(), coded=CODED):
         response_standard_uncertainty=np.abs(response) * 1e-3,
     )  # fmt: skip
     return replace(
-        plain, runs=runs, surfaces=surfaces, response_names=tuple(laws), stiffness_forms=(),
+        plain, runs=runs, surfaces=surfaces, shared=None, response_names=tuple(laws), stiffness_forms=(),
         form_quality=None, single_time=None,
     )  # fmt: skip

@@ -141,7 +141,9 @@ def test_a_response_without_a_surface_has_a_reason_and_no_figure():
         runs.level, few, factor_names=result.factor_names, response_names=result.response_names,
         low=result.low, high=result.high, run_names=runs.names,
     )  # fmt: skip
-    view = view_of(replace(result, runs=replace(runs, response=few), surfaces=surfaces))
+    view = view_of(
+        replace(result, runs=replace(runs, response=few), surfaces=surfaces, shared=None)
+    )
     (part,) = [p for p in make_experiment_section(view, {}).parts if p.heading == "Relaxation time"]
     assert part.figures == ()
     assert part.sentences == ("No surface: fewer runs with a value than terms.",)
