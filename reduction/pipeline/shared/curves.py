@@ -98,7 +98,8 @@ def of_curves(
 ) -> Contributions:
     """Both branches of one specimen, by name of the archive."""
     known = curves.tangent_modulus[index], curves.tangent_modulus_untrimmed[index]
-    slope = np.where(np.isfinite(known[0]), known[0], known[1])
+    # readers take an error of strain back out of the tension by the slope that an archive has there
+    slope = np.where(np.isfinite(known[1]), known[1], known[0])
     tension, slope = _completed(curves.strain_bin, curves.branch_tension[index], slope, area)
     strain = np.broadcast_to(curves.strain_bin, tension.shape)
     field = error_field(errors, model, strain=strain, tension=tension)
