@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Literal
 
-from reduction.archive.schema import SCHEMA_VERSION
+from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError
 from reduction.product import ReducedTest
 from reduction.provenance import Origin, Source, Step

@@ -18,9 +18,10 @@ from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.outcomes import OUTCOME_SCHEMA
 from reduction.archive.prediction_schema import PREDICTION_SCHEMA
 from reduction.archive.properties import PROPERTY_SCHEMA
-from reduction.archive.schema import SCHEMA_VERSION, schema_of
+from reduction.archive.schema import schema_of
 from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.variable import Variable
+from reduction.archive.version import SCHEMA_VERSION
 
 __all__ = ["check_archive"]
 

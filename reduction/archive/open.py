@@ -9,7 +9,7 @@ from typing import Literal
 
 import xarray as xr
 
-from reduction.archive.schema import SCHEMA_VERSION
+from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError, SettingsError
 
 __all__ = ["Chunks", "open_archive"]

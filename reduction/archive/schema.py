@@ -89,12 +89,8 @@ __all__ = [
     "COEFFICIENTS",
     "QUALITY_MASKS",
     "SCHEMA",
-    "SCHEMA_VERSION",
     "schema_of",
 ]
-
-SCHEMA_VERSION = "1"
-"""Changes when a name, dimension or meaning changes; additions leave it as it is."""
 
 QUALITY_MASKS = {(mask_.name or "").lower(): int(mask_) for mask_ in Quality}
 

@@ -10,7 +10,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 from reduction.archive.open import open_archive
-from reduction.archive.schema import SCHEMA_VERSION
+from reduction.archive.version import SCHEMA_VERSION
 from reduction.cli.main import app
 
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"

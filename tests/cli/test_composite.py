@@ -9,8 +9,8 @@ import pytest
 import xarray as xr
 
 from reduction.archive.open import open_archive
-from reduction.archive.schema import SCHEMA_VERSION
 from reduction.archive.strainmodel import strain_model_of
+from reduction.archive.version import SCHEMA_VERSION
 from reduction.strain.inverse import position_by_model
 
 LBF = 4.4482216152605

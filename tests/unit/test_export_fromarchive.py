@@ -3,7 +3,7 @@ import pytest
 import xarray as xr
 from predicted_hoses import dataset, predicted
 
-from reduction.archive.schema import SCHEMA_VERSION
+from reduction.archive.version import SCHEMA_VERSION
 from reduction.archive.write import write_archive
 from reduction.errors import ArchiveError, DataError, SettingsError
 from reduction.export.fromarchive import line_from_archive

@@ -9,7 +9,7 @@ import xarray as xr
 from export_lines import line
 from predicted_hoses import dataset, predicted
 
-from reduction.archive.schema import SCHEMA_VERSION
+from reduction.archive.version import SCHEMA_VERSION
 from reduction.archive.write import write_archive
 from reduction.errors import DataError
 from reduction.export.fromarchive import line_from_archive
