@@ -13,6 +13,7 @@ import typer
 from reduction import __version__
 from reduction.cli.budgetcommand import budget
 from reduction.cli.campaigncommands import check, init, report, run, schema, sniff
+from reduction.cli.cataloguecommand import catalogue
 from reduction.cli.curvecommands import assembly, composite
 from reduction.cli.experimentcommands import experiment, surface
 from reduction.cli.lookupcommand import lookup
@@ -61,6 +62,7 @@ app.command()(assembly)
 app.command()(export)
 app.command()(lookup)
 app.command()(budget)
+app.command()(catalogue)
 app.command()(report)
 app.command()(reproduce)
 app.command()(schema)

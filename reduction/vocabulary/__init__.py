@@ -14,6 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from reduction.vocabulary.catalogue import OF_CATALOGUE
 from reduction.vocabulary.comparisons import OF_COMPARISONS
 from reduction.vocabulary.experiments import OF_EXPERIMENTS
 from reduction.vocabulary.line import OF_LINE
@@ -45,7 +46,7 @@ SINGLE_QUANTITIES = {
     row.name: row
     for row in (
         *OF_REDUCED, *OF_LINE, *OF_SPECIMENS, *OF_OUTCOMES, *OF_EXPERIMENTS, *OF_PREDICTIONS,
-        *OF_COMPARISONS,
+        *OF_COMPARISONS, *OF_CATALOGUE,
     )
 }  # fmt: skip
 """Names that stand for themselves."""

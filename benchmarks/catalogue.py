@@ -1,0 +1,131 @@
+"""Two thousand small campaigns in the catalogue: the index made, brought up to date, and asked.
+
+    python benchmarks/catalogue.py [number of campaigns]
+
+One test of the synthetic tethers is reduced, its record cut to 200 samples, and copied into one
+folder a campaign, each with its own name, frequency and mean tension (all synthetic). A question is
+timed in this process, where the libraries are loaded, and as the command with its start.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from time import perf_counter
+
+import netCDF4
+import numpy as np
+
+from reduction.archive.open import open_archive
+from reduction.catalogue.changes import changes_since
+from reduction.catalogue.condition import condition_of
+from reduction.catalogue.index import INDEX_NAME, load_index
+from reduction.catalogue.query import Query, answer, needed_quantities
+from reduction.catalogue.refresh import refresh
+
+ROOT = Path(__file__).parents[1]
+N_SAMPLES, PASSES, JOBS = 200, 7, 2
+OPTIONS = ("--kind", "cyclic", "--specimen", "new", "--where", "frequency >= 0.9 Hz")
+QUANTITY = "apparent_spring_constant"
+SCALED = (
+    "test_frequency", "test_mean_tension", f"test_{QUANTITY}", QUANTITY, "tangent_modulus",
+    "tangent_modulus_standard_uncertainty", "branch_tension", "segment_modulus",
+)  # fmt: skip
+
+
+def small_product(folder: Path) -> Path:
+    """T-1 of the synthetic tethers, reduced, with the first samples of its record."""
+    campaign = ROOT / "raw" / "tmt-synthetic" / "campaign.toml"
+    command = [sys.executable, "-m", "reduction", "run", campaign, "--test", "T-1", "--quiet"]
+    places = ["--processed", folder / "one", "--reports", folder / "reports"]
+    subprocess.run([*map(str, command), *map(str, places)], check=True)
+    path = folder / "small.nc"
+    with open_archive(folder / "one" / "tmt-synthetic" / "T-1.nc") as archive:
+        archive.isel(sample=slice(N_SAMPLES)).to_netcdf(path)
+    return path
+
+
+def campaigns(product: Path, folder: Path, count: int) -> None:
+    """Copies with names, frequencies and mean tensions of their own."""
+    rng = np.random.default_rng(1)
+    for number in range(count):
+        path = folder / f"campaign-{number:04}" / "T-1.nc"
+        path.parent.mkdir(parents=True)
+        shutil.copyfile(product, path)
+        with netCDF4.Dataset(path, "a") as archive:
+            archive.setncatts({"campaign": path.parent.name, "id": f"{path.parent.name}/T-1"})
+            for name in SCALED:
+                archive[name][:] = archive[name][:] * rng.uniform(0.1, 10.0)
+
+
+def seconds_of_command(folder: Path, *options: str) -> float:
+    """Of one run of the command, its start and its table in it."""
+    line = [sys.executable, "-m", "reduction", "catalogue", str(folder), *options]
+    start = perf_counter()
+    subprocess.run(line, check=True, capture_output=True)
+    return perf_counter() - start
+
+
+def seconds_of_question(folder: Path, query: Query) -> float:
+    """Of one question: what changed, the numbers, the rows."""
+    start = perf_counter()
+    index = load_index(folder / INDEX_NAME, needed_quantities(query))
+    if index is None or not changes_since(index, folder).is_none:
+        raise SystemExit("the index is not what it should be")
+    answer(index, query)
+    return perf_counter() - start
+
+
+def main(count: int) -> None:
+    """Print times as a Markdown table."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / "processed"
+        product = small_product(Path(place))
+        campaigns(product, folder, count)
+        start = perf_counter()
+        refresh(None, changes_since(None, folder), folder / INDEX_NAME, jobs=JOBS)
+        made = perf_counter() - start
+        index = load_index(folder / INDEX_NAME)
+        if index is None:
+            raise SystemExit("the index is not there")
+        changed = folder / "campaign-0007" / "T-1.nc"
+        changed.touch()
+        start = perf_counter()
+        refresh(index, changes_since(index, folder), folder / INDEX_NAME)
+        updated = perf_counter() - start
+        query = Query(
+            names={"test_kind": ("cyclic",), "specimen": ("new",)},
+            where=(condition_of(OPTIONS[-1]),),
+            quantity=(QUANTITY,),
+            sort=(QUANTITY,),
+        )
+        curve = Query(quantity=("tangent_modulus",), where=(condition_of("strain_bin >= 1"),))
+        asked = [*OPTIONS, "--quantity", QUANTITY, "--sort", QUANTITY]
+        whole = ["--quantity", QUANTITY, "--export", f"{place}/all.csv", "--quiet"]
+        rows = {
+            "question, libraries loaded": lambda: seconds_of_question(folder, query),
+            "curves of every test, libraries loaded": lambda: seconds_of_question(folder, curve),
+            "the command": lambda: seconds_of_command(folder, *asked),
+            "the command, every test to CSV": lambda: seconds_of_command(folder, *whole),
+        }
+        size = (folder / INDEX_NAME).stat().st_size / 1e6
+        each, n_numbers = product.stat().st_size / 1e3, index.values.num_rows
+        print(f"{count} archives of {each:.0f} kB, {n_numbers} numbers, index {size:.1f} MB")
+        print(f"load before: {os.getloadavg()[0]:.1f}, {os.cpu_count()} processors\n")
+        print("| what | s, median | s, least | s, most |\n|---|---|---|---|")
+        print(f"| index made, {JOBS} processes | {made:.1f} | | |")
+        print(f"| one archive changed | {updated:.2f} | | |")
+        for name, time in rows.items():
+            times = [time() for _ in range(PASSES)]
+            print(
+                f"| {name} | {statistics.median(times):.2f} | {min(times):.2f} | {max(times):.2f} |"
+            )
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 2000)

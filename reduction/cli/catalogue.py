@@ -1,0 +1,192 @@
+"""The command ``catalogue``: a question to the index of a folder of products, and its answer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, cast
+
+from rich.markup import escape
+
+from reduction.catalogue.changes import changes_since
+from reduction.catalogue.columns import NUMBERS
+from reduction.catalogue.condition import condition_of
+from reduction.catalogue.index import INDEX_NAME, Index, load_index
+from reduction.catalogue.query import Query, answer, needed_quantities, quantities_there
+from reduction.catalogue.write import check_ending, meaning_of, unit_of, write_answer
+from reduction.cli.commandoutput import CommandOutput
+from reduction.cli.numbers import plain, short, table_of
+from reduction.units import UnitSystem, display_unit
+from reduction.vocabulary import QUANTITIES
+
+__all__ = ["list_quantities", "query_of", "show_catalogue"]
+
+_SPREAD = "_standard_uncertainty"
+# what a terminal has room for; JSON and files have every column
+_LEFT_TO_FILES = (
+    "control", "waveform", "specimen_kind", "specimen_construction", "specimen_material",
+    "specimen_condition", "test_mean_strain", "test_strain_amplitude", "diameter",
+    "rated_break_strength", "archive",
+)  # fmt: skip
+
+
+def query_of(
+    *,
+    names: Mapping[str, Sequence[str] | None],
+    words: Mapping[str, str | None],
+    where: Sequence[str],
+    quantity: Sequence[str],
+    sort: Sequence[str],
+    **rest: Any,
+) -> Query:
+    """Question of the options; what was not given asks for nothing."""
+    query = Query(
+        names={name: tuple(patterns) for name, patterns in names.items() if patterns},
+        words={name: text for name, text in words.items() if text},
+        where=tuple(condition_of(text) for text in where),
+        quantity=tuple(map(_named, quantity)),
+        sort=tuple(map(_named, sort)),
+        **rest,
+    )
+    needed_quantities(query)  # a name that is none is refused before any file is read
+    return query
+
+
+def _named(text: str) -> str:
+    """Name of a quantity, also where it is asked for by its symbol."""
+    if text in QUANTITIES:
+        return text
+    from reduction.cli.lookupsource import name_of_quantity
+
+    return name_of_quantity(text)
+
+
+def show_catalogue(
+    folder: Path,
+    query: Query,
+    *,
+    export: Path | None,
+    rebuild: bool,
+    jobs: int,
+    output: CommandOutput,
+) -> None:
+    """Answer a question: a table, JSON, and a file where one is asked for."""
+    if export is not None:
+        check_ending(export)
+    index = _index(folder, needed_quantities(query), rebuild=rebuild, jobs=jobs, output=output)
+    table = answer(index, query)
+    if export is not None:
+        write_answer(table, export)
+    _show(table, query, output)
+    unreadable = index.unreadable()
+    n_rows = table.num_rows
+    output.say(f"{n_rows} row{'' if n_rows == 1 else 's'}" + (f", {export}" if export else ""))
+    for fault in unreadable.values():
+        output.error(f"left out: {fault}")
+    if output.json:
+        output.answer(
+            {
+                "units": {name: unit_of(name) for name in table.column_names},
+                "rows": [
+                    {name: _plain(value) for name, value in row.items()}
+                    for row in table.to_pylist()
+                ],
+                "unreadable": unreadable,
+            }
+        )
+
+
+def list_quantities(folder: Path, *, rebuild: bool, jobs: int, output: CommandOutput) -> None:
+    """Print which quantities the catalogue has."""
+    index = _index(folder, None, rebuild=rebuild, jobs=jobs, output=output)
+    found = quantities_there(index)
+    table = table_of("quantity", "unit", "meaning", "numbers", texts=3)
+    for name, count in found.items():
+        table.add_row(name, unit_of(name), escape(meaning_of(name)), str(count))
+    output.show(table)
+    unreadable = index.unreadable()
+    for fault in unreadable.values():
+        output.error(f"left out: {fault}")
+    output.answer(
+        {
+            "quantities": {
+                name: {"unit": unit_of(name), "numbers": count} for name, count in found.items()
+            },
+            "unreadable": unreadable,
+        }
+    )
+
+
+def _index(
+    folder: Path,
+    quantities: Sequence[str] | None,
+    *,
+    rebuild: bool,
+    jobs: int,
+    output: CommandOutput,
+) -> Index:
+    """The index as it is now, with the numbers that are asked for."""
+    path = folder / INDEX_NAME
+    known = None if rebuild else load_index(path, quantities)
+    changes = changes_since(known, folder)
+    if known is not None and changes.is_none:
+        return known
+    # a question that the index answers does without the libraries that read archives
+    from reduction.catalogue.refresh import refresh
+
+    old = load_index(path) if known is not None else None
+    if old is not None:
+        # another run may have written it since
+        changes = changes_since(old, folder)
+    done = refresh(old, changes, path, jobs=jobs)
+    gone = f", {len(changes.gone)} gone" if changes.gone else ""
+    output.say(f"index: {done.n_read} of {len(changes.states)} archives read{gone}")
+    if done.not_kept:
+        output.error(f"the index is not kept, and is made again each time: {done.not_kept}")
+    return done.index
+
+
+def _show(table: Any, query: Query, output: CommandOutput) -> None:
+    if not output.is_text:
+        return
+    asked = {*query.asked, *map(query.column, query.sort)}
+    asked |= {query.column(one.name) for one in query.where}
+    names = [
+        name
+        for name in table.column_names
+        if name in asked or (name not in _LEFT_TO_FILES and table[name].null_count < table.num_rows)
+    ]
+    texts = [name for name in names if not unit_of(name)]
+    numbers = [name for name in names if unit_of(name)]
+    shown = {
+        name: display_unit(unit_of(name), cast("UnitSystem", output.units)) for name in numbers
+    }
+    heads = [_heading(name, shown[name][0]) for name in numbers]
+    page = table_of(*map(_short_name, texts), *heads, texts=len(texts))
+    columns = [_texts(table[name].to_pylist()) for name in texts]
+    columns += [_numbers(table[name].to_pylist(), shown[name][1], name) for name in numbers]
+    for row in zip(*columns, strict=True):
+        page.add_row(*row)
+    output.show(page)
+
+
+def _heading(name: str, unit: str) -> str:
+    words = "standard uncertainty" if name.endswith(_SPREAD) else _short_name(name)
+    return words if unit == "1" else f"{words} [{unit}]"
+
+
+def _short_name(name: str) -> str:
+    return name.removeprefix("test_") if name in NUMBERS else name
+
+
+def _texts(column: Sequence[str | None]) -> Iterator[str]:
+    return (escape(text or "") for text in column)
+
+
+def _numbers(column: Sequence[float | None], scale: float, name: str) -> Iterator[str]:
+    digits = 3 if name.endswith(_SPREAD) else 5
+    return ("" if value is None else short(value * scale, digits) for value in column)
+
+
+def _plain(value: object) -> object:
+    return plain(value) if isinstance(value, float) else value
