@@ -1,0 +1,71 @@
+"""One cycle of an archive against all of it: time and memory of what is read.
+
+    python benchmarks/lazy_reading.py ARCHIVE.nc
+
+For a long one: `reduction run` on the campaign of `benchmarks/generate.py` (synthetic).
+"""
+
+from __future__ import annotations
+
+import resource
+import statistics
+import sys
+from pathlib import Path
+from time import perf_counter
+
+import xarray as xr
+
+import reduction
+
+SAMPLES = [
+    "time", "crosshead_position", "tension", "strain", "nominal_stress", "quality_flag", "branch",
+]  # fmt: skip
+CYCLES = 20
+
+
+def peak_mb() -> float:
+    """Of this process so far."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def of_cycle(test: xr.Dataset, cycle: int) -> tuple[float, int]:
+    """Seconds for the seven variables of one cycle, and its samples."""
+    start = perf_counter()
+    first, last = (int(test[f"cycle_{end}_sample"][cycle]) for end in ("first", "last"))
+    loop = test[SAMPLES].isel(sample=slice(first, last + 1)).load()
+    return perf_counter() - start, loop.sizes["sample"]
+
+
+def main(path: Path) -> None:
+    """Print a Markdown table."""
+    reduction.open_campaign(path).close()  # imports
+    start, before = perf_counter(), peak_mb()
+    with reduction.open_campaign(path) as test:
+        opened = perf_counter() - start
+        n_cycles = test.sizes["cycle"]
+        ones = [of_cycle(test, n_cycles * k // CYCLES) for k in range(CYCLES)]
+        after_cycles = peak_mb()
+        start = perf_counter()
+        table = test["chord_modulus"].values
+        of_table = perf_counter() - start
+        start = perf_counter()
+        whole = test[SAMPLES].load()
+        of_whole = perf_counter() - start
+        print(
+            f"{whole.sizes['sample']} samples, {whole.sizes['specimen']} specimens, {n_cycles} "
+            f"cycles, {ones[0][1]} samples in the first, {len(test.variables)} variables, "
+            f"{path.stat().st_size / 1e6:.0f} MB"
+        )
+    print("| | s | memory, MB |\n|---|---|---|")
+    print(f"| opening | {opened:.3f} | |")
+    of_one = statistics.median(seconds for seconds, _ in ones)
+    print(
+        f"| seven variables of one cycle (memory: of {CYCLES}) | {of_one:.3f} | "
+        f"{after_cycles - before:.0f} |"
+    )
+    print(f"| chord moduli of all cycles, {table.size} | {of_table:.3f} | |")
+    print(f"| seven variables, whole | {of_whole:.3f} | {peak_mb() - before:.0f} |")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
