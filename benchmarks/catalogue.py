@@ -114,7 +114,7 @@ def main(count: int) -> None:
             "the command, every test to CSV": lambda: seconds_of_command(folder, *whole),
         }
         size = (folder / INDEX_NAME).stat().st_size / 1e6
-        each, n_numbers = product.stat().st_size / 1e3, index.values.num_rows
+        each, n_numbers = product.stat().st_size / 1e3, sum(part.num_rows for part in index.values)
         print(f"{count} archives of {each:.0f} kB, {n_numbers} numbers, index {size:.1f} MB")
         print(f"load before: {os.getloadavg()[0]:.1f}, {os.cpu_count()} processors\n")
         print("| what | s, median | s, least | s, most |\n|---|---|---|---|")

@@ -47,6 +47,7 @@ _VALUES = {
     "value": pyarrow.float64(),
     "standard_uncertainty": pyarrow.float64(),
 }
+_NO_VALUES = pyarrow.schema(list(_VALUES.items())).empty_table()
 
 
 @dataclass(frozen=True)
@@ -57,13 +58,21 @@ class Index:
     ----------
     tests : pyarrow.Table
         A row for each specimen of each archive, and one for the whole archive.
-    values : pyarrow.Table
-        ``quantity``, ``row`` of ``tests``, ``value``, ``standard_uncertainty`` (SI), and a column
-        for each dimension along which numbers stand.
+    values : tuple of pyarrow.Table
+        One for each set of dimensions: ``quantity``, ``row`` of ``tests``, ``value``,
+        ``standard_uncertainty`` (SI), and a column for each dimension along which numbers stand.
     """
 
     tests: Any
-    values: Any
+    values: tuple[Any, ...]
+
+    def numbers_of(self, quantity: str) -> Any:
+        """Numbers of a quantity, with a column for each dimension of any of them."""
+        found = [
+            part.filter(pyarrow.compute.equal(part["quantity"], quantity)) for part in self.values
+        ]
+        found = [part for part in found if part.num_rows]
+        return pyarrow.concat_tables([_NO_VALUES, *found], promote_options="default")
 
     @staticmethod
     def empty() -> Index:
@@ -118,33 +127,37 @@ def index_of(entries: Sequence[tuple[ArchiveEntry, FileState]]) -> Index:
     return Index(tests, _values(tables))
 
 
-def _values(tables: dict[tuple[str, ...], list[tuple[Block, np.ndarray[Any, Any]]]]) -> Any:
-    parts = [_table_of([])]
-    for dims, blocks in tables.items():
-        columns = [
-            ("quantity", np.concatenate([block.quantity for block, _ in blocks])),
-            ("row", np.concatenate([row for _, row in blocks])),
-            ("value", np.concatenate([block.value for block, _ in blocks])),
-            (
-                "standard_uncertainty",
-                np.concatenate([block.standard_uncertainty for block, _ in blocks]),
-            ),
-        ]
-        columns += [
-            (dim, np.concatenate([block.place[dim] for block, _ in blocks])) for dim in dims
-        ]
-        parts.append(_table_of(columns))
-    return pyarrow.concat_tables(parts, promote_options="default")
+def _values(
+    tables: dict[tuple[str, ...], list[tuple[Block, np.ndarray[Any, Any]]]],
+) -> tuple[Any, ...]:
+    return _together([_table_of(dims, blocks) for dims, blocks in tables.items()])
 
 
-def _table_of(columns: Sequence[tuple[str, np.ndarray[Any, Any]]]) -> Any:
-    arrays = dict(columns) or {name: np.empty(0, object) for name in _VALUES}
+def _table_of(dims: Sequence[str], blocks: Sequence[tuple[Block, np.ndarray[Any, Any]]]) -> Any:
+    columns = {
+        "quantity": [block.quantity for block, _ in blocks],
+        "row": [row for _, row in blocks],
+        "value": [block.value for block, _ in blocks],
+        "standard_uncertainty": [block.standard_uncertainty for block, _ in blocks],
+    } | {dim: [block.place[dim] for block, _ in blocks] for dim in dims}
     return pyarrow.table(
         {
-            name: pyarrow.array(array, _VALUES.get(name) or column_type(name), from_pandas=True)
-            for name, array in arrays.items()
+            name: pyarrow.array(
+                np.concatenate(arrays), _VALUES.get(name) or column_type(name), from_pandas=True
+            )
+            for name, arrays in columns.items()
         }
     )
+
+
+def _together(parts: Sequence[Any]) -> tuple[Any, ...]:
+    """One table for each set of columns: a column of nothing for each other dimension is no use."""
+    alike: dict[tuple[str, ...], list[Any]] = {}
+    for part in parts:
+        names = (*_VALUES, *sorted(set(part.column_names) - _VALUES.keys()))
+        alike.setdefault(names, []).append(part.select(names))
+    merged = (pyarrow.concat_tables(tables) for _, tables in sorted(alike.items()))
+    return tuple(one for one in merged if one.num_rows)
 
 
 def joined(kept: Index, names: Iterable[str], added: Index) -> Index:
@@ -172,13 +185,13 @@ def joined(kept: Index, names: Iterable[str], added: Index) -> Index:
     new_row[order] = np.arange(tests.num_rows)
     of_kept = np.full(kept.tests.num_rows, -1, np.int32)
     of_kept[stays] = new_row[:n_kept]
-    values = pyarrow.concat_tables(
-        [_renumbered(kept.values, of_kept), _renumbered(added.values, new_row[n_kept:])],
-        promote_options="default",
+    values = _together(
+        [_renumbered(part, of_kept) for part in kept.values]
+        + [_renumbered(part, new_row[n_kept:]) for part in added.values]
     )
+    order_of_values = [("quantity", "ascending"), ("row", "ascending")]
     return Index(
-        tests.take(pyarrow.array(order)),
-        values.sort_by([("quantity", "ascending"), ("row", "ascending")]),
+        tests.take(pyarrow.array(order)), tuple(part.sort_by(order_of_values) for part in values)
     )
 
 
@@ -192,24 +205,30 @@ def _renumbered(values: Any, new_row: np.ndarray[Any, Any]) -> Any:
 
 def save_index(index: Index, path: Path) -> None:
     """Write the index, whole or not at all; `OSError` where the disk refuses."""
-    values = index.values
-    schema = pyarrow.unify_schemas([_TESTS, values.schema]).with_metadata(
-        {_MARK: f"{_FORMAT} {__version__}".encode()}
-    )
-    none = {
-        name: pyarrow.nulls(0, kind) for name, kind in zip(schema.names, schema.types, strict=True)
-    }
-    empty = pyarrow.table(none, schema=schema)
-    tests, numbers = (
-        pyarrow.concat_tables([empty, table], promote_options="default").cast(schema)
-        for table in (index.tests, values)
-    )
+    parts = [index.tests, *index.values]
+    schema = pyarrow.unify_schemas([_TESTS, _NO_VALUES.schema, *(part.schema for part in parts)])
+    schema = schema.with_metadata({_MARK: f"{_FORMAT} {__version__}".encode()})
     with (
         whole_file(path) as part,
         pyarrow.parquet.ParquetWriter(part, schema, compression="zstd") as writer,
     ):
-        writer.write_table(tests, row_group_size=max(1, tests.num_rows))
-        writer.write_table(numbers, row_group_size=_ROWS_AT_ONCE)
+        # the first group even where there is no test
+        writer.write_table(_widened(index.tests, schema), max(1, index.tests.num_rows))
+        for values in index.values:
+            for first in range(0, values.num_rows, _ROWS_AT_ONCE):
+                writer.write_table(_widened(values.slice(first, _ROWS_AT_ONCE), schema))
+
+
+def _widened(table: Any, schema: Any) -> Any:
+    """A table with every column of the file."""
+    n_rows = table.num_rows
+    return pyarrow.table(
+        [
+            table[one.name] if one.name in table.column_names else pyarrow.nulls(n_rows, one.type)
+            for one in schema
+        ],
+        schema=schema,
+    )
 
 
 def load_index(path: Path, quantities: Sequence[str] | None = None) -> Index | None:
@@ -227,17 +246,30 @@ def load_index(path: Path, quantities: Sequence[str] | None = None) -> Index | N
             mark = (file.schema_arrow.metadata or {}).get(_MARK, b"")
             if mark != f"{_FORMAT} {__version__}".encode():
                 return None
-            places = [name for name in file.schema_arrow.names if name not in _TESTS.names]
             tests = file.read_row_group(0, columns=_TESTS.names).cast(_TESTS)
-            groups = _groups_with(file, quantities)
-            values = file.read_row_groups(groups, columns=places)
+            values = [
+                file.read_row_group(group, columns=_columns_in(file, group))
+                for group in _groups_with(file, quantities)
+            ]
     except (OSError, pyarrow.ArrowException):
         # one that another program left, or a damaged one: it is made again
         return None
     if quantities is not None:
         wanted = pyarrow.array(list(quantities), pyarrow.string())
-        values = values.filter(pyarrow.compute.is_in(values["quantity"], wanted))
-    return Index(tests, values)
+        values = [part.filter(pyarrow.compute.is_in(part["quantity"], wanted)) for part in values]
+    return Index(tests, _together(values))
+
+
+def _columns_in(file: Any, group: int) -> list[str]:
+    """Columns of numbers that have any entry in a row group."""
+    about = file.metadata.row_group(group)
+    found = []
+    for place, name in enumerate(file.schema_arrow.names):
+        known = about.column(place).statistics
+        has_any = known is None or known.null_count < about.num_rows
+        if name in _VALUES or (name not in _TESTS.names and has_any):
+            found.append(name)
+    return found
 
 
 def _groups_with(file: Any, quantities: Sequence[str] | None) -> list[int]:

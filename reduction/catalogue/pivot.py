@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pyarrow  # type: ignore[import-untyped]
-import pyarrow.compute  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from reduction.catalogue.columns import CONDITIONS
@@ -82,7 +81,7 @@ def with_quantity(table: Any, index: Index, name: str) -> Any:
 
 def _numbers_of(index: Index, name: str, fits: NDArray[np.bool_]) -> Any:
     """Rows of the numbers of a quantity in tests that count."""
-    part = index.values.filter(pyarrow.compute.equal(index.values["quantity"], name))
+    part = index.numbers_of(name)
     return part.filter(pyarrow.array(fits[part["row"].to_numpy()]))
 
 

@@ -144,9 +144,12 @@ def answer(index: Index, query: Query) -> Any:
 
 def quantities_there(index: Index) -> dict[str, int]:
     """Quantities of an index with all its numbers, and how many numbers each has, by name."""
-    known = index.values.filter(index.values["value"].is_valid())
-    counted = known["quantity"].value_counts().to_pylist()
-    return dict(sorted((one["values"], one["counts"]) for one in counted))
+    found: dict[str, int] = {}
+    for part in index.values:
+        known = part.filter(part["value"].is_valid())
+        for one in known["quantity"].value_counts().to_pylist():
+            found[one["values"]] = found.get(one["values"], 0) + one["counts"]
+    return dict(sorted(found.items()))
 
 
 def _fits(tests: Any, query: Query) -> NDArray[np.bool_]:

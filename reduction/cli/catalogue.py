@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -162,12 +163,27 @@ def _show(table: Any, query: Query, output: CommandOutput) -> None:
         name: display_unit(unit_of(name), cast("UnitSystem", output.units)) for name in numbers
     }
     heads = [_heading(name, shown[name][0]) for name in numbers]
-    page = table_of(*map(_short_name, texts), *heads, texts=len(texts))
-    columns = [_texts(table[name].to_pylist()) for name in texts]
+    heads = [*map(_short_name, texts), *heads]
+    columns = [[text or "" for text in table[name].to_pylist()] for name in texts]
     columns += [_numbers(table[name].to_pylist(), shown[name][1], name) for name in numbers]
+    if not sys.stdout.isatty():
+        output.say(_plain_table(heads, columns, n_texts=len(texts)))
+        return
+    page = table_of(*heads, texts=len(texts))
     for row in zip(*columns, strict=True):
-        page.add_row(*row)
+        page.add_row(*map(escape, row))
     output.show(page)
+
+
+def _plain_table(heads: Sequence[str], columns: Sequence[Sequence[str]], *, n_texts: int) -> str:
+    """Lines of as many characters as the cells need: thousands of rows at once, for a pipe."""
+    padded = []
+    for place, (head, column) in enumerate(zip(heads, columns, strict=True)):
+        # a line of a table is one line, whatever a name is
+        cells = [" ".join(cell.split()) for cell in (head, *column)]
+        size = max(map(len, cells))
+        padded.append([cell.ljust(size) if place < n_texts else cell.rjust(size) for cell in cells])
+    return "\n".join("  ".join(row).rstrip() for row in zip(*padded, strict=True))
 
 
 def _heading(name: str, unit: str) -> str:
@@ -179,13 +195,9 @@ def _short_name(name: str) -> str:
     return name.removeprefix("test_") if name in NUMBERS else name
 
 
-def _texts(column: Sequence[str | None]) -> Iterator[str]:
-    return (escape(text or "") for text in column)
-
-
-def _numbers(column: Sequence[float | None], scale: float, name: str) -> Iterator[str]:
+def _numbers(column: Sequence[float | None], scale: float, name: str) -> list[str]:
     digits = 3 if name.endswith(_SPREAD) else 5
-    return ("" if value is None else short(value * scale, digits) for value in column)
+    return ["" if value is None else short(value * scale, digits) for value in column]
 
 
 def _plain(value: object) -> object:

@@ -35,6 +35,11 @@ def brought_up_to_date(folder, jobs=1):
     return done.index, done.n_read
 
 
+def same_values(one, other):
+    pairs = zip(one.values, other.values, strict=True)
+    return all(left.select(right.column_names).equals(right) for left, right in pairs)
+
+
 def asked(index, **options):
     return answer(index, Query(**options)).to_pylist()
 
@@ -347,7 +352,7 @@ def test_two_processes_read_what_one_reads(folder):
     alone, _ = brought_up_to_date(folder)
     (folder / INDEX_NAME).unlink()
     together, _ = brought_up_to_date(folder, jobs=2)
-    assert together.tests.equals(alone.tests) and together.values.equals(alone.values)
+    assert together.tests.equals(alone.tests) and same_values(together, alone)
 
 
 @pytest.mark.parametrize("left", [b"", b"PAR1 is not all of it PAR1"])
@@ -473,11 +478,11 @@ def test_the_index_is_the_same_bytes_when_it_is_made_again(folder):
 def test_what_is_read_of_an_index_is_what_was_written(index, tmp_path):
     save_index(index, tmp_path / INDEX_NAME)
     back = load_index(tmp_path / INDEX_NAME)
-    assert back.tests.equals(index.tests) and back.values.num_rows == index.values.num_rows
+    assert back.tests.equals(index.tests) and same_values(back, index)
     some = load_index(tmp_path / INDEX_NAME, ["segment_modulus"])
     query = Query(quantity=("segment_modulus",))
     assert answer(some, query).to_pylist() == answer(index, query).to_pylist()
-    assert set(some.values["quantity"].to_pylist()) == {"segment_modulus"}
+    assert quantities_there(some).keys() == {"segment_modulus"}
 
 
 def test_cycles_that_are_kept_end_with_the_last():
@@ -512,14 +517,9 @@ def test_a_disk_that_refuses_is_an_error_of_the_archive(index, tmp_path):
 
 
 def test_every_column_has_a_row_in_the_vocabulary(index):
-    for name in (
-        *CONDITIONS,
-        *(
-            name
-            for name in index.values.column_names
-            if name not in ("quantity", "row", "value", "standard_uncertainty")
-        ),
-    ):
+    of_values = {name for part in index.values for name in part.column_names}
+    own = {"quantity", "row", "value", "standard_uncertainty"}
+    for name in (*CONDITIONS, *sorted(of_values - own)):
         assert name in QUANTITIES, name
         assert meaning_of(name) != name or QUANTITIES[name].long_name == name
         assert unit_of(name) == QUANTITIES[name].unit
