@@ -107,7 +107,7 @@ def _entry(archive: xr.Dataset, known: Mapping[str, str]) -> ArchiveEntry:
     whole["test_kind"] = part or str(attributes.get("test_kind", ""))
     if "cycle" in archive.sizes:
         whole["n_cycles"] = float(archive.sizes["cycle"])
-    names = archive["specimen"].values.tolist() if "specimen" in archive.sizes else []
+    names = archive.variables["specimen"].values.tolist() if "specimen" in archive.sizes else []
     ends = _strain_ends(archive) if names else []
     specimens = tuple(
         whole | {"specimen": str(name)} | _conditions(archive, place) | ends[place]
@@ -119,8 +119,8 @@ def _entry(archive: xr.Dataset, known: Mapping[str, str]) -> ArchiveEntry:
 def _conditions(archive: xr.Dataset, place: int) -> dict[str, str | float]:
     found: dict[str, str | float] = {}
     for name in (*TEXTS, *NUMBERS):
-        if name != "specimen" and name in archive and archive[name].dims == ("specimen",):
-            value = archive[name].values[place]
+        if name != "specimen" and name in archive and archive.variables[name].dims == ("specimen",):
+            value = archive.variables[name].values[place]
             found[name] = float(value) if name in NUMBERS else str(value)
     return _known(found)
 
@@ -134,15 +134,21 @@ def _strain_ends(archive: xr.Dataset) -> list[dict[str, str | float]]:
     """Least and greatest strain of each specimen, of its samples, steps and cycles."""
     n_specimens = archive.sizes["specimen"]
     low, high = np.full(n_specimens, np.nan), np.full(n_specimens, np.nan)
-    if "strain" in archive and archive["strain"].dims in (("specimen", "sample"), ("step",)):
-        strain = archive["strain"]
+    if "strain" in archive and archive.variables["strain"].dims in (
+        ("specimen", "sample"),
+        ("step",),
+    ):
+        strain = archive.variables["strain"]
         long = strain.dims[-1]
         for first in range(0, strain.sizes[long], _SAMPLES_AT_ONCE):
             part = strain.isel({long: slice(first, first + _SAMPLES_AT_ONCE)})
             spread = np.broadcast_to(part.values, (n_specimens, part.sizes[long]))
             low, high = _widened(low, high, spread)
     if {"mean_strain", "strain_amplitude"} <= set(archive.variables) and "cycle" in archive.sizes:
-        mean, half = archive["mean_strain"].values, archive["strain_amplitude"].values
+        mean, half = (
+            archive.variables["mean_strain"].values,
+            archive.variables["strain_amplitude"].values,
+        )
         low, high = _widened(low, high, np.concatenate([mean - half, mean + half], axis=-1))
     return [
         _known({"least_strain": float(least), "greatest_strain": float(most)})
@@ -179,12 +185,12 @@ def _block(
     if "cycle" in dims and archive.sizes["cycle"]:
         axes[dims.index("cycle")] = kept_cycles(archive.sizes["cycle"])
     picked = np.ix_(*axes)
-    values = np.stack([np.asarray(archive[name].values, float)[picked] for name in group])
+    values = np.stack([np.asarray(archive.variables[name].values, float)[picked] for name in group])
     spread = np.full_like(values, np.nan)
     for row, name in enumerate(group):
         beside = f"{name}_standard_uncertainty"
         if beside in archive:
-            own = archive[beside]
+            own = archive.variables[beside]
             missing = [axis for axis, dim in enumerate(dims) if dim not in own.dims]
             spread[row] = np.broadcast_to(np.expand_dims(own.values, missing), shape)[picked]
     # where a quantity is known anywhere its other places stand as missing, so that all keep their
@@ -206,9 +212,9 @@ def _block(
     else:
         for dim, index in at.items():
             whose = f"{dim}_specimen"
-            if whose in archive and archive[whose].dims == (dim,) and specimens:
+            if whose in archive and archive.variables[whose].dims == (dim,) and specimens:
                 number = {name: place for place, name in enumerate(specimens)}
-                of_row = [number.get(str(name), WHOLE) for name in archive[whose].values]
+                of_row = [number.get(str(name), WHOLE) for name in archive.variables[whose].values]
                 specimen = np.array(of_row, np.int32)[index]
     return Block(np.array(group, object)[found[0]], specimen, values[found], spread[found], place)
 
@@ -218,11 +224,13 @@ def _labels(archive: xr.Dataset, dim: str) -> NDArray[Any]:
     is_text = column_type(dim) == "string"
     if dim == "comparison" and {"ratio_numerator", "ratio_denominator"} <= set(archive.variables):
         pairs = zip(
-            archive["ratio_numerator"].values, archive["ratio_denominator"].values, strict=True
+            archive.variables["ratio_numerator"].values,
+            archive.variables["ratio_denominator"].values,
+            strict=True,
         )
         labels: NDArray[Any] = np.array([f"{over} over {under}" for over, under in pairs])
     elif dim not in archive.variables:
         labels = np.arange(1, archive.sizes[dim] + 1)
     else:
-        labels = archive[dim].values
+        labels = archive.variables[dim].values
     return labels.astype(str).astype(object) if is_text else labels.astype(float)
