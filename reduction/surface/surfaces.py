@@ -21,6 +21,7 @@ from reduction.errors import SettingsError
 from reduction.record import Floats, Integers
 from reduction.surface.anova import anova_table, lack_of_fit, replicate_cells
 from reduction.surface.blocks import block_columns
+from reduction.surface.boxcox import box_cox_exponent
 from reduction.surface.canonical import canonical_analysis
 from reduction.surface.diagnostics import diagnose
 from reduction.surface.estimates import deviations, fixed_estimates, with_blocks
@@ -32,7 +33,7 @@ from reduction.surface.remarks import remarks
 from reduction.surface.rows import times
 from reduction.surface.runs import coded_levels, require_motion, require_names
 from reduction.surface.terms import model_matrix, quadratic_exponents, term_kinds, term_names
-from reduction.surface.transform import Transform, box_cox_exponent, transform
+from reduction.surface.transform import Transform, transform
 from reduction.surface.variance import covariance_factor
 
 __all__ = ["fit_surfaces"]

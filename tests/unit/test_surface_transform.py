@@ -3,13 +3,13 @@ import pytest
 from scipy import stats
 
 from reduction.errors import DataError, SettingsError
+from reduction.surface.boxcox import box_cox_exponent
 from reduction.surface.designs import box_behnken
 from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.surfaces import fit_surfaces
 from reduction.surface.terms import model_matrix, quadratic_exponents
 from reduction.surface.transform import (
     back_transform,
-    box_cox_exponent,
     retransformed_mean,
     transform,
 )
