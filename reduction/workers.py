@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import TypeVar
+from typing import Any, TypeVar
+
+from numpy.typing import NDArray
+
+from reduction.samples import let_go
 
 __all__ = ["run_blocks"]
 
@@ -13,7 +17,12 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
-def run_blocks(function: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
+def run_blocks(
+    function: Callable[[Item], Result],
+    items: Iterable[Item],
+    *,
+    samples: Sequence[NDArray[Any]] = (),
+) -> list[Result]:
     """Results of a function for each item, in the order of the items.
 
     The blocks run in as many threads as the process may use processors.  What a block
@@ -26,6 +35,8 @@ def run_blocks(function: Callable[[Item], Result], items: Iterable[Item]) -> lis
         Of one item; changes nothing that another block reads or writes.
     items : iterable
         The blocks.
+    samples : sequence of ndarray
+        Series that the blocks read or write; those on disk are let go behind each block.
 
     Returns
     -------
@@ -43,11 +54,17 @@ def run_blocks(function: Callable[[Item], Result], items: Iterable[Item]) -> lis
     [3, 7]
     """
     todo = list(items)
+
+    def run(item: Item) -> Result:
+        result = function(item)
+        let_go(*samples)
+        return result
+
     n_workers = min(_n_processors(), len(todo))
     if n_workers < 2:
-        return [function(item) for item in todo]
+        return [run(item) for item in todo]
     with ThreadPoolExecutor(n_workers) as workers:
-        return list(workers.map(function, todo))
+        return list(workers.map(run, todo))
 
 
 def _n_processors() -> int:

@@ -14,6 +14,7 @@ LAYER = {
     "units": 0,
     "vocabulary": 0,
     "provenance": 0,
+    "samples": 0,
     "workers": 0,
     "record": 1,
     "settings": 1,
@@ -128,6 +129,8 @@ def test_imports_below_the_edge_are_numpy_and_scipy(path):
     }  # fmt: skip
     if room(path) == "workers":  # threads start in one place
         standard |= {"os", "concurrent"}
+    if room(path) == "samples":  # and scratch files are made in one
+        standard |= {"os", "mmap", "tempfile"}
     for parts, line in imports(path):
         assert parts[0] in standard | BELOW_THE_EDGE, f"{path}:{line}: {parts[0]}"
 
