@@ -27,8 +27,11 @@ __all__ = [
     "is_on_disk",
     "join_columns",
     "let_go",
+    "mean_of_rows",
+    "over_intervals",
     "sample_blocks",
     "scratch_folder",
+    "take_samples",
     "zeros_like",
 ]
 
@@ -36,6 +39,7 @@ BLOCK = 1 << 16
 """Samples of a block, which stay in the cache. [1]."""
 
 _ON_DISK_FROM = 1 << 20  # bytes; less is not worth a file
+_TAKEN = 1 << 9  # each sample that is touched brings 64 KB of its file into memory
 
 
 class _ScratchMap(mmap.mmap):
@@ -99,6 +103,110 @@ def sample_blocks(
     for start in range(0, n_samples, size):
         yield slice(start, min(start + size + overlap, n_samples))
         let_go(*arrays)
+
+
+def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArray[Any]:
+    """Return single samples of a series, as ``series[index]`` does, in bounded memory.
+
+    Parameters
+    ----------
+    series : ndarray, shape (n_samples,)
+        In memory or on disk. [any]
+    index : ndarray of int, any shape
+        Which samples. [1]
+
+    Returns
+    -------
+    values : ndarray, of the shape of ``index``
+        In memory. [as series]
+
+    Raises
+    ------
+    IndexError
+        If a sample is not in the series.
+
+    Examples
+    --------
+    >>> take_samples(np.array([5.0, 6.0, 7.0]), np.array([2, 0]))
+    array([7., 5.])
+    """
+    if not is_on_disk(series):
+        return np.asarray(series[index])
+    flat = index.reshape(-1)
+    taken = np.empty(flat.size, dtype=series.dtype)
+    for part in sample_blocks(flat.size, series, size=_TAKEN):
+        taken[part] = series[flat[part]]
+    return taken.reshape(index.shape)
+
+
+def mean_of_rows(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean of several series sample by sample, shape (n_samples,); on disk where they are.
+
+    Examples
+    --------
+    >>> mean_of_rows(np.array([[1.0, 2.0], [3.0, 6.0]]))
+    array([2., 4.])
+    """
+    mean = empty_like(rows, shape=rows.shape[1])
+    for part in sample_blocks(rows.shape[1], rows, mean):
+        np.mean(rows[:, part], axis=0, out=mean[part])
+    return mean
+
+
+def over_intervals(
+    operation: np.ufunc,
+    series: NDArray[Any],
+    first: NDArray[np.integer[Any]],
+    stop: NDArray[np.integer[Any]],
+) -> NDArray[Any]:
+    """Sum, least or greatest of the samples of each interval, in bounded memory.
+
+    Parameters
+    ----------
+    operation : ufunc
+        ``np.add``, ``np.minimum``, ``np.maximum``.
+    series : ndarray, shape (n_samples,)
+        In memory or on disk. [any]
+    first : ndarray of int, shape (n_intervals,)
+        First sample of each, in order; intervals may overlap. [1]
+    stop : ndarray of int, shape (n_intervals,)
+        Sample after the last, greater than ``first``. [1]
+
+    Returns
+    -------
+    results : ndarray, shape (n_intervals,)
+        One an interval. [as series]
+
+    Raises
+    ------
+    IndexError
+        If an interval begins beyond the series.
+
+    Examples
+    --------
+    >>> over_intervals(np.add, np.arange(6.0), np.array([0, 3]), np.array([3, 5]))
+    array([3., 7.])
+    """
+    results = np.empty(first.size, dtype=series.dtype)
+    reached = np.maximum.accumulate(stop)
+    at = 0
+    while at < first.size:
+        low = int(first[at])
+        end = int(np.searchsorted(reached, low + BLOCK, side="right"))
+        if end <= at:  # longer than a block
+            high, end = int(stop[at]), at + 1
+            starts = range(low, high, BLOCK)
+            parts = [operation.reduce(series[i : min(i + BLOCK, high)]) for i in starts]
+            results[at] = operation.reduce(np.array(parts))
+        else:
+            bounds = np.column_stack([first[at:end], stop[at:end]]).ravel() - low
+            samples = series[low : int(reached[end - 1]) + 1]
+            if reached[end - 1] == series.size:  # reduceat takes no bound after the last sample
+                samples = np.append(samples, samples[-1:])
+            results[at:end] = operation.reduceat(samples, bounds)[::2]
+        let_go(series)
+        at = end
+    return results
 
 
 def empty_like(

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from reduction.record import Bools, Floats, Integers
+from reduction.samples import BLOCK, empty_like, over_intervals, sample_blocks
 
 __all__ = ["block_extremes", "still_blocks"]
 
@@ -50,15 +51,27 @@ def block_extremes(position: Floats, length: int) -> tuple[Floats, Floats]:
     >>> block_extremes(np.array([1.0, 2, 3, 5, np.nan]), 2)
     (array([ 1., 3., inf]), array([ 2., 5., -inf]))
     """
-    whole = position.size // length * length
-    parts = [position[:whole].reshape(-1, length), position[None, whole:]]
-    least = np.concatenate([part.min(axis=1) for part in parts if part.size])
-    greatest = np.concatenate([part.max(axis=1) for part in parts if part.size])
-    for block in np.flatnonzero(np.isnan(least)):
-        finite = position[block * length : (block + 1) * length]
-        finite = finite[np.isfinite(finite)]
-        least[block] = finite.min(initial=np.inf)
-        greatest[block] = finite.max(initial=-np.inf)
+    n_blocks = -(-position.size // length)
+    least = empty_like(position, shape=n_blocks)
+    greatest = empty_like(position, shape=n_blocks)
+    step = length * max(BLOCK // length, 1)
+    for part in sample_blocks(position.size, position, least, greatest, size=step):
+        samples = position[part]
+        start, whole = part.start // length, samples.size // length
+        rows = samples[: whole * length].reshape(-1, length)
+        low, high = least[start : start + whole + 1], greatest[start : start + whole + 1]
+        np.min(rows, axis=1, out=low[:whole])
+        np.max(rows, axis=1, out=high[:whole])
+        if samples.size > whole * length:  # the last block has what is left
+            low[whole], high[whole] = (
+                samples[whole * length :].min(),
+                samples[whole * length :].max(),
+            )
+        for block in np.flatnonzero(np.isnan(low)):
+            finite = samples[block * length : (block + 1) * length]
+            finite = finite[np.isfinite(finite)]
+            low[block] = finite.min(initial=np.inf)
+            high[block] = finite.max(initial=-np.inf)
     return least, greatest
 
 
@@ -67,14 +80,16 @@ def _still_runs(
 ) -> tuple[Integers, Integers]:
     """First and last block of each run in which every window of blocks stays in tolerance."""
     n_windows = least.size - window + 1
-    low, high, covered = least, greatest, 1
-    while covered < window:  # windows of twice the width from two of the width before
-        step = min(covered, window - covered)
-        low = np.minimum(low[: low.size - step], low[step:])
-        high = np.maximum(high[: high.size - step], high[step:])
-        covered += step
     is_still = np.zeros(n_windows + 2, dtype=bool)
-    is_still[1:-1] = high - low <= tolerance
+    for part in sample_blocks(n_windows, least, greatest):
+        low, high = (one[part.start : part.stop + window - 1] for one in (least, greatest))
+        covered = 1
+        while covered < window:  # windows of twice the width from two of the width before
+            step = min(covered, window - covered)
+            low = np.minimum(low[: low.size - step], low[step:])
+            high = np.maximum(high[: high.size - step], high[step:])
+            covered += step
+        is_still[1 + part.start : 1 + part.stop] = high - low <= tolerance
     edges = np.flatnonzero(is_still[1:] != is_still[:-1])
     first, last = edges[::2], edges[1::2] - 1 + window - 1
     last[:-1] = np.minimum(last[:-1], first[1:] - 1)
@@ -85,18 +100,25 @@ def _extremes_between(
     least: Floats, greatest: Floats, first: Integers, last: Integers
 ) -> tuple[Floats, Floats]:
     """Least and greatest position of each run of blocks, both ends inside."""
-    bounds = np.column_stack([first, last + 1]).ravel()
-    # one more block, of no samples, so that a run may end with the record
-    low = np.minimum.reduceat(np.append(least, np.inf), bounds)[::2]
-    high = np.maximum.reduceat(np.append(greatest, -np.inf), bounds)[::2]
+    low = over_intervals(np.minimum, least, first, last + 1)
+    high = over_intervals(np.maximum, greatest, first, last + 1)
     return low, high
+
+
+def _range(least: Floats, greatest: Floats) -> float:
+    every = np.array([0]), np.array([least.size])
+    low, high = (
+        over_intervals(np.minimum, least, *every),
+        over_intervals(np.maximum, greatest, *every),
+    )
+    return float(high[0] - low[0])
 
 
 def _outlasts_its_approach(
     least: Floats, greatest: Floats, first: Integers, last: Integers, tolerance: float
 ) -> Bools:
     """Whether the crosshead comes or goes faster than it stays."""
-    if first.size == 0 or greatest.max() - least.min() <= 2 * _AWAY * tolerance:
+    if first.size == 0 or _range(least, greatest) <= 2 * _AWAY * tolerance:
         return np.ones(first.size, dtype=bool)  # there is nowhere to go
     length = last - first + 1
     low, high = _extremes_between(least, greatest, first, last)

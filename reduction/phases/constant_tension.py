@@ -16,6 +16,7 @@ from reduction.checks import as_same_shape
 from reduction.phases.intervals import still_intervals
 from reduction.phases.noise import noise_range
 from reduction.phases.standstill import Standstills, describe_standstills, find_standstills
+from reduction.samples import mean_of_rows
 from reduction.settings import PhaseSettings
 
 __all__ = ["find_tension_stands"]
@@ -69,7 +70,7 @@ def find_tension_stands(
     loads = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     seconds, place, _ = as_same_shape(time=time, position=position, tension=loads[0])
     crosshead = find_standstills(seconds, place, loads, settings=settings)
-    mean = loads.mean(axis=0)
+    mean = mean_of_rows(loads)
     tolerance = settings.tension_tolerance
     if tolerance is None:
         tolerance = noise_range(mean)

@@ -16,6 +16,7 @@ import numpy as np
 from reduction.errors import DataError
 from reduction.phases.blocks import block_extremes, still_blocks
 from reduction.record import Floats, Integers
+from reduction.samples import over_intervals, sample_blocks, take_samples
 
 __all__ = ["FEWEST_SAMPLES", "interval_means", "median_step", "still_intervals"]
 
@@ -47,7 +48,7 @@ def median_step(time: Floats) -> float:
     0.1
     """
     first = np.arange(0, time.size - 1, max(1, time.size // _STEPS_READ))
-    steps = time[first + 1] - time[first]
+    steps = take_samples(time, first + 1) - take_samples(time, first)
     steps = steps[steps > 0]
     if steps.size == 0:
         raise DataError("time does not advance", needed="at least one later sample")
@@ -59,7 +60,7 @@ def _reach(values: Floats, edge: Integers, centre: Floats, half: float, step: in
     offsets = np.sign(step) * np.arange(1, abs(step) + 1)
     index = edge[:, None] + offsets
     inside = (index >= 0) & (index < values.size)
-    value = values[np.clip(index, 0, values.size - 1)]
+    value = take_samples(values, np.clip(index, 0, values.size - 1))
     near = inside & ~(np.abs(value - centre[:, None]) > half)  # a missing sample is no movement
     return np.where(near.all(axis=1), abs(step), np.argmin(near, axis=1))
 
@@ -93,16 +94,18 @@ def interval_means(values: Floats, first: Integers, last: Integers) -> Floats:
     """
     if first.size == 0:
         return np.empty(0)
-    bounds = np.column_stack([first, last + 1]).ravel()
-    if bounds[-1] == values.size:
-        bounds = bounds[:-1]
-    total = np.add.reduceat(values, bounds)[::2]
-    mean = np.asarray(total / (last - first + 1))
+    mean = np.asarray(over_intervals(np.add, values, first, last + 1) / (last - first + 1))
     for i in np.flatnonzero(np.isnan(mean)):
-        finite = values[first[i] : last[i] + 1]
-        finite = finite[np.isfinite(finite)]
-        mean[i] = finite.mean() if finite.size else np.nan
+        mean[i] = _mean_of_finite(values[first[i] : last[i] + 1])
     return mean
+
+
+def _mean_of_finite(values: Floats) -> float:
+    total, count = 0.0, 0
+    for part in sample_blocks(values.size, values):
+        finite = values[part][np.isfinite(values[part])]
+        total, count = total + float(finite.sum()), count + finite.size
+    return total / count if count else float("nan")
 
 
 def still_intervals(
@@ -173,10 +176,9 @@ def still_intervals(
     last[:-1] = np.minimum(last[:-1], first[1:] - 1)
 
     for edge, step in ((first, 1), (last, -1)):  # an edge is a sample that is there
-        for i in np.flatnonzero(np.isnan(values[edge])):
+        for i in np.flatnonzero(np.isnan(take_samples(values, edge))):
             edge[i] += step * np.argmax(np.isfinite(values[first[i] : last[i] + 1][::step]))
 
-    long_enough = (time[last] - time[first] >= minimum_duration * (1 - 1e-6)) & (
-        last - first + 1 >= FEWEST_SAMPLES
-    )
+    duration = take_samples(time, last) - take_samples(time, first)
+    long_enough = (duration >= minimum_duration * (1 - 1e-6)) & (last - first + 1 >= FEWEST_SAMPLES)
     return first[long_enough], last[long_enough]

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
 from reduction.record import Floats
+from reduction.samples import empty_like, sample_blocks, take_samples
 
 __all__ = ["estimate_noise", "noise_range"]
 
@@ -33,11 +34,26 @@ def _stretches(values: Floats) -> Floats:
     length = min(_STRETCH_SAMPLES, values.size)
     n_rows = min(_STRETCHES, values.size // length)
     first = np.linspace(0, values.size - length, n_rows).astype(np.intp)
-    rows: Floats = values[first[:, None] + np.arange(length)]
+    rows: Floats = take_samples(values, first[:, None] + np.arange(length))
     if np.isfinite(rows).all():
         return rows
-    finite = values[np.isfinite(values)]
+    finite = _finite(values)
     return _stretches(finite) if finite.size else finite[None, :]
+
+
+def _finite(values: Floats) -> Floats:
+    """The finite samples of a series."""
+    counts = [
+        np.count_nonzero(np.isfinite(values[part])) for part in sample_blocks(values.size, values)
+    ]
+    finite = empty_like(values, shape=sum(counts))
+    ends = np.cumsum(counts)
+    for part, count, end in zip(
+        sample_blocks(values.size, values, finite), counts, ends, strict=True
+    ):
+        block = values[part]
+        finite[end - count : end] = block[np.isfinite(block)]
+    return finite
 
 
 def estimate_noise(values: ArrayLike) -> tuple[float, float]:

@@ -19,6 +19,7 @@ from reduction.errors import DataError
 from reduction.phases.intervals import FEWEST_SAMPLES, interval_means, still_intervals
 from reduction.phases.noise import noise_range
 from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.samples import sample_blocks, take_samples
 from reduction.settings import PhaseSettings
 
 __all__ = ["Standstills", "describe_standstills", "find_standstills"]
@@ -84,7 +85,7 @@ def _slack_tension(tension: Floats) -> float:
     """Two hundredths of the greatest tension, or the noise about zero, of any specimen."""
     levels = [0.0]
     for one in tension:
-        sampled = one[:: max(1, one.size // _STEPS_READ)]
+        sampled = take_samples(one, np.arange(0, one.size, max(1, one.size // _STEPS_READ)))
         sampled = sampled[np.isfinite(sampled)]
         if sampled.size >= 8:
             levels += [_SLACK_SHARE * float(sampled.max()), noise_range(one) / 2]
@@ -146,8 +147,8 @@ def describe_standstills(
     return Standstills(
         first=first,
         last=last,
-        start_time=time[first],
-        end_time=time[last],
+        start_time=take_samples(time, first),
+        end_time=take_samples(time, last),
         mean_position=interval_means(position, first, last),
         mean_tension=mean_tension.reshape(tension.shape[0], first.size),
         is_rest=(mean_tension <= slack_tension).all(axis=0).reshape(first.size),
@@ -223,7 +224,8 @@ def find_standstills(
             found=f"{time.size} rows",
             needed=f"{FEWEST_SAMPLES} rows or more",
         )
-    if not np.isfinite(position).any():
+    parts = sample_blocks(position.size, position)
+    if not any(np.isfinite(position[part]).any() for part in parts):
         raise DataError(
             "no position of the record may be used: each is missing, stuck or a spike",
             found=f"0 positions in {time.size} rows",
