@@ -13,10 +13,22 @@ from numpy.typing import NDArray
 
 from reduction.errors import DataError
 from reduction.record import Floats, Integers
+from reduction.samples import let_go, sample_blocks, take_samples
 
-__all__ = ["counted_cycles"]
+__all__ = ["changes_of_count", "counted_cycles"]
+
+_CYCLES_READ = 64  # before their samples are let go
 
 Indices = NDArray[np.intp]
+
+
+def changes_of_count(cycle_counter: Integers) -> Indices:
+    """Samples after which the count is another, shape (n_changes,)."""
+    found = [np.empty(0, dtype=np.intp)]
+    for part in sample_blocks(cycle_counter.size, cycle_counter, overlap=1):
+        count = cycle_counter[part]
+        found.append(part.start + np.flatnonzero(count[1:] != count[:-1]))
+    return np.concatenate(found)
 
 
 def counted_cycles(
@@ -63,11 +75,12 @@ def counted_cycles(
     >>> print(first, last, begin.tolist(), end.tolist(), number)
     [1 5] [4 7] [[1, 3], [5, 6]] [[3, 4], [6, 7]] [1 2]
     """
-    change = np.flatnonzero(cycle_counter[1:] != cycle_counter[:-1])
-    _check_rises(cycle_counter[np.concatenate([[0], change + 1])])
+    change = changes_of_count(cycle_counter)
     first = np.concatenate([[0], change + 1])
     last = np.concatenate([change, [cycle_counter.size - 1]])
-    counted = cycle_counter[first] > 0
+    counts = take_samples(cycle_counter, first)
+    _check_rises(counts)
+    counted = counts > 0
     first, last = first[counted], last[counted]
     branch_first = np.stack([first, first], axis=1)
     branch_last = np.stack([last, last], axis=1)
@@ -81,7 +94,9 @@ def counted_cycles(
         branch_first[i, 0] = begin + rising.size - 1 - int(np.nanargmin(rising[::-1]))
         branch_last[i, 0] = branch_first[i, 1] = peak
         branch_last[i, 1] = peak + int(np.nanargmin(falling))
-    return first, last, branch_first, branch_last, cycle_counter[first]
+        if i % _CYCLES_READ == 0:
+            let_go(values)
+    return first, last, branch_first, branch_last, counts[counted]
 
 
 def _check_rises(counts: Integers) -> None:

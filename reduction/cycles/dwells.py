@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from reduction.phases.standstill import Standstills
 from reduction.record import Bools, Floats
+from reduction.samples import take_samples
 
 __all__ = ["dwells_of_cycles"]
 
@@ -77,23 +78,24 @@ def dwells_of_cycles(
     if at.size == 0 or reversals.size == 0:
         return at, np.zeros(at.size, dtype=bool)
     centre = (standstills.first + standstills.last) // 2
-    level = values[np.clip(centre, 0, values.size - 1)]
+    level = take_samples(values, np.clip(centre, 0, values.size - 1))
+    of_reversals = take_samples(values, reversals)
     after = np.searchsorted(reversals, centre)
     near = np.clip(np.stack([after - 1, after]), 0, reversals.size - 1)
     distance = np.abs(reversals[near] - centre)
     nearest = np.where(distance[0] <= distance[1], near[0], near[1])
-    is_level = np.abs(values[reversals[nearest]] - level) < band
+    is_level = np.abs(of_reversals[nearest] - level) < band
     at[is_level] = nearest[is_level]
 
     holds = np.zeros(reversals.size, dtype=bool)
     duration = np.zeros(reversals.size)
     holds[at[is_level]] = True
     duration[at[is_level]] = (standstills.end_time - standstills.start_time)[is_level]
-    stroke = np.abs(np.diff(values[reversals]))
+    stroke = np.abs(np.diff(of_reversals))
     of_cycles = np.zeros(reversals.size, dtype=bool)
     for kind in (0, 1):  # peaks among peaks, valleys among valleys
         held, lasting = holds[kind::2], duration[kind::2]
-        levels = values[reversals[kind::2]]
+        levels = of_reversals[kind::2]
         same = held[1:] & held[:-1]
         same &= np.maximum(lasting[1:], lasting[:-1]) <= _DWELL_RATIO * np.minimum(
             lasting[1:], lasting[:-1]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from reduction.cycles.runs import DIFFERENT, Edge, Run
 from reduction.record import Floats
+from reduction.samples import take_samples
 
 __all__ = ["FittedRun", "fit_ends", "without_stands"]
 
@@ -191,7 +192,7 @@ def fit_ends(
         tolerance=tolerance,
     )
     nodes = moving(run.nodes)
-    ranges = np.abs(np.diff(values[nodes]))
+    ranges = np.abs(np.diff(take_samples(values, nodes)))
     cut: list[int] = []
     short: list[int] = []
     paced: list[int] = []
@@ -208,7 +209,7 @@ def fit_ends(
             left_out[side] = 2
             short.append(int(nodes[turn]))
             continue
-        if is_sinusoidal and (ran_on or not _keeps_pace(time[nodes], end, turn, beside, at_edge)):
+        if is_sinusoidal and (ran_on or not _keeps_pace(time, nodes, end, turn, beside, at_edge)):
             left_out[side] = 1
             paced.append(int(nodes[turn]))
         elif ran_on:
@@ -244,9 +245,11 @@ def _passing(values: Floats, turn: int, end: int, level: float) -> int:
     return turn + step * int(np.argmax(beyond))
 
 
-def _keeps_pace(turns: Floats, end: int, turn: int, beside: int, at_edge: bool) -> bool:
+def _keeps_pace(
+    time: Floats, nodes: Indices, end: int, turn: int, beside: int, at_edge: bool
+) -> bool:
     """Whether an end half cycle takes the time of its neighbour, as every one of a sine does."""
-    lasts, usual = np.abs(turns[[end, beside]] - turns[turn])
+    lasts, usual = np.abs(time[nodes[[end, beside]]] - time[nodes[turn]])
     return not at_edge or bool(abs(lasts - usual) <= _PACE * usual)
 
 

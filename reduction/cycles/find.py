@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reduction.checks import as_same_shape
-from reduction.cycles.counter import counted_cycles
+from reduction.cycles.counter import changes_of_count, counted_cycles
 from reduction.cycles.halves import find_half_cycles
 from reduction.cycles.jumps import drop_jumps
 from reduction.cycles.product import Cycles
@@ -26,6 +26,7 @@ from reduction.errors import DataError
 from reduction.phases.noise import estimate_noise
 from reduction.phases.standstill import Standstills
 from reduction.record import Floats, Integers
+from reduction.samples import empty_like, mean_of_rows, sample_blocks, take_samples
 from reduction.settings import CycleSettings
 from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
 
@@ -44,7 +45,7 @@ Indices = NDArray[np.intp]
 def _control_channel(position: Floats, tension: Floats, settings: CycleSettings) -> Floats:
     if settings.control == "position":
         return position
-    return np.asarray(tension.mean(axis=0))
+    return mean_of_rows(tension)
 
 
 def _reversals(values: Floats, settings: CycleSettings) -> tuple[Indices, float]:
@@ -56,10 +57,9 @@ def _reversals(values: Floats, settings: CycleSettings) -> tuple[Indices, float]
     else:
         reversals, band = first_pass(values)
     if reversals.size < 3:
-        finite = values[np.isfinite(values)]
         raise DataError(
             f"no cycle: {channel} does not reverse",
-            found=f"a range of {np.ptp(finite) if finite.size else 0.0:.4g} {unit}, "
+            found=f"a range of {_range(values):.4g} {unit}, "
             f"{max(reversals.size - 1, 0)} movements of {band:.4g} {unit} or more",
             needed="two half cycles or more",
             hint=_HINT,
@@ -67,15 +67,28 @@ def _reversals(values: Floats, settings: CycleSettings) -> tuple[Indices, float]
     return reversals, band
 
 
-def _labels(first: Indices, last: Indices, values: NDArray[Any], n_samples: int) -> NDArray[Any]:
+def _range(values: Floats) -> float:
+    """Range of the finite samples; 0 where there is none."""
+    low, high = np.inf, -np.inf
+    for part in sample_blocks(values.size, values):
+        finite = values[part][np.isfinite(values[part])]
+        low, high = finite.min(initial=low), finite.max(initial=high)
+    return float(max(high - low, 0.0))
+
+
+def _labels(first: Indices, last: Indices, values: NDArray[Any], time: Floats) -> NDArray[Any]:
     """Value of the interval of each sample, 0 outside; a shared sample is the later one's."""
     end = last + 1
     end[:-1] = np.minimum(end[:-1], first[1:])
     edges = np.column_stack([first, end]).ravel()
-    lengths = np.diff(np.concatenate([[0], edges, [n_samples]]))
-    labels = np.zeros(lengths.size, dtype=values.dtype)
-    labels[1::2] = values
-    return np.repeat(labels, lengths)
+    values_between = np.zeros(edges.size + 1, dtype=values.dtype)
+    values_between[1::2] = values
+    labels = empty_like(time, dtype=values.dtype)
+    for part in sample_blocks(time.size, labels):
+        inside = slice(*np.searchsorted(edges, [part.start, part.stop]))
+        lengths = np.diff(np.concatenate([[part.start], edges[inside], [part.stop]]))
+        labels[part] = np.repeat(values_between[inside.start : inside.stop + 1], lengths)
+    return labels
 
 
 def _trimmed(
@@ -198,7 +211,7 @@ def find_cycles(
     branch_first, branch_last, left_out = whole_cycles(values, halves)
     first, last = branch_first[:, 0], branch_last[:, 1]
     counted_by = "reversals"
-    if cycle_counter is not None and (cycle_counter[1:] != cycle_counter[:-1]).any():
+    if cycle_counter is not None and changes_of_count(cycle_counter).size:
         n_reversals = first.size
         first, last, branch_first, branch_last, number = counted_cycles(cycle_counter, values)
         counted_by = "machine counter"
@@ -230,7 +243,6 @@ def find_cycles(
     )
     notes += trim_notes
     kept = stop >= start
-    n_samples = time.size
     # branches in turn: a shared peak is the end of the ascending one, a valley the begin of it
     begin = branch_first.copy()
     begin[:, 1] += branch_first[:, 1] == branch_last[:, 0]
@@ -240,12 +252,10 @@ def find_cycles(
         branch_first=branch_first,
         branch_last=branch_last,
         plateau_rate=rate.reshape(-1, 2),
-        cycle_number=_labels(first, last, np.arange(1, first.size + 1, dtype=np.int32), n_samples),
-        branch=_labels(
-            begin.ravel(), branch_last.ravel(), np.tile(_BRANCHES, first.size), n_samples
-        ),
+        cycle_number=_labels(first, last, np.arange(1, first.size + 1, dtype=np.int32), time),
+        branch=_labels(begin.ravel(), branch_last.ravel(), np.tile(_BRANCHES, first.size), time),
         is_constant_rate=_labels(
-            start[kept], stop[kept], np.ones(int(kept.sum()), dtype=np.bool_), n_samples
+            start[kept], stop[kept], np.ones(int(kept.sum()), dtype=np.bool_), time
         ),
         band=float(band),
         counted_by=counted_by,
@@ -264,7 +274,8 @@ def _counter_notes(
 ) -> list[str]:
     """What the machine's counter says that the reversals do not."""
     notes = []
-    stroke = np.abs(values[branch_last] - values[branch_first]).max(axis=1)
+    travel = take_samples(values, branch_last) - take_samples(values, branch_first)
+    stroke = np.abs(travel).max(axis=1)
     still = stroke < band
     if still.any():
         notes.append(

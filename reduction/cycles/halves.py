@@ -21,6 +21,7 @@ from reduction.phases.intervals import median_step
 from reduction.phases.noise import noise_range
 from reduction.phases.standstill import Standstills
 from reduction.record import Bools, Floats, Integers
+from reduction.samples import take_samples
 
 __all__ = ["HalfCycles", "find_half_cycles"]
 
@@ -125,7 +126,7 @@ def find_half_cycles(
     >>> print(halves.first, halves.last, halves.rises)
     [2 3 5 6] [3 5 6 7] [ True False  True False]
     """
-    half_duration = float(np.median(np.diff(time[reversals])))
+    half_duration = float(np.median(np.diff(take_samples(time, reversals))))
     at, is_dwell = dwells_of_cycles(values, reversals, standstills, band=band)
     longest = max(_GAP_SHARE * half_duration, _GAP_STEPS * median_step(time))
     gap_before, gap_after = gaps_of_record(time, values, longest=longest)
@@ -158,7 +159,7 @@ def find_half_cycles(
     empty = np.empty(0, dtype=np.intp)
     first = np.concatenate([empty, *(run.nodes[:-1] for run in runs)])
     last = np.concatenate([empty, *(run.nodes[1:] for run in runs)])
-    rises = values[last] > values[first]
+    rises = take_samples(values, last) > take_samples(values, first)
     # at a dwell one half cycle ends where the crosshead arrives, the next begins where it leaves
     dwell = reversals[at[is_dwell]]
     first = _replaced(first, dwell, standstills.last[is_dwell])

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record import Floats
+from reduction.samples import take_samples
 
 __all__ = ["drop_jumps"]
 
@@ -68,9 +69,10 @@ def drop_jumps(values: Floats, reversals: Indices) -> tuple[Indices, Indices]:
     typical = float(np.median(steps))
     if typical < _FEWEST_STEPS:
         return reversals, none
-    size = np.abs(values[end] - values[begin])
-    at_begin = np.abs(values[begin + 1] - values[begin])
-    at_end = np.abs(values[end] - values[end - 1])
+    level = take_samples(values, reversals)
+    size = np.abs(np.diff(level))
+    at_begin = np.abs(take_samples(values, begin + 1) - level[:-1])
+    at_end = np.abs(level[1:] - take_samples(values, end - 1))
     is_jump = (np.fmax(at_begin, at_end) >= _JUMP_SHARE * size) & (steps <= _LONGEST * typical)
     is_jump[[0, -1]] = False  # without a neighbour at each side it is an end, not a pair
     rows = np.flatnonzero(is_jump)

@@ -15,43 +15,71 @@ from reduction.checks import as_positive
 from reduction.errors import DataError
 from reduction.phases.noise import noise_range
 from reduction.record import Floats
+from reduction.samples import sample_blocks, take_samples
 
 __all__ = ["find_reversals", "first_pass", "typical_range"]
 
 _BAND_SHARE = 0.1
 _SLOW_PASS = 0.1
 _GROUP = 4
-_BLOCK_SAMPLES = 1 << 16
+
+Indices = NDArray[np.intp]
 
 
-def _turning_points(values: Floats) -> NDArray[np.intp]:
+def _turning_points(values: Floats) -> Indices:
     """First sample of every local extreme of finite values, the two ends among them."""
-    found = [np.zeros(1, dtype=np.intp)]
-    last_move = np.empty(0, dtype=np.intp)
-    # blocks that stay in the cache, each with the last step that moved before it
-    for begin in range(0, values.size - 1, _BLOCK_SAMPLES):
-        block = values[begin : begin + _BLOCK_SAMPLES + 1]
-        moves = np.concatenate([last_move, begin + np.flatnonzero(block[1:] != block[:-1])])
-        rises = values[moves + 1] > values[moves]
-        found.append(moves[np.flatnonzero(rises[1:] != rises[:-1])] + 1)
-        last_move = moves[-1:]
-    found.append(last_move + 1)
-    return np.concatenate(found)
+    moves = np.flatnonzero(values[1:] != values[:-1])
+    rises = values[moves + 1] > values[moves]
+    turns = moves[np.flatnonzero(rises[1:] != rises[:-1])] + 1
+    return np.concatenate([[0], turns, moves[-1:] + 1])
+
+
+def _turns_of_record(values: Floats, band: float) -> Indices:
+    """Turning points of a record, without those that the band drops within a block.
+
+    The last two of a block go on to the next: from there to the end the level may still go
+    on, and only then is the end a turn.  A swing that is not over can but grow, so that
+    what is dropped beside it would be dropped later.
+    """
+    found = []
+    carried = np.empty(0, dtype=np.intp)
+    for part in sample_blocks(values.size, values):
+        block = values[part]
+        finite = np.flatnonzero(np.isfinite(block))
+        points = np.concatenate([carried, part.start + finite])
+        if not points.size:
+            continue
+        level = np.concatenate([take_samples(values, carried), block[finite]])
+        turning = _turning_points(level)
+        points, level = points[turning], level[turning]
+        stays = _without_small_pairs(level, band)
+        while not stays.all():
+            points, level = points[stays], level[stays]
+            stays = _without_small_pairs(level, band)
+        found.append(points[:-2])
+        carried = points[-2:]
+    return np.concatenate([*found, carried])
+
+
+def _without_small_pairs(level: Floats, band: float) -> NDArray[np.bool_]:
+    """Turning points that stay after pairs with the smallest swings are dropped, ends never."""
+    swing = np.abs(np.diff(level))
+    stays = np.ones(level.size, dtype=bool)
+    pair = 1 + np.flatnonzero(
+        (swing[1:-1] < band) & (swing[1:-1] <= swing[:-2]) & (swing[1:-1] < swing[2:])
+    )
+    stays[pair] = stays[pair + 1] = False
+    return stays
 
 
 def _drop_pairs(level: Floats, band: float) -> NDArray[np.bool_]:
     """Turning points that stay after the smallest swings of one pass are dropped."""
+    stays = _without_small_pairs(level, band)
     swing = np.abs(np.diff(level))
-    is_small = swing < band
-    stays = np.ones(level.size, dtype=bool)
-    pair = 1 + np.flatnonzero(
-        is_small[1:-1] & (swing[1:-1] <= swing[:-2]) & (swing[1:-1] < swing[2:])
-    )
-    stays[pair] = stays[pair + 1] = False
     # An end that moved less than the band before a larger swing is no extreme.
-    if is_small[0] and (swing.size == 1 or swing[0] < swing[1]):
+    if swing[0] < band and (swing.size == 1 or swing[0] < swing[1]):
         stays[0] = False
-    if is_small[-1] and (swing.size == 1 or swing[-1] <= swing[-2]):
+    if swing[-1] < band and (swing.size == 1 or swing[-1] <= swing[-2]):
         stays[-1] = False
     return stays
 
@@ -97,8 +125,8 @@ def find_reversals(values: ArrayLike, *, band: float) -> NDArray[np.intp]:
     before the first and after the last movement of that size.  They do not cross a
     mid-level, so drift and changes of level do not matter.
 
-    All turning points are found; then pairs of neighbours are dropped, many at once,
-    whose swing is below the band and no larger than the swings at both sides.  This is
+    All turning points are found, block by block; then pairs of neighbours are dropped, many
+    at once, whose swing is below the band and no larger than the swings at both sides.  This is
     the removal of small ranges of [1]_ in the order of size: what is left does not
     depend on the order within a pass, and dropping with a smaller band first changes
     nothing.  Where swings grow steadily a pass drops few; then groups of four that are
@@ -117,15 +145,8 @@ def find_reversals(values: ArrayLike, *, band: float) -> NDArray[np.intp]:
     values = np.asarray(values, dtype=np.float64)
     if values.ndim != 1:
         raise DataError("values are not a series", found=f"shape {values.shape}", needed="1-D")
-    finite: NDArray[np.intp] | None = None
-    # the sum shows a NaN in one fast pass; infinity is no sample either
-    if values.size and not np.isfinite(np.add.reduce(values)):
-        finite = np.flatnonzero(np.isfinite(values))
-        values = values[finite]
-    if values.size < 2:
-        return np.empty(0, dtype=np.intp)
-    points = _turning_points(values)
-    level = values[points]
+    points = _turns_of_record(values, band)
+    level = take_samples(values, points)
     while level.size > 1:
         before = level.size
         stays = _drop_pairs(level, band)
@@ -139,7 +160,7 @@ def find_reversals(values: ArrayLike, *, band: float) -> NDArray[np.intp]:
             points, level = points[turning], level[turning]
     if level.size < 2:
         return np.empty(0, dtype=np.intp)
-    return points if finite is None else finite[points]
+    return points
 
 
 def typical_range(values: ArrayLike) -> float:
@@ -221,9 +242,10 @@ def first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
     noise = noise_range(values)
     reversals, band = find_reversals(values, band=noise), noise
     while reversals.size > 1:
-        wider = _BAND_SHARE * typical_range(values[reversals])
+        levels = take_samples(values, reversals)
+        wider = _BAND_SHARE * typical_range(levels)
         if wider <= band:
             break
         # dropping with the smaller band first changes nothing
-        reversals, band = reversals[find_reversals(values[reversals], band=wider)], wider
+        reversals, band = reversals[find_reversals(levels, band=wider)], wider
     return reversals, band

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record import Floats
+from reduction.samples import BLOCK, sample_blocks, take_samples
 
 __all__ = ["DIFFERENT", "Edge", "Run", "gaps_of_record", "runs_that_cycle"]
 
@@ -25,7 +26,6 @@ DIFFERENT = 0.3
 
 _STANDING = 0.04  # of a half cycle: movement in its first tenth of one that begins standing
 _EDGE_SHARE = 0.1  # of a half cycle
-_BLOCK_SAMPLES = 1 << 16
 
 Indices = NDArray[np.intp]
 Edge = Literal["reversal", "standstill", "record"]  # a gap is an end of the record
@@ -69,9 +69,8 @@ def gaps_of_record(time: Floats, values: Floats, *, longest: float) -> tuple[Ind
     """
     before, after = [], []
     carried = np.empty(0, dtype=np.intp)
-    for begin in range(0, time.size, _BLOCK_SAMPLES):
-        block = values[begin : begin + _BLOCK_SAMPLES]
-        rows = np.concatenate([carried, begin + np.flatnonzero(np.isfinite(block))])
+    for part in sample_blocks(time.size, time, values):
+        rows = np.concatenate([carried, part.start + np.flatnonzero(np.isfinite(values[part]))])
         long = np.flatnonzero(np.diff(time[rows]) > longest)
         before.append(rows[long])
         after.append(rows[long + 1])
@@ -127,7 +126,7 @@ def runs_that_cycle(
         part
         for stretch in _stretches(values, reversals, breaks, n_standstills, band)
         for part in _parts(values, stretch)
-        if _is_cycling(np.abs(np.diff(values[part.nodes])))
+        if _is_cycling(np.abs(np.diff(take_samples(values, part.nodes))))
     ]
 
 
@@ -143,8 +142,7 @@ def _stretches(
     The edge of a break is one where a movement begins there.
     """
     order = np.argsort(breaks[0], kind="stable")
-    finite = np.isfinite(values)
-    start, stop = int(np.argmax(finite)), values.size - 1 - int(np.argmax(finite[::-1]))
+    start, stop = _finite_ends(values)
     begins = np.concatenate([[start], breaks[1][order]])
     ends = np.concatenate([breaks[0][order], [stop]])
     edges: list[Edge] = ["standstill" if at < n_standstills else "record" for at in order]
@@ -174,6 +172,22 @@ def _stretches(
     return found
 
 
+def _finite_ends(values: Floats) -> tuple[int, int]:
+    """First and last sample that is there; the ends of the record where none is."""
+    start, stop = 0, values.size - 1
+    for part in sample_blocks(values.size, values):
+        there = np.flatnonzero(np.isfinite(values[part]))
+        if there.size:
+            start = part.start + int(there[0])
+            break
+    for begin in reversed(range(0, values.size, BLOCK)):
+        there = np.flatnonzero(np.isfinite(values[begin : begin + BLOCK]))
+        if there.size:
+            stop = begin + int(there[-1])
+            break
+    return start, stop
+
+
 def _is_standing(values: Floats, nodes: Indices, begin: int, n_steps: int) -> bool:
     """Whether the movement begins at a stand, if for too short a time to be a standstill."""
     moved = values[min(begin + n_steps, values.size - 1)] - values[begin]
@@ -183,7 +197,7 @@ def _is_standing(values: Floats, nodes: Indices, begin: int, n_steps: int) -> bo
 def _parts(values: Floats, run: Run) -> list[Run]:
     """A stretch, parted at moves from one level to another; the move ends both parts."""
     nodes = run.nodes
-    ranges = np.abs(np.diff(values[nodes]))
+    ranges = np.abs(np.diff(take_samples(values, nodes)))
     moves = 1 + np.flatnonzero(ranges[1:-1] >= ranges[:-2] + ranges[2:])
     begins = np.concatenate([[0], moves])
     ends = np.concatenate([moves + 2, [nodes.size]])

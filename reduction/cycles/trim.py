@@ -20,6 +20,7 @@ from reduction.errors import SettingsError
 from reduction.phases.intervals import median_step
 from reduction.phases.noise import estimate_noise
 from reduction.record import Bools, Floats
+from reduction.samples import take_samples
 
 __all__ = ["constant_rate_span", "stroke_span"]
 
@@ -36,9 +37,10 @@ Indices = NDArray[np.intp]
 
 def _rate(time: Floats, values: Floats, begin: Indices, end: Indices) -> Floats:
     """Rate between two samples; NaN where time does not advance."""
-    elapsed = time[end] - time[begin]
+    elapsed = take_samples(time, end) - take_samples(time, begin)
+    travel = take_samples(values, end) - take_samples(values, begin)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray((values[end] - values[begin]) / np.where(elapsed == 0, np.nan, elapsed))
+        return np.asarray(travel / np.where(elapsed == 0, np.nan, elapsed))
 
 
 def _steps_until(
@@ -130,7 +132,7 @@ def constant_rate_span(
             needed="above 0 and at most 1",
         )
     n_steps = branch_last - branch_first
-    travel = values[branch_last] - values[branch_first]
+    travel = take_samples(values, branch_last) - take_samples(values, branch_first)
     sign = np.sign(travel)
     width = _window(time, travel, n_steps, noise)
     reach = n_steps - width  # last begin of a window, from the first sample
@@ -221,13 +223,13 @@ def stroke_span(
     >>> stroke_span(values, np.array([0]), np.array([20]))
     (array([3]), array([17]))
     """
-    stroke = values[branch_last] - values[branch_first]
-    low = values[branch_first] + _STROKE_END * stroke
-    high = values[branch_last] - _STROKE_END * stroke
+    begin, end = take_samples(values, branch_first), take_samples(values, branch_last)
+    stroke = end - begin
+    low, high = begin + _STROKE_END * stroke, end - _STROKE_END * stroke
     sign = np.sign(stroke)
 
     def passes(samples: Indices, rows: Indices) -> Bools:
-        level, up = values[samples], sign[rows, None]
+        level, up = take_samples(values, samples), sign[rows, None]
         is_in = (up * (level - low[rows, None]) >= 0) & (up * (high[rows, None] - level) >= 0)
         return np.asarray(is_in)
 

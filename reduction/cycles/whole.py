@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from reduction.cycles.halves import HalfCycles
 from reduction.record import Bools, Floats
+from reduction.samples import take_samples
 
 __all__ = ["whole_cycles"]
 
@@ -73,8 +74,9 @@ def whole_cycles(values: Floats, halves: HalfCycles) -> tuple[Indices, Indices, 
         halves.rises[:-1] & ~halves.rises[1:] & (halves.run[:-1] == halves.run[1:])
     )
     both = np.stack([rising, rising + 1], axis=1)
-    begin, end = values[halves.first[rising]], values[halves.last[rising + 1]]
-    peak = values[halves.last[rising]]
+    begin = take_samples(values, halves.first[rising])
+    end = take_samples(values, halves.last[rising + 1])
+    peak = take_samples(values, halves.last[rising])
     follows = (np.diff(rising) == 2) & (halves.run[rising[1:]] == halves.run[rising[:-1]])
     step = _steps(begin, end, follows)
     allowed = np.full(rising.size, _SETTLING)
