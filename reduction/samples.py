@@ -106,18 +106,18 @@ def sample_blocks(
 
 
 def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArray[Any]:
-    """Return single samples of a series, as ``series[index]`` does, in bounded memory.
+    """Return single samples of series, as ``series[..., index]`` does, in bounded memory.
 
     Parameters
     ----------
-    series : ndarray, shape (n_samples,)
+    series : ndarray, shape (..., n_samples)
         In memory or on disk. [any]
     index : ndarray of int, any shape
         Which samples. [1]
 
     Returns
     -------
-    values : ndarray, of the shape of ``index``
+    values : ndarray, shape (..., *index.shape)
         In memory. [as series]
 
     Raises
@@ -131,12 +131,12 @@ def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArr
     array([7., 5.])
     """
     if not is_on_disk(series):
-        return np.asarray(series[index])
+        return np.asarray(series[..., index])
     flat = index.reshape(-1)
-    taken = np.empty(flat.size, dtype=series.dtype)
+    taken = np.empty((*series.shape[:-1], flat.size), dtype=series.dtype)
     for part in sample_blocks(flat.size, series, size=_TAKEN):
-        taken[part] = series[flat[part]]
-    return taken.reshape(index.shape)
+        taken[..., part] = series[..., flat[part]]
+    return taken.reshape(*series.shape[:-1], *index.shape)
 
 
 def mean_of_rows(rows: NDArray[np.float64]) -> NDArray[np.float64]:

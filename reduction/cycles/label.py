@@ -15,20 +15,22 @@ from numpy.typing import NDArray
 from reduction.cycles.product import Cycles
 from reduction.errors import DataError
 from reduction.phases.standstill import Standstills
+from reduction.record import Floats
+from reduction.samples import empty_like, sample_blocks
 from reduction.vocabulary import PHASE_VALUES
 
 __all__ = ["label_phases"]
 
 
 def label_phases(
-    n_samples: int, *, standstills: Standstills, cycles: Cycles | None
+    time: Floats, *, standstills: Standstills, cycles: Cycles | None
 ) -> NDArray[np.int8]:
     """Return the phase of each sample, by the values of `reduction.vocabulary.PHASE_VALUES`.
 
     Parameters
     ----------
-    n_samples : int
-        Length of the record. [1]
+    time : ndarray, shape (n_samples,)
+        Elapsed time of the record, beside which the labels lie. [s]
     standstills : Standstills
         Rests and holds. [SI]
     cycles : Cycles or None
@@ -54,20 +56,25 @@ def label_phases(
     >>> stand = Standstills(
     ...     np.array([0, 5]), np.array([2, 6]), np.zeros(2), np.zeros(2), np.zeros(2),
     ...     np.zeros((1, 2)), np.array([True, False]), 0.1, 1.0)
-    >>> label_phases(8, standstills=stand, cycles=None)
+    >>> label_phases(np.arange(8.0), standstills=stand, cycles=None)
     array([0, 0, 0, 1, 1, 2, 2, 1], dtype=int8)
     """
+    n_samples = time.size
     if standstills.n_standstills and int(standstills.last[-1]) >= n_samples:
         raise DataError(
             "a standstill reaches beyond the record",
             found=f"sample {int(standstills.last[-1])}",
             needed=f"less than {n_samples}",
         )
-    phase = np.full(n_samples, PHASE_VALUES["approach"], dtype=np.int8)
+    phase = empty_like(time, dtype=np.int8)
+    for part in sample_blocks(n_samples, phase):
+        phase[part] = PHASE_VALUES["approach"]
     for first, last, is_rest in zip(
         standstills.first, standstills.last, standstills.is_rest, strict=True
     ):
-        phase[first : last + 1] = PHASE_VALUES["rest" if is_rest else "hold"]
+        stand = phase[first : last + 1]
+        for part in sample_blocks(stand.size, stand):
+            stand[part] = PHASE_VALUES["rest" if is_rest else "hold"]
     if cycles is not None:
         if cycles.cycle_number.size != n_samples:
             raise DataError(
@@ -75,5 +82,7 @@ def label_phases(
                 found=f"{cycles.cycle_number.size} samples",
                 needed=f"{n_samples}",
             )
-        np.copyto(phase, np.int8(PHASE_VALUES["cycling"]), where=cycles.cycle_number > 0)
+        cycling = np.int8(PHASE_VALUES["cycling"])
+        for part in sample_blocks(n_samples, phase, cycles.cycle_number):
+            np.copyto(phase[part], cycling, where=cycles.cycle_number[part] > 0)
     return phase

@@ -23,6 +23,7 @@ from reduction.cycles.product import Cycles, Loops
 from reduction.cycles.quantities import MEASURED, Waveform, quantities_of_cycles
 from reduction.cycles.readings import bridge_gaps, reading_noise
 from reduction.record import Floats, Integers
+from reduction.samples import empty_like, take_samples
 from reduction.workers import run_blocks
 
 __all__ = ["close_loops"]
@@ -143,17 +144,18 @@ def close_loops(
     [[12.566 12.566]] 12.566
     """
     first, last = cycles.first, cycles.last
-    duration = time[last] - time[first]
-    period = mean_period(time[first], first, last, last_turn=time[last])
+    begin, end = take_samples(time, first), take_samples(time, last)
+    duration = end - begin
+    period = mean_period(begin, first, last, last_turn=end)
     if waveform == "sinusoidal" and np.all(period > 0):
         period = _sine_period(time, tension, cycles, period)
         duration = period
-    measured = np.empty((tension.shape[0], len(MEASURED), cycles.n_cycles))
+    measured = empty_like(tension, shape=(tension.shape[0], len(MEASURED), cycles.n_cycles))
     # the middles of rise and fall, at least a sample apart and from either end
     middles = (cycles.branch_first + cycles.branch_last).T // 2
     middles[0] = np.clip(middles[0], cycles.first + 1, cycles.last - 2)
     middles[1] = np.clip(middles[1], middles[0] + 1, cycles.last - 1)
-    ends = time[np.stack([cycles.first, *middles, cycles.last])]
+    ends = take_samples(time, np.stack([cycles.first, *middles, cycles.last]))
 
     def measure_block(block: slice) -> None:
         low = max(int(cycles.first[block.start]) - _REACH, 0)
@@ -167,10 +169,13 @@ def close_loops(
                 force[low:high], stretch[low:high], basis, middles[:, block] - low, waveform
             )
 
-    run_blocks(measure_block, _blocks_of_cycles(cycles))
+    samples = (time, tension, strain, measured)
+    run_blocks(measure_block, _blocks_of_cycles(cycles), samples=samples)
     shape = (tension.shape[0], cycles.n_cycles)
-    tables = {name: np.empty(shape) for name in _FIELDS}
-    uncertainty = {name: np.empty(shape) for name in _FIELDS if name != "cycle_start_time"}
+    tables = {name: empty_like(tension, shape=shape) for name in _FIELDS}
+    uncertainty = {
+        name: empty_like(tension, shape=shape) for name in _FIELDS if name != "cycle_start_time"
+    }
     for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
         values, errors = quantities_of_cycles(
             measured[index],
@@ -183,7 +188,7 @@ def close_loops(
         for name, column in values.items():
             tables[name][index] = column
             uncertainty[name][index] = errors[name]
-    tables["cycle_start_time"][:] = time[cycles.first]
+    tables["cycle_start_time"][:] = begin
     tables["frequency"][:] = 1 / duration
     # a turn is known to one sample at each end of the cycle, evenly spread
     step = duration / (cycles.last - cycles.first)
@@ -207,7 +212,7 @@ def _sine_period(time: Floats, tension: Floats, cycles: Cycles, period: Floats) 
         force, _ = bridge_gaps(tension[0, low:high], first, last)
         turns[block] = phase_turns(*fundamental(force, basis)[:2], basis, time[low:high])
 
-    run_blocks(find, blocks)
+    run_blocks(find, blocks, samples=(time, tension))
     last_turn = np.append(turns[1:], np.nan)
     # the last cycle of a run ends where it would go on
     ends_run = np.append(cycles.last[:-1] != cycles.first[1:], True)

@@ -17,6 +17,7 @@ from reduction.cycles.readings import reading_noise
 from reduction.moduli.product import EndModuli
 from reduction.moduli.secant import chord_modulus, secant_modulus
 from reduction.moduli.tangent import pair_specimens
+from reduction.samples import take_samples
 
 __all__ = ["end_moduli"]
 
@@ -77,18 +78,19 @@ def end_moduli(
     """
     strains, tensions, areas = pair_specimens(strain, tension, area)
     peak = cycles.branch_last[:, 0]
-    ends = [series[:, cycles.branch_first] for series in (strains, tensions)]
-    ends += [series[:, cycles.branch_last] for series in (strains, tensions)]
+    ends = [take_samples(series, cycles.branch_first) for series in (strains, tensions)]
+    ends += [take_samples(series, cycles.branch_last) for series in (strains, tensions)]
     strain_begin, tension_begin, strain_end, tension_end = ends
     strain_end = np.where(strain_end == strain_begin, np.nan, strain_end)
     section = areas[:, None]
-    secant = secant_modulus(strains[:, peak], tensions[:, peak], area=section)
+    strain_at_peak = take_samples(strains, peak)
+    secant = secant_modulus(strain_at_peak, take_samples(tensions, peak), area=section)
     chord = chord_modulus(
         strain_begin, strain_end, tension_begin, tension_end, area=section[..., None]
     )
     noise = np.array([reading_noise(one) for one in tensions])[:, None]
     strain_noise = np.array([reading_noise(one) for one in strains])[:, None]
-    at_peak = np.hypot(noise / section, secant * strain_noise) / np.abs(strains[:, peak])
+    at_peak = np.hypot(noise / section, secant * strain_noise) / np.abs(strain_at_peak)
     of_branch = np.sqrt(2) * np.hypot(noise[..., None] / section[..., None],
                                       chord * strain_noise[..., None])  # fmt: skip
     return EndModuli(

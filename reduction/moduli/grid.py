@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from reduction.cycles.product import Cycles
 from reduction.errors import DataError, SettingsError
 from reduction.record import Floats
+from reduction.samples import take_samples
 from reduction.settings import ModulusSettings
 
 __all__ = ["StrainGrid", "strain_grid"]
@@ -193,7 +194,7 @@ def strain_grid(strain: ArrayLike, *, cycles: Cycles, settings: ModulusSettings)
     strain = np.atleast_2d(np.asarray(strain, dtype=np.float64))
     if cycles.n_cycles == 0:
         raise DataError("there is no cycle to make a strain grid from", needed="a whole cycle")
-    ends = strain[:, np.stack([cycles.branch_first, cycles.branch_last])]
+    ends = take_samples(strain, np.stack([cycles.branch_first, cycles.branch_last]))
     travel = np.abs(ends[:, 1] - ends[:, 0])
     live = np.isfinite(travel).any(axis=(1, 2))  # a dead channel does not take the other along
     if not live.any():

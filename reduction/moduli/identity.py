@@ -17,6 +17,7 @@ from reduction.moduli.cells import sums_by_cell
 from reduction.moduli.product import CycleIdentity
 from reduction.moduli.tangent import pair_specimens
 from reduction.record import Floats
+from reduction.samples import take_samples
 from reduction.workers import run_blocks
 
 __all__ = ["check_identity"]
@@ -35,10 +36,10 @@ def _tension_change(
     strain: Floats, tension: Floats, *, cycles: Cycles, n_pieces: int
 ) -> tuple[Floats, Floats]:
     """Tension change along each branch from regression slopes, and its strain; (n_cycles, 2)."""
-    start, end = strain[cycles.branch_first], strain[cycles.branch_last]
+    start, end = (take_samples(strain, at) for at in (cycles.branch_first, cycles.branch_last))
     stroke = end - start
     begin, per_stroke = start.ravel(), 1 / np.where(stroke == 0, np.nan, stroke).ravel()
-    first_tension = tension[cycles.branch_first]
+    first_tension = take_samples(tension, cycles.branch_first)
     known = np.isfinite(first_tension)
     reference = float(first_tension[known].mean()) if known.any() else 0.0
     first, stop = int(cycles.first[0]), int(cycles.last[-1]) + 1
@@ -66,7 +67,9 @@ def _tension_change(
         return offset, np.stack([adds @ value for value in (np.ones_like(u), u, y, u * u, u * y)])
 
     sums = np.zeros((5, cycles.n_cycles * 2 * n_pieces))
-    for offset, of_block in run_blocks(sum_block, range(first, stop, _BLOCK_SAMPLES)):
+    samples = (strain, tension, cycles.cycle_number, cycles.branch)
+    blocks = run_blocks(sum_block, range(first, stop, _BLOCK_SAMPLES), samples=samples)
+    for offset, of_block in blocks:
         sums[:, offset : offset + of_block.shape[1]] += of_block
     by_branch = sums.reshape(5, -1, n_pieces)
     own = np.arange(2 * cycles.n_cycles).reshape(-1, 2)
@@ -75,9 +78,10 @@ def _tension_change(
         (cycles.branch_last, 1.0, -1),
     ):
         # a reversal is labelled once, and is the end of two branches
-        label = 2 * cycles.cycle_number[reversal].astype(np.int64) + cycles.branch[reversal] - 3
-        load = tension[reversal]
-        shared = (label != own) & np.isfinite(strain[reversal]) & np.isfinite(load)
+        number = take_samples(cycles.cycle_number, reversal).astype(np.int64)
+        label = 2 * number + take_samples(cycles.branch, reversal) - 3
+        load = take_samples(tension, reversal)
+        shared = (label != own) & np.isfinite(take_samples(strain, reversal)) & np.isfinite(load)
         y, one = load[shared] - reference, np.ones(np.count_nonzero(shared))
         by_branch[:, own[shared], piece_there] += np.stack(
             [one, u_there * one, y, u_there * one, u_there * y]
@@ -217,7 +221,8 @@ def check_identity(
                 strains[row], tensions[row], cycles=cycles, n_pieces=n_pieces
             )
             per_stroke = 1 / (one_area * np.abs(stroke).mean(axis=1))
-            lost = tensions[row][cycles.first] - tensions[row][cycles.last]
+            load = tensions[row]
+            lost = take_samples(load, cycles.first) - take_samples(load, cycles.last)
             rise = change * np.sign(stroke)
             difference[row] = (rise[:, 0] - rise[:, 1]) * per_stroke
             loss[row] = lost * per_stroke

@@ -17,6 +17,7 @@ from reduction.moduli.groups import CycleGroups
 from reduction.moduli.moments import accumulate_moments, fit_windows
 from reduction.moduli.running import RunningStatistics
 from reduction.record import Floats, Integers
+from reduction.samples import take_samples
 from reduction.workers import run_blocks
 
 __all__ = ["SpecimenCurves"]
@@ -46,7 +47,7 @@ class SpecimenCurves:
 
 
 def _tension_reference(tension: Floats, cycles: Cycles) -> float:
-    ends = tension[cycles.branch_first]
+    ends = take_samples(tension, cycles.branch_first)
     return float(np.nanmean(ends)) if np.isfinite(ends).any() else 0.0
 
 
@@ -141,5 +142,6 @@ def reduce_specimens(
             for row, reference in enumerate(references)
         ]
 
-    blocks = run_blocks(reduce_block, groups.blocks(cycles, grid.n_bins))
+    samples = (strain, tension, cycles.cycle_number, cycles.branch, cycles.is_constant_rate)
+    blocks = run_blocks(reduce_block, groups.blocks(cycles, grid.n_bins), samples=samples)
     return [reduce(add, of_specimen) for of_specimen in zip(*blocks, strict=True)]

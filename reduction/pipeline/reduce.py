@@ -111,7 +111,7 @@ def reduce_test(
     """
     record, standstills, cycles = located.record, located.standstills, located.cycles
     position, tension = located.position, located.tension
-    phase = label_phases(record.n_samples, standstills=standstills, cycles=cycles)
+    phase = label_phases(record.time, standstills=standstills, cycles=cycles)
     strain = strain_of_record(record, position, tension, models)
     readings = readings_of(record, instruments)
     stated = replace(located, record=with_readings(record, readings))

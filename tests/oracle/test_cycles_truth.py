@@ -71,7 +71,7 @@ def test_the_long_test_and_its_bursts_are_counted(name, n_cycles):
     assert not any("planned" in note for note in cycles.notes)
     period = np.diff(time[cycles.branch_last[:, 0]])
     assert period == pytest.approx(20, abs=1.01)
-    phase = label_phases(time.size, standstills=stand, cycles=cycles)
+    phase = label_phases(time, standstills=stand, cycles=cycles)
     assert (phase == PHASE_VALUES["cycling"]).sum() == pytest.approx(
         n_cycles * 20 / np.median(np.diff(time)), rel=0.005
     )

@@ -455,7 +455,7 @@ def test_phases_of_a_test(twenty):
     tension = np.stack([100 * (position - 3)])
     stand = find_standstills(time, position, tension, settings=PhaseSettings())
     cycles = find_cycles(time, position, tension, stand, settings=CycleSettings())
-    phase = label_phases(time.size, standstills=stand, cycles=cycles)
+    phase = label_phases(time, standstills=stand, cycles=cycles)
     value = {when: phase[int(10 * when)] for when in (10, 30, 45, 150, 255, 290)}
     names = ["rest", "approach", "hold", "cycling", "approach", "rest"]
     assert list(value.values()) == [PHASE_VALUES[name] for name in names]
@@ -467,5 +467,5 @@ def test_dwells_are_cycling_in_the_phases():
     tension = np.stack([100 * (position - 3)])
     stand = find_standstills(time, position, tension, settings=PhaseSettings())
     cycles = find_cycles(time, position, tension, stand, settings=CycleSettings())
-    phase = label_phases(time.size, standstills=stand, cycles=cycles)
+    phase = label_phases(time, standstills=stand, cycles=cycles)
     assert (phase[cycles.first[0] : cycles.last[-1]] == PHASE_VALUES["cycling"]).all()

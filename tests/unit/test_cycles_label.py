@@ -26,7 +26,7 @@ def cycling(n_samples):
 
 
 def test_without_cycles_what_does_not_stand_is_approach():
-    phase = label_phases(5, standstills=standing(1, 3), cycles=None)
+    phase = label_phases(np.arange(5.0), standstills=standing(1, 3), cycles=None)
     assert phase.tolist() == [
         PHASE_VALUES[n] for n in ("approach", "hold", "hold", "hold", "approach")
     ]
@@ -34,9 +34,9 @@ def test_without_cycles_what_does_not_stand_is_approach():
 
 def test_a_standstill_beyond_the_record_is_refused():
     with pytest.raises(DataError, match="beyond the record; found sample 9; needed less than 9"):
-        label_phases(9, standstills=standing(3, 9), cycles=None)
+        label_phases(np.arange(9.0), standstills=standing(3, 9), cycles=None)
 
 
 def test_cycles_of_another_record_are_refused():
     with pytest.raises(DataError, match="of another record; found 7 samples; needed 9"):
-        label_phases(9, standstills=standing(3, 8), cycles=cycling(7))
+        label_phases(np.arange(9.0), standstills=standing(3, 8), cycles=cycling(7))
