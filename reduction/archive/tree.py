@@ -19,7 +19,7 @@ __all__ = ["open_campaign"]
 _OF_ONE_ARCHIVE = frozenset(
     {
         "id", "test", "test_kind", "test_order", "raw_file", "raw_file_sha256", "raw_file_bytes",
-        "raw_metadata", "settings", "history",
+        "raw_metadata", "stored_samples", "settings", "history",
     }
 )  # fmt: skip
 
