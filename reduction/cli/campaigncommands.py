@@ -90,21 +90,24 @@ def run(
 
 def report(
     processed_dir: Annotated[
-        Path,
-        typer.Argument(
-            help="processed/CAMPAIGN, or processed/ for all.", show_default=False, callback=here
-        ),
+        str, typer.Argument(help="processed/CAMPAIGN, or processed/ for all.", show_default=False)
     ],
-    reports: Annotated[Path, typer.Option(help="Where the report goes.")] = Path("reports"),
+    reports: Annotated[str, typer.Option(help="Where the report goes.")] = "reports",
+    allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
     """Make the HTML report again, from the archives alone."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.remote import local_sources, report_folder
         from reduction.cli.runs import report_again
 
-        report_again(processed_dir, reports=reports, output=output)
+        with (
+            local_sources([processed_dir], allow_remote=allow_remote, output=output) as (here,),
+            report_folder(reports, allow_remote=allow_remote, output=output) as pages,
+        ):
+            report_again(Path(here), reports=pages, output=output)
 
 
 def schema(

@@ -15,11 +15,11 @@ from reduction.archive.products import OF_CAMPAIGN
 from reduction.campaign.plan import Campaign
 from reduction.campaign.staged import staged_campaign
 from reduction.cli.commandoutput import CommandOutput
-from reduction.remote.mirror import copied, mirrored
+from reduction.remote.mirror import copied, mirrored, put_at_end
 from reduction.remote.place import allowed, base_name, below
 from reduction.remote.scratch import renamed, scratch_folder
 
-__all__ = ["campaign_at", "local_sources", "product_folders"]
+__all__ = ["campaign_at", "local_sources", "product_folders", "report_folder"]
 
 
 @contextmanager
@@ -76,23 +76,52 @@ def product_folders(
     ArchiveError
         If products cannot be copied from there, or put there.
     """
-    with ExitStack() as opened:
-        folders = []
-        opened.enter_context(renamed(output.names))
-        for what, address, fetched in (
-            ("--processed", processed, True), ("--reports", reports, False),
-        ):  # fmt: skip
-            if not allowed(address, allow_remote, what=what):
-                folders.append(Path(address))
-                continue
+    is_remote = allowed(processed, allow_remote, what="--processed")
+    with (
+        report_folder(reports, allow_remote=allow_remote, output=output) as pages,
+        renamed(output.names),
+        ExitStack() as opened,  # closed first: a page follows the products that it shows
+    ):
+        folder = Path(processed)
+        if is_remote:
             folder = opened.enter_context(scratch_folder())
-            output.names[str(folder)] = shown_address(address).rstrip("/")
-            opened.enter_context(
-                mirrored(below(address, campaign.id), folder / campaign.id, fetched=fetched)
-            )
-            folders.append(folder)
-        first, second = folders
-        yield replace(campaign, names=campaign.names | output.names), first, second
+            output.names[str(folder)] = shown_address(processed).rstrip("/")
+            opened.enter_context(mirrored(below(processed, campaign.id), folder / campaign.id))
+        yield replace(campaign, names=campaign.names | output.names), folder, pages
+
+
+@contextmanager
+def report_folder(reports: str, *, allow_remote: bool, output: CommandOutput) -> Iterator[Path]:
+    """Give a folder of this machine to write pages into; on the net they appear at the end.
+
+    Parameters
+    ----------
+    reports : str
+        Path or address of the folder in which campaigns have theirs.
+    allow_remote : bool
+        Whether it may be an address.
+    output : CommandOutput
+        Learns what the copy is called.
+
+    Yields
+    ------
+    folder : pathlib.Path
+        Where to write.
+
+    Raises
+    ------
+    SettingsError
+        If it is an address and addresses are not allowed, or nothing can be written there.
+    ArchiveError
+        If a page cannot be put there.
+    """
+    if not allowed(reports, allow_remote, what="--reports"):
+        yield Path(reports)
+        return
+    with scratch_folder() as folder, renamed(output.names):
+        output.names[str(folder)] = shown_address(reports).rstrip("/")
+        with put_at_end(reports, folder):
+            yield folder
 
 
 @contextmanager

@@ -21,15 +21,16 @@ from reduction.remote.transfer import (
     remove,
 )
 
-__all__ = ["copied", "mirrored"]
+__all__ = ["copied", "mirrored", "put_at_end"]
 
 
 @contextmanager
-def mirrored(address: str, folder: Path, *, fetched: bool = True) -> Iterator[Path]:
+def mirrored(address: str, folder: Path) -> Iterator[None]:
     """Work here on products that lie on the net.
 
-    What changed in the folder is put there when the block ends, also where it ends with an
-    error: products that were finished are kept. Archives go first, and ``status.csv`` last.
+    Archives, tables and status that stand there are copied here first. What changed in the
+    folder is put there when the block ends, also where it ends with an error: products that were
+    finished are kept. Archives go first, and ``status.csv`` last.
 
     Parameters
     ----------
@@ -37,13 +38,6 @@ def mirrored(address: str, folder: Path, *, fetched: bool = True) -> Iterator[Pa
         Of the folder of one campaign; it need not be there yet.
     folder : pathlib.Path
         A scratch folder, which is made.
-    fetched : bool
-        Whether archives, tables and status that stand there are copied here first.
-
-    Yields
-    ------
-    folder : pathlib.Path
-        To be written into.
 
     Raises
     ------
@@ -54,23 +48,46 @@ def mirrored(address: str, folder: Path, *, fetched: bool = True) -> Iterator[Pa
     """
     refuse_read_only(address)
     folder.mkdir(parents=True, exist_ok=True)
-    before = _products(address) if fetched else {}
+    before = _products(address)
     for name in before:
         fetch(below(address, name), folder / name, fault=product_fault)
     sums = _sums(folder)
     try:
-        yield folder
+        yield
     finally:
         now = _sums(folder)
-        changed = [name for name in sorted(now, key=_place) if sums.get(name) != now[name]]
         gone = [name for name in sums if name not in now]
+        changed = [name for name in sorted(now, key=_place) if sums.get(name) != now[name]]
         if changed or gone:
-            if fetched:
-                _refuse_another_run(address, before)
-            for name in changed:
-                put(folder / name, below(address, name))
-            for name in gone:
-                remove(below(address, name))
+            _refuse_another_run(address, before)
+        for name in changed:
+            put(folder / name, below(address, name))
+        for name in gone:
+            remove(below(address, name))
+
+
+@contextmanager
+def put_at_end(address: str, folder: Path) -> Iterator[None]:
+    """Put what lies in a folder to the net when the block ends well.
+
+    Parameters
+    ----------
+    address : str
+        Of the folder there.
+    folder : pathlib.Path
+        A scratch folder.
+
+    Raises
+    ------
+    ArchiveError
+        If a file cannot be put there.
+    SettingsError
+        If nothing can be written to such an address.
+    """
+    refuse_read_only(address)
+    yield
+    for name in _sums(folder):
+        put(folder / name, below(address, name))
 
 
 def copied(address: str, folder: Path, *, beside: bool = False) -> Path:

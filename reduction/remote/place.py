@@ -59,7 +59,7 @@ def allowed(text: str, allow_remote: bool, *, what: str) -> bool:
     if not allow_remote:
         raise SettingsError(
             f"{what} is an address on the net, and none is fetched unasked", found=shown,
-            needed="--allow-remote, or a file on this machine",
+            needed="--allow-remote (in Python allow_remote=True), or a file on this machine",
             hint="Allow it where you know who wrote the campaign.",
         )  # fmt: skip
     scheme = text.partition("://")[0].lower()

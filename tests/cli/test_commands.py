@@ -360,7 +360,7 @@ def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
         (
             ("check", "https://ann:secret@example.org/c.toml?sig=abc"),
             "the campaign is an address on the net, and none is fetched unasked; found "
-            "'https://example.org/c.toml'; needed --allow-remote, or a file on this machine. Allow",
+            "'https://example.org/c.toml'; needed --allow-remote",
         ),
     ],
 )
