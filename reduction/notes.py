@@ -23,7 +23,7 @@ _METHOD = re.compile(
     r"|the method of WHOI|marks are taken to be read|under one crosshead: one piece of each"
     r"|each curve pools|gauge length .* from length and|no marks of its own; its strain rests"
     r"|slip not looked for: \d+ cycles;|is held at 1$|to which none|^a part of "
-    r"|^half cycles at the end of a run",
+    r"|^half cycles at the end of a run|^samples are stored in part",
     re.IGNORECASE,
 )
 _REFUSAL = re.compile(

@@ -85,9 +85,10 @@ class ReducedTest:
     """One reduced test with all its specimens.
 
     ``record`` is None for a stepwise test, which has readings (`stepwise`) and no log.
-    ``strain`` [1] and ``nominal_stress`` [Pa] have shape (n_specimens, n_samples), their
-    standard uncertainties one value a specimen; they are NaN where a sample is not usable,
-    while ``record`` keeps what was logged.  Parts that the kind of test does not give are
+    ``strain`` [1] has shape (n_specimens, n_samples), its standard uncertainty and that of
+    nominal stress [Pa] one value a specimen; it is NaN where a sample is not usable,
+    while ``record`` keeps what was logged.  Nominal stress is tension over an area, and is
+    made where it is stored.  Parts that the kind of test does not give are
     None (or empty); `notes` are the quality notes a reader must see,
     `stage_lines` the lines of the history, `settings_json` every setting that was in force.
     ``line`` has one entry a cycle and ``line_of_test`` one a specimen, from the means over the
@@ -114,7 +115,6 @@ class ReducedTest:
     phase: Integers | None = None
     strain: Floats | None = None
     strain_standard_uncertainty: Floats | None = None
-    nominal_stress: Floats | None = None
     nominal_stress_standard_uncertainty: Floats | None = None
     strain_models: tuple[StrainModel, ...] = ()
     cycles: Cycles | None = None

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from reduction.errors import DataError
 
 __all__ = [
+    "UNUSABLE",
     "Bools",
     "Floats",
     "Integers",
@@ -53,6 +54,11 @@ class Quality(IntFlag):
     NOT_CONSTANT_RATE = 128
     RESAMPLED = 256
     EXTRAPOLATED = 512
+
+
+# of the width of a flag, lest a sum with it is wider
+UNUSABLE = np.uint16(Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE)
+"""Flags of samples that no number may rest on."""
 
 
 def freeze_arrays(product: object) -> None:

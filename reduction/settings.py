@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 __all__ = [
+    "ArchiveSettings",
     "CycleSettings",
     "HoldSettings",
     "ModulusSettings",
@@ -19,6 +20,7 @@ __all__ = [
     "ReductionSettings",
     "RopeSettings",
     "SlipSettings",
+    "StoredSamples",
     "StrainMethod",
     "StrainSettings",
 ]
@@ -31,6 +33,7 @@ StrainMethod = Literal[
     "extensometer",
     "gauge-length",
 ]
+StoredSamples = Literal["selected", "all"]
 
 
 @dataclass(frozen=True)
@@ -141,6 +144,16 @@ class RopeSettings:
 
 
 @dataclass(frozen=True)
+class ArchiveSettings:
+    """Which samples an archive holds."""
+
+    samples: StoredSamples | None = None
+    """Every one, or those of selected cycles and outside cycles; None: by the longest record."""
+    longest_record: int = 1_000_000
+    """Longest record stored whole; of a longer one a quarter of this at most is stored. [1]"""
+
+
+@dataclass(frozen=True)
 class ReductionSettings:
     """All settings of one test."""
 
@@ -152,3 +165,4 @@ class ReductionSettings:
     holds: HoldSettings = field(default_factory=HoldSettings)
     slip: SlipSettings = field(default_factory=SlipSettings)
     rope: RopeSettings = field(default_factory=RopeSettings)
+    archive: ArchiveSettings = field(default_factory=ArchiveSettings)

@@ -51,8 +51,13 @@ _OF_PART: dict[PartName, tuple[str, str]] = {
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
-def global_attributes(test: ReducedTest, *, version: str, command: str) -> dict[str, str]:
-    """Return the global attributes in a fixed order; empty ones are left out."""
+def global_attributes(
+    test: ReducedTest, *, version: str, command: str, samples: str = "all"
+) -> dict[str, str]:
+    """Return the global attributes in a fixed order; empty ones are left out.
+
+    ``samples`` says which samples of the record are stored.
+    """
     about = test.description
     names = " and ".join(one.name for one in test.specimens)
     return _complete(
@@ -71,6 +76,7 @@ def global_attributes(test: ReducedTest, *, version: str, command: str) -> dict[
             "uncertainty_propagation": _PROPAGATION
             + ("" if test.line_spread is None else _OF_LINE),
             "raw_metadata": "" if test.record is None else _as_json(test.record.metadata),
+            "stored_samples": "" if test.record is None else samples,
             "settings": test.settings_json,
         },
         steps=test.stage_lines,

@@ -12,6 +12,7 @@ from typing import Any
 
 import netCDF4
 import numpy as np
+from numpy.typing import NDArray
 
 from reduction.archive.attributes import CONVENTIONS
 from reduction.archive.comparison_schema import COMPARISON_SCHEMA
@@ -25,6 +26,7 @@ from reduction.archive.version import SCHEMA_VERSION
 
 __all__ = ["check_archive"]
 
+_BLOCK = 1 << 20  # values of a long variable that are read at a time
 _REQUIRED = ("title", "history", "raw_file_sha256", "settings", "software_version")
 
 
@@ -130,8 +132,21 @@ def _flag_findings(name: str, variable: netCDF4.Variable[Any], row: Variable) ->
         yield f"{name} has not one meaning for each of its {kind}"
     if not listed.size:
         return
-    stored = np.asarray(variable[...])
-    allowed = int(np.bitwise_or.reduce(listed.astype(np.int64)))
-    odd = (stored & ~np.array(allowed, stored.dtype)) if row.is_mask else ~np.isin(stored, listed)
-    if np.any(odd):
+    if any(_has_odd(part, listed, row) for part in _parts(variable)):
         yield f"{name} has values without a meaning"
+
+
+def _parts(variable: netCDF4.Variable[Any]) -> Iterator[NDArray[Any]]:
+    """Values of a variable, a long one by blocks of its last dimension."""
+    if not variable.ndim:
+        yield np.asarray(variable[...])
+        return
+    for start in range(0, variable.shape[-1], _BLOCK):
+        yield np.asarray(variable[..., start : start + _BLOCK])
+
+
+def _has_odd(stored: NDArray[Any], listed: NDArray[Any], row: Variable) -> bool:
+    if row.is_mask:
+        allowed = np.bitwise_or.reduce(listed)
+        return bool(np.bitwise_or.reduce(stored, axis=None) & ~allowed)
+    return not np.isin(stored, listed).all()

@@ -15,6 +15,7 @@ from reduction.archive.curves import (
     stress_at_strain_values,
 )
 from reduction.archive.holds import hold_values, standstill_values
+from reduction.archive.kept import KeptSamples
 from reduction.archive.lag import lag_values
 from reduction.archive.line import (
     line_values,
@@ -49,7 +50,9 @@ from reduction.product import ReducedTest
 __all__ = ["to_dataset"]
 
 
-def to_dataset(test: ReducedTest, *, version: str, command: str) -> xr.Dataset:
+def to_dataset(
+    test: ReducedTest, *, version: str, command: str, kept: KeptSamples | None = None
+) -> xr.Dataset:
     """Bring a reduced test into the form of the archive; no file is touched.
 
     Parameters
@@ -60,6 +63,8 @@ def to_dataset(test: ReducedTest, *, version: str, command: str) -> xr.Dataset:
         Version of this software.
     command : str
         What the user asked for, without paths, jobs and scheduler.
+    kept : KeptSamples, optional
+        Which samples are stored; every one where it is left out.
 
     Returns
     -------
@@ -73,19 +78,21 @@ def to_dataset(test: ReducedTest, *, version: str, command: str) -> xr.Dataset:
         If an array does not have the dimensions of its name, or a name is unknown.
     """
     return build_dataset(
-        _all_values(test),
+        _all_values(test, kept),
         schema_of(is_stepwise=test.stepwise is not None),
-        attributes=global_attributes(test, version=version, command=command),
+        attributes=global_attributes(
+            test, version=version, command=command, samples="all" if kept is None else kept.words
+        ),
     )
 
 
-def _all_values(test: ReducedTest) -> Values:
+def _all_values(test: ReducedTest, kept: KeptSamples | None) -> Values:
     names = tuple(one.name for one in test.specimens)
     values = specimen_values(test.specimens) | note_values(test)
     if test.stepwise is not None:
         values |= stepwise_values(test.stepwise)
     elif test.record is not None:
-        values |= row_account(test.record) | sample_values(test, test.record)
+        values |= row_account(test.record, kept) | sample_values(test, test.record, kept)
     if test.history is not None:
         values |= history_values(test.history)
     if test.strain_models:

@@ -7,7 +7,7 @@ give is absent, not filled.  Dimensions:
 dimension                      one entry for
 =============================  ============================================================
 ``specimen``                   each specimen; text coordinate ``specimen``
-``sample``                     each row of the log; auxiliary coordinate ``time``
+``sample``                     each row of the log, or each stored one; coordinate ``time``
 ``standstill``                 each rest and each hold
 ``cycle``                      each whole cycle; coordinate ``cycle`` (1, 2, ...)
 ``branch_name``                ascending, descending; text coordinate ``branch_name``
@@ -42,6 +42,10 @@ dimension                      one entry for
 applied): a sample with a flag keeps its number, and the flag beside it says what is known
 against it.  ``strain`` and ``nominal_stress``, and all that follows from them, rest on usable
 samples alone and are NaN where a sample is missing, saturated, stuck or a spike.
+
+Of a long record a part is stored: ``sample_index`` then says which row of the record (those that
+are kept) each sample is.  ``cycle_first_sample`` and its like count in the record, whatever is
+stored of it.
 
 A stepwise test has ``time``, ``tension``, ``strain``, ``branch`` and ``secant_modulus``
 along ``step`` and no ``sample``.  The coefficients of the strain methods are variables of
@@ -187,6 +191,7 @@ _ROWS = chain(
     flag("phase", ("sample",), PHASE_VALUES),
     count("cycle_number", ("sample",)),
     count("machine_cycle_number", ("sample",)),
+    count("sample_index", ("sample",)),
     flag("branch", ("sample",), BRANCH_VALUES),
     # standstills
     stated("standstill_start_time", ("standstill",), CLOCK),
@@ -293,6 +298,7 @@ _ROWS = chain(
     # the record and what is known about it
     count("n_rows_read", ()),
     count("n_rows_kept", ()),
+    count("n_rows_stored", ()),
     count("n_flagged", ("channel", "quality_mask")),
     label("note", ("note",)),
     label("note_stage", ("note",)),

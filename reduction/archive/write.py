@@ -7,6 +7,7 @@ from pathlib import Path
 import xarray as xr
 
 from reduction.archive.check import check_archive
+from reduction.archive.netcdf import write_netcdf
 from reduction.archive.whole import whole_file
 from reduction.errors import ArchiveError
 
@@ -30,7 +31,7 @@ def write_archive(dataset: xr.Dataset, path: Path) -> None:
     """
     try:
         with whole_file(path) as part:
-            dataset.to_netcdf(part, format="NETCDF4", engine="netcdf4")
+            write_netcdf(dataset, part)
             _refuse_faults(part, path.name)
     except ArchiveError:
         raise

@@ -37,11 +37,11 @@ def note_message(notes: Sequence[tuple[str, str]]) -> str:
 def _error_message(campaign: Campaign, survey: Survey, error: ReductionError) -> str:
     """``FILE:ROW [CHANNEL]: problem``; an error of the data is given its test's file."""
     if isinstance(error, (LogError, SettingsError)):
-        return str(error)
+        return campaign.in_words(str(error))
     if error.where():  # its file, as the campaign names it, and row and channel
         name = str(error.facts["file"])
-        return f"{campaign.file(name)}{str(error).removeprefix(name)}"
-    return f"{campaign.file(survey.plan.files[0][0])}: {error}"
+        return f"{campaign.shown(name)}{str(error).removeprefix(name)}"
+    return campaign.in_words(f"{campaign.shown(survey.plan.files[0][0])}: {error}")
 
 
 def status_row(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from reduction import __version__
 from reduction.archive.dataset import to_dataset
+from reduction.archive.kept import kept_samples
 from reduction.archive.write import write_archive
 from reduction.batch.basis import Basis
 from reduction.batch.describe import describe
@@ -143,7 +144,9 @@ def bring_up_to_date(
         campaign, survey, basis.models, basis.history, basis.settings, basis.pulls,
         basis.pull_origins,
     )  # fmt: skip
-    product = replace(product, notes=(*product.notes, *basis.remarks))
-    write_archive(to_dataset(product, version=__version__, command=command), path)
+    kept = kept_samples(product, survey.plan.settings)
+    of_archive = () if kept is None else (kept.note,)
+    product = replace(product, notes=(*product.notes, *basis.remarks, *of_archive))
+    write_archive(to_dataset(product, version=__version__, command=command, kept=kept), path)
     notes = product.all_notes()
     return "reduced_with_notes" if notes else "reduced", note_message(notes)

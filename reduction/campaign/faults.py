@@ -15,7 +15,15 @@ from reduction.errors import ReductionError, SettingsError
 from reduction.ingest.sniff_channels import UNKNOWN
 from reduction.units import Dimension, parse_quantity
 
-__all__ = ["Fault", "faults_of", "in_toml", "listed", "open_questions", "quantity_of"]
+__all__ = [
+    "Fault",
+    "faults_of",
+    "in_toml",
+    "listed",
+    "named_tables",
+    "open_questions",
+    "quantity_of",
+]
 
 _SHOWN = 10
 _LONGEST_FOUND = 60
@@ -168,6 +176,47 @@ def _cells(folder: Path, name: str) -> Iterator[tuple[int, str, str]]:
         )
 
 
+def _tables_in(table: dict[str, Any]) -> list[str]:
+    """Tables that campaign.toml names itself."""
+    return [
+        value
+        for keys, value in _leaves(table)
+        if isinstance(value, str)
+        and not _is_open(value)
+        and (keys in _TABLES or keys[-2:] == ("strain", "marks"))
+    ]
+
+
+def named_tables(folder: Path, table: dict[str, Any]) -> Iterator[str]:
+    """Tables of a campaign by their names: of tests, results and marks, each once.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Of the campaign. Each table is looked into after its name was taken, since a table of
+        tests names marks.
+    table : dict
+        campaign.toml, not validated yet.
+
+    Yields
+    ------
+    name : str
+        As written.
+    """
+    names = _tables_in(table)
+    seen: set[str] = set()
+    for name in names:  # grows
+        if name in seen:
+            continue
+        seen.add(name)
+        yield name
+        names.extend(
+            cell
+            for _, column, cell in _cells(folder, name)
+            if column == "marks" and cell and not any(map(_is_open, cell.split(";")))
+        )
+
+
 def open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
     """Places that still hold ``?``, in campaign.toml, its tables and its marks.
 
@@ -183,22 +232,15 @@ def open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
     places : list of str
         Dotted keys of campaign.toml, then ``FILE:ROW [COLUMN]``.
     """
-    places: list[str] = []
-    files: list[str] = []
-    for keys, value in _leaves(table):
-        if _is_open(value):
-            if not (keys[0] == "layouts" and keys[-1] in _MARKS_OF_A_LOG):
-                places.append(".".join(keys))
-        elif isinstance(value, str) and (keys in _TABLES or keys[-2:] == ("strain", "marks")):
-            files.append(value)
-    seen: set[str] = set()
-    for name in files:  # grows: a table of tests names marks
-        if name in seen:
-            continue
-        seen.add(name)
-        for row, column, cell in _cells(folder, name):
-            if any(_is_open(entry) for entry in cell.split(";")):
-                places.append(f"{name}:{row} [{column}]")
-            elif column == "marks" and cell:
-                files.append(cell)
+    places = [
+        ".".join(keys)
+        for keys, value in _leaves(table)
+        if _is_open(value) and not (keys[0] == "layouts" and keys[-1] in _MARKS_OF_A_LOG)
+    ]
+    places += [
+        f"{name}:{row} [{column}]"
+        for name in named_tables(folder, table)
+        for row, column, cell in _cells(folder, name)
+        if any(map(_is_open, cell.split(";")))
+    ]
     return list(dict.fromkeys(places))

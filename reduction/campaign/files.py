@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from reduction.address import is_address, shown_address
 from reduction.campaign.faults import in_toml
 from reduction.errors import LogError
 
@@ -12,11 +13,10 @@ __all__ = ["file_inside"]
 
 def file_inside(path: Path, name: str, *, is_needed: bool = True) -> str:
     """Return a file name that stays inside the campaign folder, or `SettingsError`."""
-    if "://" in name:
+    if is_address(name):
         raise in_toml(
-            path, "URLs are not read by this version", found=repr(name),
-            needed="a file inside the folder of campaign.toml",
-            hint="Download it first.",
+            path, "only the log of a test may be an address on the net",
+            found=repr(shown_address(name)), needed="a file inside the folder of campaign.toml",
         )  # fmt: skip
     folder = path.parent.resolve()
     target = (folder / name).resolve()

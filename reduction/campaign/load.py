@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 
+from reduction.address import is_address, shown_address
 from reduction.archive.products import OF_CAMPAIGN
 from reduction.campaign.comparisons import plan_comparison
 from reduction.campaign.experiments import agree_on_pulls, plan_experiment
@@ -59,13 +61,32 @@ def _results_file(path: Path, file: CampaignFile) -> str:
     return file_inside(path, names.pop()) if names else ""
 
 
-def load_campaign(path: Path) -> Campaign:
+def _addresses(path: Path, tests: Mapping[str, TestSection]) -> dict[str, str]:
+    """Whole addresses of logs on the net, by what names them in messages and products."""
+    found: dict[str, str] = {}
+    for test in tests.values():
+        entries = [test.file] if isinstance(test.file, str) else [one.file for one in test.file]
+        for entry in filter(is_address, entries):
+            name = shown_address(entry)
+            if found.setdefault(name, entry) != entry:
+                raise in_toml(
+                    path, "two addresses of logs differ only in what is not shown of them",
+                    found=repr(name), needed="another path for each log",
+                    hint="User, password and what stands behind ? or # are not kept.",
+                )  # fmt: skip
+    return found
+
+
+def load_campaign(path: Path, *, allow_remote: bool = False) -> Campaign:
     """Read campaign.toml, its tables and its marks, and check that they fit together.
 
     Parameters
     ----------
     path : pathlib.Path
         The campaign.toml.
+    allow_remote : bool
+        Whether the log of a test may be an address on the net. Nothing is fetched here:
+        `reduction.campaign.staged.staged_campaign` does.
 
     Returns
     -------
@@ -92,7 +113,10 @@ def load_campaign(path: Path) -> Campaign:
             path, "the campaign has no tests",
             needed="at least one [tests.NAME], or results, or [hoses.NAME]",
         )  # fmt: skip
-    plans = {name: plan_test(path, name, test, file.defaults, file) for name, test in tests.items()}
+    plans = {
+        name: plan_test(path, name, test, file.defaults, file, allow_remote=allow_remote)
+        for name, test in tests.items()
+    }
     taken = sorted(set(plans) & set(OF_CAMPAIGN))
     if taken:
         raise in_toml(
@@ -152,4 +176,5 @@ def load_campaign(path: Path) -> Campaign:
         hoses=hoses,
         comparisons=comparisons,
         uncertainty=stated_errors(path, file.uncertainty, specimens.values()),
+        addresses=_addresses(path, tests),
     )

@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import fields, replace
-from typing import Any
+from typing import Any, get_args
 
 from reduction.errors import SettingsError
-from reduction.settings import ReductionSettings
+from reduction.settings import ReductionSettings, StoredSamples
 from reduction.units import Dimension, parse_quantity
 
 __all__ = ["apply_numbers"]
@@ -53,7 +53,9 @@ _LIMITS: dict[tuple[str, str], tuple[float, float]] = {
     ("rope", "last_cycles"): (1, math.inf),
     ("rope", "reference_time"): (1e-3, math.inf),
     ("rope", "failure_share"): (0.01, 0.99),
+    ("archive", "longest_record"): (1000, math.inf),
 }
+_WORDS: dict[tuple[str, str], tuple[str, ...]] = {("archive", "samples"): get_args(StoredSamples)}
 # set elsewhere in campaign.toml, under their own names
 _ELSEWHERE = {("strain", "method"), ("cycles", "control"), ("cycles", "waveform"),
               ("cycles", "expected_cycles")}  # fmt: skip
@@ -61,6 +63,12 @@ _ELSEWHERE = {("strain", "method"), ("cycles", "control"), ("cycles", "waveform"
 
 def _value(group: str, name: str, value: object, default: object, control: str) -> object:
     where = f"reduction.{group}.{name}"
+    words = _WORDS.get((group, name))
+    if words is not None:
+        if value not in words:
+            needed = " or ".join(f'"{word}"' for word in words)
+            raise SettingsError(f"{where} is unknown", found=repr(value), needed=needed)
+        return value
     dimension = _DIMENSION.get((group, name))
     if (group, name) == ("cycles", "band"):
         dimension = "force" if control == "load" else "length"

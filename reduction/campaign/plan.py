@@ -7,11 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from reduction.address import is_address
+from reduction.errors import LogError
 from reduction.ingest.layout import Layout
 from reduction.outcomes.product import Outcome
 from reduction.prediction import HosePlan
 from reduction.provenance import Source
 from reduction.record import Specimen, SpliceMarks
+from reduction.remote.scratch import in_words
 from reduction.settings import ReductionSettings
 from reduction.surface.levels import FactorLevels
 from reduction.uncertainty.stated import StatedErrors
@@ -48,7 +51,8 @@ class StepPlan:
 class TestPlan:
     """One test of a campaign.
 
-    ``files`` are (path relative to the campaign folder, layout name), in order of time.
+    ``files`` are (path relative to the campaign folder, or what may be shown of an address;
+    layout name), in order of time.
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -120,6 +124,10 @@ class Campaign:
 
     ``outcomes`` are the rows of the table ``results``, with what the sheets of their
     specimens say; ``uncertainty`` is what is stated of the instruments.
+
+    ``addresses`` are whole addresses of logs on the net by their names, until there are
+    ``copies`` of them, or ``unread`` says why there is none; ``names`` are what may be shown
+    of addresses, by the paths of the copies.
     """
 
     path: Path
@@ -135,6 +143,10 @@ class Campaign:
     hoses: dict[str, HosePlan] = field(default_factory=dict)
     comparisons: dict[str, ComparisonPlan] = field(default_factory=dict)
     uncertainty: StatedErrors = field(default_factory=StatedErrors)
+    addresses: dict[str, str] = field(default_factory=dict, repr=False)
+    copies: dict[str, Path] = field(default_factory=dict)
+    unread: dict[str, LogError] = field(default_factory=dict)
+    names: dict[str, str] = field(default_factory=dict)
 
     @property
     def folder(self) -> Path:
@@ -142,8 +154,18 @@ class Campaign:
         return self.path.parent
 
     def file(self, name: str) -> Path:
-        """Path of a campaign file."""
-        return self.folder / name
+        """Path of a campaign file, or of the copy of one; `LogError` where there is no copy."""
+        if name in self.unread:
+            raise self.unread[name]
+        return self.copies.get(name, self.folder / name)
+
+    def shown(self, name: str) -> str:
+        """A campaign file as messages name it: its path, or what may be shown of its address."""
+        return name if is_address(name) else self.in_words(str(self.folder / name))
+
+    def in_words(self, text: str) -> str:
+        """A message with addresses instead of the paths of their copies."""
+        return in_words(text, self.names)
 
 
 def product_of(name: str, tests: Mapping[str, TestPlan]) -> tuple[str, str] | None:

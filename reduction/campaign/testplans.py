@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from reduction.address import shown_address
 from reduction.campaign.faults import in_toml, quantity_of
 from reduction.campaign.files import file_inside
 from reduction.campaign.model import (
@@ -16,6 +17,7 @@ from reduction.campaign.model import (
 from reduction.campaign.numbers import apply_numbers
 from reduction.campaign.plan import StepPlan, TestPlan
 from reduction.errors import SettingsError
+from reduction.remote.place import allowed
 from reduction.settings import CycleSettings, ReductionSettings, StrainSettings
 
 __all__ = ["plan_test"]
@@ -45,12 +47,25 @@ def _range(path: Path, test: str, step: StepSection) -> dict[str, Any]:
     )  # fmt: skip
 
 
+def _log_name(path: Path, test: str, entry: str, allow_remote: bool) -> str:
+    """What names a log in messages and products: a path inside the folder, or an address."""
+    try:
+        is_remote = allowed(entry, allow_remote, what=f"the log of test '{test}'")
+    except SettingsError as error:
+        raise in_toml(
+            path, error.problem, found=error.found, needed=error.needed, hint=error.hint
+        ) from error
+    return shown_address(entry) if is_remote else file_inside(path, entry, is_needed=False)
+
+
 def plan_test(
     path: Path,
     name: str,
     test: TestSection,
     defaults: Defaults,
     file: CampaignFile,
+    *,
+    allow_remote: bool = False,
 ) -> TestPlan:
     """Return a test with the defaults of its campaign, in SI; an error names file and key."""
 
@@ -109,7 +124,7 @@ def plan_test(
         kind=kind,
         # a log that is not there is its test's error, and the other tests go on
         files=tuple(
-            (file_inside(path, entry, is_needed=False), str(used)) for entry, used in pieces
+            (_log_name(path, name, entry, allow_remote), str(used)) for entry, used in pieces
         ),
         specimens=specimens,
         order=test.order,

@@ -8,20 +8,18 @@ from typing import Annotated
 import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
-from reduction.cli.options import Json, Quiet, Units
-from reduction.cli.usage import here
+from reduction.cli.options import AllowRemote, Json, Quiet, Units
 
 __all__ = ["budget"]
 
 
 def budget(
     product: Annotated[
-        Path,
+        str,
         typer.Argument(
             metavar="PRODUCT.nc",
             help="Archive of a reduced test, or surfaces.nc.",
             show_default=False,
-            callback=here,
         ),
     ],
     quantity: Annotated[
@@ -32,6 +30,7 @@ def budget(
         list[str] | None,
         typer.Option(help='Which one: "specimen=new", "branch=ascending", "strain=100 %".'),
     ] = None,
+    allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
@@ -39,8 +38,10 @@ def budget(
     """Where the uncertainty of a number comes from, largest source first."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.budget import list_budgets, show_budget
+        from reduction.cli.remote import local_sources
 
-        if quantity is None:
-            list_budgets(product, output=output)
-        else:
-            show_budget(product, quantity, at or [], output=output)
+        with local_sources([product], allow_remote=allow_remote, output=output) as (here,):
+            if quantity is None:
+                list_budgets(Path(here), output=output)
+            else:
+                show_budget(Path(here), quantity, at or [], output=output)

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
-from reduction.cli.options import CampaignPath, Json, Quiet, Units
+from reduction.cli.options import AllowRemote, CampaignPath, Json, Quiet, Units
 from reduction.cli.usage import here
 
 __all__ = ["check", "init", "report", "run", "schema", "sniff"]
@@ -45,59 +45,69 @@ def sniff(
 def check(
     campaign: CampaignPath,
     test: Annotated[list[str] | None, typer.Option("--test", help="Only this test.")] = None,
+    allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
     """Read and validate everything, print what was found, write nothing."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.remote import campaign_at
         from reduction.cli.runs import check_campaign
 
-        check_campaign(campaign, tests=tuple(test or ()), output=output)
+        with campaign_at(campaign, allow_remote=allow_remote, output=output) as loaded:
+            check_campaign(loaded, tests=tuple(test or ()), output=output)
 
 
 def run(
     campaign: CampaignPath,
-    processed: Annotated[Path, typer.Option(help="Where products go.")] = Path("processed"),
-    reports: Annotated[Path, typer.Option(help="Where the report goes.")] = Path("reports"),
+    processed: Annotated[str, typer.Option(help="Where products go.")] = "processed",
+    reports: Annotated[str, typer.Option(help="Where the report goes.")] = "reports",
     jobs: Annotated[int, typer.Option(min=1, help="Accepted; tests run one by one.")] = 1,
     test: Annotated[list[str] | None, typer.Option("--test", help="Only this test.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Redo unchanged tests too.")] = False,
+    allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
     """Reduce a campaign: archive, tables and report."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.remote import campaign_at
         from reduction.cli.runs import run_campaign
 
-        run_campaign(
-            campaign,
-            processed=processed,
-            reports=reports,
-            tests=tuple(test or ()),
-            force=force,
-            output=output,
-        )
+        with campaign_at(campaign, allow_remote=allow_remote, output=output) as loaded:
+            run_campaign(
+                loaded,
+                processed=processed,
+                reports=reports,
+                allow_remote=allow_remote,
+                tests=tuple(test or ()),
+                force=force,
+                output=output,
+            )
 
 
 def report(
     processed_dir: Annotated[
-        Path,
-        typer.Argument(
-            help="processed/CAMPAIGN, or processed/ for all.", show_default=False, callback=here
-        ),
+        str, typer.Argument(help="processed/CAMPAIGN, or processed/ for all.", show_default=False)
     ],
-    reports: Annotated[Path, typer.Option(help="Where the report goes.")] = Path("reports"),
+    reports: Annotated[str, typer.Option(help="Where the report goes.")] = "reports",
+    allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
     """Make the HTML report again, from the archives alone."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.remote import local_sources, report_folder
         from reduction.cli.runs import report_again
 
-        report_again(processed_dir, reports=reports, output=output)
+        with (
+            local_sources([processed_dir], allow_remote=allow_remote, output=output) as (here,),
+            report_folder(reports, allow_remote=allow_remote, output=output) as pages,
+        ):
+            report_again(Path(here), reports=pages, output=output)
 
 
 def schema(

@@ -11,14 +11,17 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, field
 
 import typer
 from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table
 
+from reduction.address import without_secrets
 from reduction.errors import ReductionError, SettingsError
+from reduction.remote.scratch import in_words
 
 __all__ = ["CommandOutput", "guarded"]
 
@@ -34,11 +37,13 @@ class CommandOutput:
     units: str = "si"
     status: int = 0
     answered: bool = False
+    names: dict[str, str] = field(default_factory=dict)
+    """Addresses on the net by the paths of their copies, which nothing that is said names."""
 
     def say(self, text: str) -> None:
         """One line of text on standard output, unless JSON or nothing was asked for."""
         if not (self.json or self.quiet):
-            typer.echo(text)
+            typer.echo(in_words(text, self.names))
 
     @property
     def is_text(self) -> bool:
@@ -52,6 +57,8 @@ class CommandOutput:
         """
         if not self.is_text:
             return
+        if self.names:
+            table = _in_words(table, self.names)
         if not sys.stdout.isatty():
             plenty = Console(width=160, highlight=False)
             width = max(160, _least_width(table, plenty, words=30))
@@ -66,16 +73,29 @@ class CommandOutput:
     def answer(self, document: object) -> None:
         """The JSON object of ``--json``; the only thing on standard output then."""
         if self.json:
-            typer.echo(json_module.dumps(document, indent=2, allow_nan=False))
+            # a path in JSON has its backslashes doubled
+            names = {json_module.dumps(path)[1:-1]: name for path, name in self.names.items()}
+            text = json_module.dumps(document, indent=2, allow_nan=False)
+            typer.echo(in_words(text, names))
             self.answered = True
 
     def error(self, text: str) -> None:
         """One error on standard error."""
-        typer.echo(text, err=True)
+        typer.echo(without_secrets(in_words(text, self.names)), err=True)
 
     def raise_status(self, status: int) -> None:
         """Keep the highest status seen."""
         self.status = max(self.status, status)
+
+
+def _in_words(table: Table, names: dict[str, str]) -> Table:
+    """A table whose cells name addresses instead of the paths of their copies."""
+    said = copy(table)
+    said.columns = [column.copy() for column in table.columns]
+    said.rows = []
+    for row in zip(*(column.cells for column in table.columns), strict=True):
+        said.add_row(*(in_words(cell, names) if isinstance(cell, str) else cell for cell in row))
+    return said
 
 
 def _least_width(table: Table, console: Console, *, words: int) -> int:

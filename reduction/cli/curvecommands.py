@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
-from reduction.cli.options import Json, Quiet, SpecPath, Units
+from reduction.cli.options import AllowRemote, Json, Quiet, SpecPath, Units
 
 __all__ = ["assembly", "composite"]
 
@@ -47,6 +47,7 @@ def composite(
         Path | None,
         typer.Option(help="Every node as .csv, .json, .nc, .md or .tex; a page as .html."),
     ] = None,
+    allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
@@ -54,15 +55,17 @@ def composite(
     """One curve of tension against strain from zero, out of all tests of a specimen."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.composite import compose_tests
+        from reduction.cli.remote import local_sources
 
-        compose_tests(
-            sources,
-            specimen=specimen,
-            branch=None if branch is None else branch.value,
-            precedence=precedence,
-            out=out,
-            output=output,
-        )
+        with local_sources(sources, allow_remote=allow_remote, output=output) as here:
+            compose_tests(
+                here,
+                specimen=specimen,
+                branch=None if branch is None else branch.value,
+                precedence=precedence,
+                out=out,
+                output=output,
+            )
 
 
 def assembly(

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
-from reduction.cli.options import Json, Quiet, Units
+from reduction.cli.options import AllowRemote, Json, Quiet, Units
 
 __all__ = ["lookup"]
 
@@ -65,6 +65,7 @@ def lookup(
         Path | None, typer.Option(help="Write the values: FILE.csv, .json, .tex, .md or .nc.")
     ] = None,
     what_there_is: Annotated[bool, typer.Option("--list", help="What SOURCE holds.")] = False,
+    allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
@@ -75,11 +76,13 @@ def lookup(
         from reduction.cli.lookupagainst import look_up_against
         from reduction.cli.lookuppoints import Wanted, parsed_search
         from reduction.cli.lookupsource import name_of_quantity
+        from reduction.cli.remote import local_sources
 
         words = {"material": material, "construction": construction, "condition": condition}
         search = parsed_search(words, diameter, tolerance)
         if what_there_is or quantity is None:
-            list_sources(source, search, output=output)
+            with local_sources([source], allow_remote=allow_remote, output=output) as (here,):
+                list_sources(here, search, output=output)
             return
         levels = {
             "frequency": frequency,
@@ -98,7 +101,9 @@ def lookup(
             grid=table,
             out=out,
         )
-        if against is None:
-            look_up_values(source, wanted, output=output)
-        else:
-            look_up_against(source, against, wanted, output=output)
+        named = [source] if against is None else [source, against]
+        with local_sources(named, allow_remote=allow_remote, output=output) as here:
+            if against is None:
+                look_up_values(here[0], wanted, output=output)
+            else:
+                look_up_against(here[0], here[1], wanted, output=output)

@@ -9,12 +9,14 @@ import typer
 
 from reduction.cli.usage import here
 
-__all__ = ["CampaignPath", "Json", "Quiet", "SpecPath", "Units"]
+__all__ = ["AllowRemote", "CampaignPath", "Json", "Quiet", "SpecPath", "Units"]
 
 Json = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, SI.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Nothing but errors.")]
 Units = Annotated[str, typer.Option("--units", help="What is shown: si or us (psi, lbf, ft).")]
 SpecPath = Annotated[Path, typer.Argument(metavar="SPEC.toml", show_default=False, callback=here)]
-CampaignPath = Annotated[
-    Path, typer.Argument(metavar="CAMPAIGN.toml", show_default=False, callback=here)
+CampaignPath = Annotated[str, typer.Argument(metavar="CAMPAIGN.toml", show_default=False)]
+AllowRemote = Annotated[
+    bool,
+    typer.Option("--allow-remote", help="Let files be addresses, such as s3://bucket/T-1.csv."),
 ]

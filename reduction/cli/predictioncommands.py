@@ -9,8 +9,7 @@ from typing import Annotated
 import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
-from reduction.cli.options import Json, Quiet, SpecPath, Units
-from reduction.cli.usage import here
+from reduction.cli.options import AllowRemote, Json, Quiet, SpecPath, Units
 
 __all__ = ["compare", "predict"]
 
@@ -46,13 +45,12 @@ def predict(
 
 
 def compare(
-    measured: Annotated[
-        Path, typer.Argument(metavar="MEASURED.nc", show_default=False, callback=here)
-    ],
+    measured: Annotated[str, typer.Argument(metavar="MEASURED.nc", show_default=False)],
     spec: SpecPath,
     out: Annotated[
         Path | None, typer.Option(help="Write archive, tables and figures to this folder.")
     ] = None,
+    allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
@@ -60,5 +58,7 @@ def compare(
     """Hold the archive of a test against the predicted hose of SPEC.toml."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.comparisons import compare_test
+        from reduction.cli.remote import local_sources
 
-        compare_test(measured, spec, out=out, output=output)
+        with local_sources([measured], allow_remote=allow_remote, output=output) as (here,):
+            compare_test(Path(here), spec, out=out, output=output)

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
-from reduction.cli.options import Json, Quiet, Units
+from reduction.cli.options import AllowRemote, Json, Quiet, Units
 
 __all__ = ["export", "reproduce"]
 
@@ -69,6 +69,7 @@ def export(
     extrapolate: Annotated[
         str, typer.Option(help="Outside the levels: refuse or flag.")
     ] = "refuse",
+    allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
@@ -76,31 +77,33 @@ def export(
     """Write a curve for a mooring code, or as a table."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.export import export_source
+        from reduction.cli.remote import local_sources
 
-        export_source(
-            sources,
-            to=to,
-            out=out,
-            form=form,
-            curve=curve,
-            precedence=precedence,
-            specimen=specimen,
-            stated={
-                "diameter": diameter,
-                "linear_density": linear_density,
-                "wet_linear_density": wet_linear_density,
-                "rated_break_strength": rated_break_strength,
-            },
-            water=(drag, added_mass, hydrodynamics_source),
-            syrope=(working_curve, greatest_mean_tension),
-            levels={
-                "frequency": frequency,
-                "mean_tension": mean_tension,
-                "tension_amplitude": tension_amplitude,
-            },
-            extrapolate=extrapolate,
-            output=output,
-        )
+        with local_sources(sources, allow_remote=allow_remote, output=output) as here:
+            export_source(
+                here,
+                to=to,
+                out=out,
+                form=form,
+                curve=curve,
+                precedence=precedence,
+                specimen=specimen,
+                stated={
+                    "diameter": diameter,
+                    "linear_density": linear_density,
+                    "wet_linear_density": wet_linear_density,
+                    "rated_break_strength": rated_break_strength,
+                },
+                water=(drag, added_mass, hydrodynamics_source),
+                syrope=(working_curve, greatest_mean_tension),
+                levels={
+                    "frequency": frequency,
+                    "mean_tension": mean_tension,
+                    "tension_amplitude": tension_amplitude,
+                },
+                extrapolate=extrapolate,
+                output=output,
+            )
 
 
 def reproduce(

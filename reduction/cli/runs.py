@@ -22,8 +22,9 @@ from reduction.batch.planned import experiments_found
 from reduction.batch.results import results_found
 from reduction.batch.run import run_campaign as run_tests
 from reduction.batch.status import TestStatus
-from reduction.campaign.load import load_campaign
+from reduction.campaign.plan import Campaign
 from reduction.cli.commandoutput import CommandOutput
+from reduction.cli.remote import product_folders
 from reduction.errors import ArchiveError
 from reduction.report.page import write_report
 from reduction.strain.model import StrainModel
@@ -152,10 +153,9 @@ def _say_experiments(
             output.say(f"  {note}")
 
 
-def check_campaign(path: Path, *, tests: tuple[str, ...], output: CommandOutput) -> None:
+def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: CommandOutput) -> None:
     """Read and validate everything, print what was found, write nothing."""
     units = cast("UnitSystem", output.units)
-    campaign = load_campaign(path)
     with _progress(output, len(campaign.tests)) as progress:
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
     if statuses or not (campaign.outcomes or campaign.hoses):
@@ -192,22 +192,29 @@ def check_campaign(path: Path, *, tests: tuple[str, ...], output: CommandOutput)
 
 
 def run_campaign(
-    path: Path,
+    campaign: Campaign,
     *,
-    processed: Path,
-    reports: Path,
+    processed: str,
+    reports: str,
+    allow_remote: bool,
     tests: tuple[str, ...],
     force: bool,
     output: CommandOutput,
 ) -> None:
     """Reduce a campaign and say what became of each test."""
-    campaign = load_campaign(path)
     # each log is surveyed, then reduced; then come the tables and the report
-    with _progress(output, 2 * len(campaign.tests) + 2) as progress:
+    with (
+        product_folders(campaign, processed, reports, allow_remote=allow_remote, output=output) as (
+            campaign,
+            processed_here,
+            reports_here,
+        ),
+        _progress(output, 2 * len(campaign.tests) + 2) as progress,
+    ):
         result = run_tests(
             campaign,
-            processed=processed,
-            reports=reports,
+            processed=processed_here,
+            reports=reports_here,
             clock=time.perf_counter,
             tests=tests,
             force=force,

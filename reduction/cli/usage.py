@@ -12,6 +12,8 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
+from reduction.address import shown_address
+
 __all__ = ["Commands", "here"]
 
 USAGE = 2
@@ -25,10 +27,10 @@ def here(path: Path) -> Path:
     address = _URL.match(str(path))
     if address is None:
         return path
-    whole = f"{address[1]}://{str(path)[address.end() :]}"
+    shown = shown_address(f"{address[1]}://{str(path)[address.end() :]}")
     raise typer.BadParameter(
-        f"URLs are not read by this version; found '{whole}'; needed a file on this machine. "
-        "Download it first."
+        f"this command reads no address on the net; found '{shown}'; needed a file on this "
+        "machine. Download it first."
     )
 
 

@@ -240,7 +240,8 @@ def _least_slopes(
     place = np.searchsorted(told, np.arange(is_covered.size))
     chords = np.where(share > _NO_SAY, _chords(strain, tension)[:, None], np.inf).min(axis=0)
     beside = [chords[told[np.clip(place - back, 0, told.size - 1)]] for back in (1, 0)]
-    least = least_slope * np.minimum(*beside)
+    softest = np.minimum(*beside)  # infinite where no piece has a chord: it bounds nothing there
+    least = least_slope * np.where(np.isfinite(softest), softest, 0.0)
     least[told] = least_slope * of_pieces[told]
     return np.asarray(np.maximum(least, _LEAST_SLOPE * mean.max() / strain[-1]))
 

@@ -12,7 +12,6 @@ from reduction.pipeline.locate import Located
 from reduction.record import Floats, Quality, Record, Specimen, areas_of
 from reduction.strain.evaluate import extrapolated, strain_by_model
 from reduction.strain.model import StrainModel
-from reduction.strain.stress import nominal_stress
 from reduction.workers import run_blocks
 
 __all__ = ["flagged_record", "parts_of_stress", "strain_of_record"]
@@ -43,26 +42,15 @@ def strain_of_record(
     return strain
 
 
-def parts_of_stress(
-    record: Record, tension: Floats, specimens: tuple[Specimen, ...]
-) -> dict[str, Any]:
-    """Nominal stress, by field of `ReducedTest`, where a diameter is known.
+def parts_of_stress(record: Record, specimens: tuple[Specimen, ...]) -> dict[str, Any]:
+    """Uncertainty of one reading of nominal stress, by field of `ReducedTest`.
 
-    NaN where tension is not usable; its uncertainty is that of one reading of tension.
+    Stress itself is tension over an area, and is made where it is stored.
     """
-    if not any(specimen.diameter for specimen in specimens):
-        return {}
-    stress = np.full_like(tension, np.nan)
-    for row, specimen in enumerate(specimens):
-        if specimen.diameter:
-            stress[row] = nominal_stress(tension[row], area=specimen.area)
     spread = record.tension_standard_uncertainty
-    if not spread:
-        return {"nominal_stress": stress}
-    return {
-        "nominal_stress": stress,
-        "nominal_stress_standard_uncertainty": np.array(spread) / areas_of(specimens),
-    }
+    if not spread or not any(specimen.diameter for specimen in specimens):
+        return {}
+    return {"nominal_stress_standard_uncertainty": np.array(spread) / areas_of(specimens)}
 
 
 def flagged_record(located: Located, models: Sequence[StrainModel]) -> Record:

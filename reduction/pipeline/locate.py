@@ -12,7 +12,7 @@ from reduction.cycles.product import Cycles
 from reduction.errors import DataError
 from reduction.phases.constant_tension import find_tension_stands
 from reduction.phases.standstill import Standstills, find_standstills
-from reduction.record import Floats, Quality, Record
+from reduction.record import UNUSABLE, Floats, Quality, Record
 from reduction.settings import ReductionSettings
 
 __all__ = ["HELD", "PULLED", "Located", "locate", "usable"]
@@ -21,8 +21,6 @@ CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")
 PULLED = ("quasi-static", "tensile")
 HELD = ("relaxation", "creep")
 _REPEATS = Quality.SATURATED | Quality.STUCK
-# of the width of a flag, lest a sum with it is wider
-_UNUSABLE = np.uint16(Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE)
 
 
 @dataclass(frozen=True)
@@ -94,5 +92,5 @@ def _held_on_tension(
 
 def usable(values: Floats, flags: NDArray[np.uint16]) -> Floats:
     """A channel without the samples that no number may rest on, NaN there."""
-    flagged = (flags & _UNUSABLE) != 0
+    flagged = (flags & UNUSABLE) != 0
     return np.where(flagged, np.nan, values) if flagged.any() else values

@@ -183,7 +183,7 @@ def reduce_test(
         **of_cycles,
         **of_first_rise,
         **of_line,
-        **parts_of_stress(stated.record, tension, specimens),
+        **parts_of_stress(stated.record, specimens),
     )  # fmt: skip
     shared = _with_shared_errors(
         reduced,

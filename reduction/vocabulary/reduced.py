@@ -26,6 +26,7 @@ OF_REDUCED = (
     ),
     Quantity("measured_strain", "1", "nominal strain by an extensometer"),
     Quantity("machine_cycle_number", "1", "cycle number by the machine's own counter"),
+    Quantity("sample_index", "1", "index of the sample in the record, from 0"),
     # the clocks of the channels
     Quantity(
         "channel_lag",
@@ -36,10 +37,18 @@ OF_REDUCED = (
     Quantity("channel_lag_refusal", "1", "why the turns of the wave tell no lag of the channels"),
     # per cycle
     Quantity("cycle", "1", "cycle number"),
-    Quantity("cycle_first_sample", "1", "index of the first sample of the cycle, from 0"),
-    Quantity("cycle_last_sample", "1", "index of the last sample of the cycle, from 0"),
-    Quantity("branch_first_sample", "1", "index of the first sample of the branch, from 0"),
-    Quantity("branch_last_sample", "1", "index of the last sample of the branch, from 0"),
+    Quantity(
+        "cycle_first_sample", "1", "index in the record of the first sample of the cycle, from 0"
+    ),
+    Quantity(
+        "cycle_last_sample", "1", "index in the record of the last sample of the cycle, from 0"
+    ),
+    Quantity(
+        "branch_first_sample", "1", "index in the record of the first sample of the branch, from 0"
+    ),
+    Quantity(
+        "branch_last_sample", "1", "index in the record of the last sample of the branch, from 0"
+    ),
     Quantity("crosshead_rate", "m s-1", "crosshead rate on the plateau of the branch"),
     Quantity("tension_rate", "N s-1", "tension rate on the plateau of the branch"),
     Quantity("position_band", "m", "smallest range of position that makes a reversal"),

@@ -138,5 +138,6 @@ OF_SPECIMENS = (
     Quantity("quality_mask", "", "mask of the quality flag"),
     Quantity("n_rows_read", "1", "data rows in the raw files"),
     Quantity("n_rows_kept", "1", "rows kept"),
+    Quantity("n_rows_stored", "1", "rows whose samples are stored"),
     Quantity("n_flagged", "1", "rows flagged"),
 )

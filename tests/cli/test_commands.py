@@ -353,8 +353,14 @@ def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
         (("check",), "Missing argument 'CAMPAIGN.toml'."),
         (("chek", "c.toml"), "No such command 'chek'."),
         (
-            ("check", "https://example.org/c.toml"),
-            "URLs are not read by this version; found 'https://example.org/c.toml'; needed a file",
+            ("sniff", "https://ann:secret@example.org/T.csv?sig=abc"),
+            "this command reads no address on the net; found 'https://example.org/T.csv'; needed "
+            "a file on this machine. Download it first.",
+        ),
+        (
+            ("check", "https://ann:secret@example.org/c.toml?sig=abc"),
+            "the campaign is an address on the net, and none is fetched unasked; found "
+            "'https://example.org/c.toml'; needed --allow-remote",
         ),
     ],
 )

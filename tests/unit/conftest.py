@@ -334,7 +334,6 @@ def rich_test():
         phase=np.repeat([0.0, 1.0, 2.0, 3.0], N_SAMPLES // 4),
         strain=array(rng, 2, N_SAMPLES),
         strain_standard_uncertainty=np.array([0.0021, 0.0034]),
-        nominal_stress=np.arange(2.0 * N_SAMPLES).reshape(2, N_SAMPLES),
         nominal_stress_standard_uncertainty=np.array([4000.0, np.nan]),
         strain_models=(make_model(rng, "new"), make_model(rng, "used")),
         cycles=make_cycles(),

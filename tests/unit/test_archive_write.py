@@ -72,11 +72,11 @@ def test_a_full_disk_is_an_archive_error_and_the_file_before_is_kept(bare_test, 
     before = path.read_bytes()
     dataset = to_dataset(bare_test, version="1.2.3", command="reduction run")
 
-    def full(self, part, **_):
-        Path(part).write_bytes(b"half")
+    def full(dataset, part):
+        part.write_bytes(b"half")
         raise RuntimeError("NetCDF: HDF error")
 
-    monkeypatch.setattr(type(dataset), "to_netcdf", full)
+    monkeypatch.setattr("reduction.archive.write.write_netcdf", full)
     with pytest.raises(ArchiveError, match=r"bare.nc cannot be written; found NetCDF: HDF error"):
         write_archive(dataset, path)
     assert path.read_bytes() == before
