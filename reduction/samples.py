@@ -10,7 +10,7 @@ from __future__ import annotations
 import mmap
 import os
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
@@ -22,21 +22,29 @@ from reduction.errors import DataError
 __all__ = [
     "BLOCK",
     "ColumnWriter",
+    "any_sample",
+    "copied",
     "empty_like",
+    "finite_extremes",
+    "first_sample",
     "full_like",
     "is_on_disk",
     "join_columns",
+    "last_sample",
     "let_go",
     "mean_of_rows",
     "over_intervals",
     "sample_blocks",
     "scratch_folder",
     "take_samples",
+    "thinned",
     "zeros_like",
 ]
 
 BLOCK = 1 << 16
 """Samples of a block, which stay in the cache. [1]."""
+
+Where = Callable[[slice], NDArray[np.bool_]]
 
 _ON_DISK_FROM = 1 << 20  # bytes; less is not worth a file
 _TAKEN = 1 << 9  # each sample that is touched brings 64 KB of its file into memory
@@ -137,6 +145,92 @@ def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArr
     for part in sample_blocks(flat.size, series, size=_TAKEN):
         taken[..., part] = series[..., flat[part]]
     return taken.reshape(*series.shape[:-1], *index.shape)
+
+
+def first_sample(where: Where, start: int, stop: int) -> int | None:
+    """First sample from ``start`` up to ``stop`` for which a condition on slices is true."""
+    for low in range(start, stop, BLOCK):
+        found = where(slice(low, min(low + BLOCK, stop)))
+        if found.any():
+            return low + int(found.argmax())
+    return None
+
+
+def last_sample(where: Where, start: int, stop: int) -> int | None:
+    """Last sample from ``start`` up to ``stop`` for which a condition on slices is true."""
+    for high in range(stop, start, -BLOCK):
+        low = max(high - BLOCK, start)
+        found = where(slice(low, high))
+        if found.any():
+            return high - 1 - int(found[::-1].argmax())
+    return None
+
+
+def any_sample(where: Where, n_samples: int) -> bool:
+    """Whether a condition on slices is true for any sample of a series."""
+    return first_sample(where, 0, n_samples) is not None
+
+
+def finite_extremes(series: NDArray[np.float64]) -> tuple[float, float]:
+    """Least and greatest finite sample; infinity and its negative where there is none.
+
+    Examples
+    --------
+    >>> finite_extremes(np.array([1.0, np.nan, 3.0]))
+    (1.0, 3.0)
+    """
+    low, high = np.inf, -np.inf
+    for part in sample_blocks(series.size, series):
+        finite = series[part][np.isfinite(series[part])]
+        low, high = finite.min(initial=low), finite.max(initial=high)
+    return float(low), float(high)
+
+
+def thinned(
+    where: Where, n_samples: int, *, most: int, every: int = 1, samples: Sequence[NDArray[Any]] = ()
+) -> NDArray[np.intp]:
+    """Samples for which a condition is true, evenly thinned to fewer than twice a number.
+
+    Parameters
+    ----------
+    where : callable
+        Of a slice, which may have a step: whether each of its samples is wanted.
+    n_samples : int
+        Length of the series. [1]
+    most : int
+        So many are kept, or up to twice as many. [1]
+    every : int
+        Every so manieth sample of the series is looked at. [1]
+    samples : sequence of ndarray
+        What the condition reads.
+
+    Returns
+    -------
+    kept : ndarray of int, shape (n_kept,)
+        In order. [1]
+
+    Raises
+    ------
+    ValueError
+        If ``every`` is zero.
+
+    Examples
+    --------
+    >>> thinned(lambda part: np.arange(10)[part] > 3, 10, most=3)
+    array([4, 6, 8])
+    """
+
+    def rows() -> Iterator[NDArray[np.intp]]:
+        for part in sample_blocks(n_samples, *samples, size=every * BLOCK):
+            looked = slice(part.start, part.stop, every)
+            yield part.start + every * np.flatnonzero(where(looked))
+
+    step = max(1, sum(block.size for block in rows()) // most)
+    kept, before = [np.empty(0, dtype=np.intp)], 0
+    for block in rows():
+        kept.append(block[-before % step :: step])
+        before += block.size
+    return np.concatenate(kept)
 
 
 def mean_of_rows(rows: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -250,6 +344,14 @@ def empty_like(
     with _scratch_file(beside.folder) as file:
         _reserve(file, n_bytes, beside.folder)
         return _mapped(file, n_bytes, beside.folder, kind).reshape(shape)
+
+
+def copied(series: NDArray[Any]) -> NDArray[Any]:
+    """Return a copy that may be written to, on disk where the series is."""
+    copy = empty_like(series)
+    for part in sample_blocks(series.shape[-1], series, copy):
+        copy[..., part] = series[..., part]
+    return copy
 
 
 def zeros_like(

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from reduction.ingest.quality import account_rows
+from reduction.phases.intervals import median_step
 from reduction.pipeline.locate import Located
 
 __all__ = ["found_in"]
@@ -26,11 +25,9 @@ def found_in(located: Located) -> dict[str, Any]:
         As the JSON answer has it.
     """
     record = located.record
-    step = np.diff(record.time)
-    step = step[np.isfinite(step) & (step > 0)]
     n_flagged = account_rows(record).n_flagged
     return {
-        "rate": {"value": float(1 / np.median(step)) if step.size else None, "unit": "Hz"},
+        "rate": {"value": 1 / median_step(record.time), "unit": "Hz"},
         "gaps": int(n_flagged.get("crosshead_position", {}).get("gap", 0)),
         "standstills": located.standstills.n_standstills,
         "flags": {channel: masks for channel, masks in n_flagged.items() if masks},

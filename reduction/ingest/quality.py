@@ -7,6 +7,7 @@ question that clean data answers with no.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -14,6 +15,7 @@ import numpy as np
 
 from reduction.ingest.excursions import find_excursions, usual_step
 from reduction.record import Bools, Floats, Integers, Quality, Record
+from reduction.samples import sample_blocks
 
 __all__ = [
     "RowAccount",
@@ -84,12 +86,17 @@ def account_rows(record: Record) -> RowAccount:
         channels[f"tension of {name}"] = flags
     n_flagged = {}
     for channel, flags in channels.items():
-        values, counts = np.unique(flags[flags != 0], return_counts=True)
-        n_flagged[channel] = {
-            mask.name.lower(): int(counts[(values & mask) != 0].sum())
+        found: Counter[int] = Counter()
+        for part in sample_blocks(flags.size, flags):
+            flagged = flags[part][flags[part] != 0]
+            values, counts = np.unique(flagged, return_counts=True)
+            found.update(dict(zip(values.tolist(), counts.tolist(), strict=True)))
+        of_mask = {
+            mask.name.lower(): sum(count for value, count in found.items() if value & mask)
             for mask in Quality
-            if mask.name is not None and np.any(values & mask)
+            if mask.name is not None
         }
+        n_flagged[channel] = {name: count for name, count in of_mask.items() if count}
     return RowAccount(record.n_rows_read, record.n_samples, n_flagged)
 
 

@@ -14,8 +14,10 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reduction.moduli.blur import window_blur
 from reduction.moduli.grid import StrainGrid, bins_each_side, round_number
@@ -24,7 +26,8 @@ from reduction.moduli.product import ModulusCurves
 from reduction.moduli.running import RunningStatistics
 from reduction.moduli.tangent import pair_specimens
 from reduction.phases.standstill import Standstills
-from reduction.record import Bools, Floats
+from reduction.record import Bools, Floats, Integers
+from reduction.samples import first_sample, let_go, sample_blocks, take_samples
 from reduction.settings import ModulusSettings
 from reduction.workers import run_blocks
 
@@ -65,7 +68,10 @@ def _end_of_rise(strain: Floats, start: float) -> int:
         return smooth
 
     blocks = range(0, strain.size, _CACHED)
-    greatest = np.array([np.fmax.reduce(part(low, low + _CACHED)) for low in blocks])
+    greatest = np.full(len(blocks), np.nan)
+    for block, low in enumerate(blocks):
+        greatest[block] = np.fmax.reduce(part(low, low + _CACHED))
+        let_go(strain)
     while True:
         block = int(np.nanargmax(greatest))
         low = blocks[block]
@@ -84,42 +90,74 @@ def _end_of_rise(strain: Floats, start: float) -> int:
         greatest[block] = np.fmax.reduce(part(low, low + _CACHED))
 
 
-def _rising_pieces(strain: Floats, tension: Floats, is_still: Bools) -> NDArray[np.int64]:
-    """Number of the rising piece of each sample, from 0; -1 where the sample is in none.
+class _Rise:
+    """Samples of the rising pieces of one specimen, and the number of the piece of each, from 0."""
 
-    The result is as long as the rise; a standstill or an unloading ends a piece.
-    """
-    is_known = np.isfinite(strain)
-    if not is_known.any():
-        return np.empty(0, dtype=np.int64)
-    start = float(strain[is_known.argmax()])
-    end = _end_of_rise(strain, start) + 1
-    smooth = _without_single_spikes(strain, 0, end)
-    highest = np.fmax.accumulate(smooth)
-    floor = highest - _BAND * (highest[-1] - start)
-    is_still, tension = is_still[:end], tension[:end]
-    # comparisons with NaN are false: a missing sample rises nowhere, and breaks nothing
-    is_spike = np.abs(strain[:end] - smooth) > highest - floor
-    rises = (smooth >= floor) & ~is_still & ~is_spike & np.isfinite(tension)
-    breaks = np.cumsum(is_still | (smooth < floor))
-    piece = np.full(end, -1, dtype=np.int64)
-    samples = np.flatnonzero(rises)
-    reached, number = -np.inf, 0
-    for part in np.split(samples, np.flatnonzero(np.diff(breaks[samples])) + 1):
+    def __init__(self) -> None:
+        """Begin without a piece."""
+        nothing = np.empty(0, dtype=np.int64)
+        self._found: list[tuple[Integers, Integers]] = [(nothing, nothing)]
+        self.n_pieces = 0
+        self.reached = -np.inf
+
+    def add(self, samples: Integers, level: Floats) -> None:
+        """Take the part of a piece that is higher than all before it."""
         # not the way down from its top, nor the way up to where the one before it ended
-        kept = part[: int(np.argmax(smooth[part])) + 1] if part.size else part
-        kept = kept[smooth[kept] >= reached]
-        if kept.size:
-            piece[kept] = number
-            reached, number = float(smooth[kept[-1]]), number + 1
-    return piece
+        up = slice(0, int(np.argmax(level)) + 1 if level.size else 0)
+        kept = level[up] >= self.reached
+        if kept.any():
+            samples = samples[up][kept]
+            self._found.append((samples, np.full(samples.size, self.n_pieces)))
+            self.reached, self.n_pieces = float(level[up][kept][-1]), self.n_pieces + 1
+
+    @property
+    def sample(self) -> Integers:
+        """In order of time."""
+        return np.concatenate([samples for samples, _ in self._found])
+
+    @property
+    def piece(self) -> Integers:
+        """One a sample."""
+        return np.concatenate([numbers for _, numbers in self._found])
 
 
-def _grid_of_rise(
-    strain: Floats, pieces: list[NDArray[np.int64]], settings: ModulusSettings
-) -> StrainGrid | None:
-    """Grid over the rises of all specimens; None where nothing rises."""
-    rises = [row[: piece.size][piece >= 0] for row, piece in zip(strain, pieces, strict=True)]
+def _rise_of(strain: Floats, tension: Floats, is_still: Callable[[slice], Bools] | None) -> _Rise:
+    """Rising pieces up to the greatest strain; a standstill or an unloading ends a piece."""
+    rise = _Rise()
+    first = first_sample(lambda part: np.isfinite(strain[part]), 0, strain.size)
+    if first is None:
+        return rise
+    end = _end_of_rise(strain, float(strain[first])) + 1
+    blocks = sample_blocks(end, strain)
+    top = max(np.fmax.reduce(_without_single_spikes(strain, p.start, p.stop)) for p in blocks)
+    band = _BAND * (top - float(strain[first]))
+    samples, level = np.empty(0, dtype=np.int64), np.empty(0)  # of a piece that goes on
+    highest = np.array([-np.inf])
+    for part in sample_blocks(end, strain, tension):
+        smooth = _without_single_spikes(strain, part.start, part.stop)
+        highest = np.fmax.accumulate(np.concatenate([highest[-1:], smooth]))
+        floor = highest[1:] - band
+        still = np.zeros(smooth.size, dtype=bool) if is_still is None else is_still(part)
+        # comparisons with NaN are false: a missing sample rises nowhere, and breaks nothing
+        is_spike = np.abs(strain[part] - smooth) > highest[1:] - floor
+        rises = (smooth >= floor) & ~still & ~is_spike & np.isfinite(tension[part])
+        breaks = np.cumsum(still | (smooth < floor))
+        rising = np.flatnonzero(rises & (smooth >= rise.reached))
+        for at in np.split(rising, np.flatnonzero(np.diff(breaks[rising], prepend=0))):
+            if at.size and breaks[at[0]]:
+                rise.add(samples, level)
+                samples, level = samples[:0], level[:0]
+            samples = np.concatenate([samples, part.start + at])
+            level = np.concatenate([level, smooth[at]])
+        if breaks[-1] > (breaks[rising[-1]] if rising.size else 0):
+            rise.add(samples, level)
+            samples, level = samples[:0], level[:0]
+    rise.add(samples, level)
+    return rise
+
+
+def _grid_of_rise(rises: list[Floats], settings: ModulusSettings) -> StrainGrid | None:
+    """Grid over the strains of the rises of all specimens; None where nothing rises."""
     low = min((float(rise.min()) for rise in rises if rise.size), default=0.0)
     high = max((float(rise.max()) for rise in rises if rise.size), default=0.0)
     if not high > low:
@@ -136,21 +174,15 @@ def _grid_of_rise(
 
 
 def _fit_rise(
-    strain: Floats,
-    tension: Floats,
-    piece: NDArray[np.int64],
-    *,
-    grid: StrainGrid,
-    minimum_count: int,
+    strain: Floats, tension: Floats, rise: _Rise, *, grid: StrainGrid, minimum_count: int
 ) -> LocalFits:
-    known = tension[: piece.size][piece >= 0]
     moments, _ = accumulate_moments(
-        strain[: piece.size],
-        tension[: piece.size],
-        curve=piece,
-        n_curves=int(piece.max(initial=0)) + 1,
+        strain,
+        tension,
+        curve=rise.piece,
+        n_curves=max(rise.n_pieces, 1),
         grid=grid,
-        tension_reference=float(known.mean()) if known.size else 0.0,
+        tension_reference=float(tension.mean()) if tension.size else 0.0,
     )
     return fit_windows(moments, minimum_count=minimum_count)
 
@@ -221,20 +253,21 @@ def first_loading_curves(
     [10. nan]
     """
     strains, tensions, areas = pair_specimens(strain, tension, area)
-    n_samples = strains.shape[1]
-    is_still = np.zeros(n_samples, bool) if standstills is None else standstills.covers(n_samples)
-    pieces = run_blocks(
-        lambda row: _rising_pieces(strains[row], tensions[row], is_still), range(areas.size)
+    is_still = None if standstills is None else standstills.covers
+    rises = run_blocks(
+        lambda row: _rise_of(strains[row], tensions[row], is_still), range(areas.size)
     )
-    grid = _grid_of_rise(strains, pieces, settings)
+    stretches = [take_samples(strains[row], rise.sample) for row, rise in enumerate(rises)]
+    grid = _grid_of_rise(stretches, settings)
     if grid is None:
         return None
     slope, slope_uncertainty, load, load_uncertainty, count = np.full(
         (5, areas.size, 2, grid.n_bins), np.nan
     )
-    for row, piece in enumerate(pieces):
+    for row, rise in enumerate(rises):
+        load_of_rise = take_samples(tensions[row], rise.sample)
         fits = _fit_rise(
-            strains[row], tensions[row], piece, grid=grid, minimum_count=settings.minimum_count
+            stretches[row], load_of_rise, rise, grid=grid, minimum_count=settings.minimum_count
         )
         weight = np.ones(fits.slope.shape[0])
         # by piece: the step of modulus at a hold is not a bend
@@ -267,7 +300,7 @@ def first_loading_curves(
         tangent_modulus_by_cycle=none_selected,
         tangent_modulus_by_cycle_standard_uncertainty=none_selected.copy(),
         notes=(
-            f"first loading: {max(int(piece.max(initial=-1)) for piece in pieces) + 1} rising "
+            f"first loading: {max(rise.n_pieces for rise in rises)} rising "
             f"pieces between holds, window {grid.window:g} of strain",
         ),
     )

@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_positive, as_same_shape
 from reduction.errors import DataError
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Bools, Floats, freeze_arrays
+from reduction.samples import first_sample, last_sample
 
 __all__ = [
     "SlackCrossings",
@@ -189,34 +190,36 @@ def slack_crossings(
     """
     as_positive("slack_tension", slack_tension)
     place, load = as_same_shape(position=position, tension=tension)
-    known = np.isfinite(place) & np.isfinite(load)
-    moment = np.full(place.shape, np.nan) if time is None else np.asarray(time, dtype=np.float64)
-    if not known.all():
-        place, load, moment = place[known], load[known], moment[known]
-    is_taut = load > REACH * slack_tension
+    clock = None if time is None else np.asarray(time, dtype=np.float64)
+
+    def is_taut(part: slice) -> Bools:
+        return (load[part] > REACH * slack_tension) & np.isfinite(place[part])
+
+    def is_slack(part: slice) -> Bools:
+        return (load[part] <= slack_tension) & np.isfinite(place[part])
+
     crossing, uncertainty, compliance, rate = np.full((4, 2), np.nan)
-    if not is_taut.any():
+    taut_first, taut_last = first_sample(is_taut, 0, load.size), last_sample(is_taut, 0, load.size)
+    if taut_first is None or taut_last is None:
         return SlackCrossings(crossing, uncertainty, compliance, rate, "the specimen is never taut")
-    taut_first, taut_last = int(is_taut.argmax()), load.size - 1 - int(is_taut[::-1].argmax())
-    before = np.flatnonzero(load[:taut_first] <= slack_tension)
-    after = np.flatnonzero(load[taut_last:] <= slack_tension) + taut_last
+    before = last_sample(is_slack, 0, taut_first)
+    after = first_sample(is_slack, taut_last, load.size)
     reasons = []
-    if before.size == 0:
+    if before is None:
         reasons.append("the record does not begin slack")
-    else:
-        rise = slice(before[-1], taut_first + 1)
-        crossing[0], uncertainty[0], compliance[0] = slack_position(
-            place[rise], load[rise], slack_tension=slack_tension
-        )
-        rate[0] = _rate(moment[rise], place[rise])
-    if after.size == 0:
+    if after is None:
         reasons.append("the record does not return to slack")
-    else:
-        fall = slice(taut_last, after[0] + 1)
-        crossing[1], uncertainty[1], compliance[1] = slack_position(
-            place[fall], load[fall], slack_tension=slack_tension
+    for side, (begin, end) in enumerate(((before, taut_first), (taut_last, after))):
+        if begin is None or end is None:
+            continue
+        part = slice(begin, end + 1)
+        known = np.isfinite(place[part]) & np.isfinite(load[part])
+        way, pull = place[part][known], load[part][known]
+        crossing[side], uncertainty[side], compliance[side] = slack_position(
+            way, pull, slack_tension=slack_tension
         )
-        rate[1] = _rate(moment[fall], place[fall])
+        if clock is not None:
+            rate[side] = _rate(clock[part][known], way)
     if not reasons and not np.isfinite(crossing).all():
         reasons.append("too few samples where the specimen goes slack")
     return SlackCrossings(crossing, uncertainty, compliance, rate, "; ".join(reasons))

@@ -14,8 +14,6 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -25,8 +23,8 @@ from reduction.moduli.product import Slips
 from reduction.moduli.steps import find_steps
 from reduction.moduli.stepscan import ramp_of
 from reduction.moduli.stepsize import Step, step_sizes
-from reduction.record import Floats, Integers
-from reduction.samples import BLOCK, let_go, sample_blocks, take_samples
+from reduction.record import Bools, Floats, Integers
+from reduction.samples import BLOCK, sample_blocks, take_samples, thinned
 from reduction.settings import SlipSettings
 from reduction.workers import run_blocks
 
@@ -136,14 +134,12 @@ def cycle_tension_level(
     )
     step = max(1, in_cycles // (SAMPLES_PER_CYCLE * max(1, n_cycles)))
 
-    def used() -> Iterator[NDArray[np.intp]]:
-        """Samples that are used, block by block."""
-        series = number, side, position
-        for part in sample_blocks(position.size, *series, size=step * BLOCK):
-            rows = np.arange(part.start, part.stop, step)
-            yield rows[(number[rows] > 0) & (side[rows] > 0) & np.isfinite(position[rows])]
+    series = number, side, position
 
-    read = _thinned(used, _MOST_READ)
+    def is_used(part: slice) -> Bools:
+        return (number[part] > 0) & (side[part] > 0) & np.isfinite(position[part])
+
+    read = thinned(is_used, position.size, most=_MOST_READ, every=step, samples=series)
     if read.size == 0 or np.ptp(take_samples(position, read)) == 0:
         raise DataError(
             "no stroke to compare cycles on",
@@ -159,7 +155,8 @@ def cycle_tension_level(
         if branches is None:
             return
         product, power, count = np.zeros((3, n_cycles))
-        for rows in used():
+        for part in sample_blocks(position.size, *series, load, size=step * BLOCK):
+            rows = part.start + step * np.flatnonzero(is_used(slice(part.start, part.stop, step)))
             for which, (grid, mean, gradient) in branches.items():
                 keep = rows[(side[rows] == which) & np.isfinite(load[rows])]
                 if not keep.size:
@@ -174,7 +171,6 @@ def cycle_tension_level(
                 product[here] += np.bincount(cycle - low, g * shift)
                 power[here] += np.bincount(cycle - low, g * g)
                 count[here] += np.bincount(cycle - low)
-            let_go(load)
         slope[row] = np.mean([gradient[-1] for _, _, gradient in branches.values()])
         top = np.mean([mean[-1] for _, mean, _ in branches.values()])
         known = (count >= FEWEST_IN_A_CYCLE) & (power > 0)
@@ -182,17 +178,6 @@ def cycle_tension_level(
 
     run_blocks(find_level, range(loads.shape[0]))
     return level, slope
-
-
-def _thinned(blocks: Callable[[], Iterator[NDArray[np.intp]]], most: int) -> NDArray[np.intp]:
-    """Samples of all blocks, every so manieth where they are many."""
-    n_samples = sum(block.size for block in blocks())
-    every = max(1, -(-n_samples // most))
-    kept, before = [np.empty(0, dtype=np.intp)], 0
-    for block in blocks():
-        kept.append(block[-before % every :: every])
-        before += block.size
-    return np.concatenate(kept)
 
 
 def _reference_branches(

@@ -11,13 +11,14 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_positive, as_same_shape
-from reduction.record import Bools, Floats
+from reduction.record import Bools, Floats, Integers
+from reduction.samples import first_sample, last_sample
 
 __all__ = ["stress_at_strain"]
 
@@ -33,7 +34,7 @@ def stress_at_strain(
     *,
     area: float,
     levels: Sequence[float],
-    is_still: Bools | None = None,
+    is_still: Callable[[slice], Bools] | None = None,
 ) -> tuple[Floats, Floats, tuple[str, ...]]:
     r"""Nominal stress where a record first passes stated elongations.
 
@@ -49,7 +50,8 @@ def stress_at_strain(
         Cross-sectional area at zero tension. [m2]
     levels : sequence of float
         Elongations; 1.0 is 100 %. [1]
-    is_still : ndarray of bool, shape (n_samples,), optional
+    is_still : callable, optional
+        Of a slice:
         Samples in a hold or rest, whose tension relaxes; they are left out. [1]
 
     Returns
@@ -79,16 +81,23 @@ def stress_at_strain(
     """
     section = float(as_positive("area", area))
     stretch, load = as_same_shape(strain=strain, tension=tension)
-    known = np.isfinite(stretch) & np.isfinite(load)
-    if is_still is not None:
-        known &= ~is_still
+
+    def known(part: slice) -> Bools:
+        found: Bools = np.isfinite(stretch[part]) & np.isfinite(load[part])
+        return found if is_still is None else found & ~is_still(part)
+
+    begin = first_sample(known, 0, stretch.size)
     stress, uncertainty = np.full((2, len(levels)), np.nan)
     reasons = [""] * len(levels)
     for index, level in enumerate(levels):
-        reached = known & (stretch >= level)
-        if not reached.any() or reached.argmax() == known.argmax():
+        reached = first_sample(
+            lambda part: known(part) & (stretch[part] >= level),  # noqa: B023
+            0,
+            stretch.size,
+        )
+        if reached is None or reached == begin:
             continue
-        used = np.flatnonzero(known[: reached.argmax() + 1])[-_SAMPLES:]
+        used = _last_of(known, reached + 1)
         near = stretch[used] >= level - _SPAN
         # a gap in the samples ends the line: a hold, or a reading that was left out
         joined = np.concatenate([np.cumsum(np.diff(used)[::-1] > 1)[::-1] == 0, [True]])
@@ -103,3 +112,14 @@ def stress_at_strain(
         stress[index] = (y.mean() - slope * mean) / section
         uncertainty[index] = np.sqrt(variance * (1 / x.size + mean**2 / square)) / section
     return stress, uncertainty, tuple(reasons)
+
+
+def _last_of(known: Callable[[slice], Bools], stop: int) -> Integers:
+    """The last samples before one that are known, as many as make the line."""
+    found: list[int] = []
+    while len(found) < _SAMPLES:
+        at = last_sample(known, 0, found[-1] if found else stop)
+        if at is None:
+            break
+        found.append(at)
+    return np.array(found[::-1])

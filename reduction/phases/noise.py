@@ -44,7 +44,8 @@ def _stretches(values: Floats) -> Floats:
 def _finite(values: Floats) -> Floats:
     """The finite samples of a series."""
     counts = [
-        np.count_nonzero(np.isfinite(values[part])) for part in sample_blocks(values.size, values)
+        int(np.count_nonzero(np.isfinite(values[part])))
+        for part in sample_blocks(values.size, values)
     ]
     finite = empty_like(values, shape=sum(counts))
     ends = np.cumsum(counts)

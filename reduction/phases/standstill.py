@@ -73,11 +73,12 @@ class Standstills:
         """Number of intervals."""
         return int(self.first.shape[0])
 
-    def covers(self, n_samples: int) -> Bools:
-        """Samples of a record that lie inside a standstill, shape (n_samples,)."""
-        is_still = np.zeros(n_samples, dtype=bool)
-        for first, last in zip(self.first, self.last, strict=True):
-            is_still[first : last + 1] = True
+    def covers(self, part: slice) -> Bools:
+        """Which samples of a part of the record lie inside a standstill."""
+        is_still = np.zeros(part.stop - part.start, dtype=bool)
+        here = slice(np.searchsorted(self.last, part.start), np.searchsorted(self.first, part.stop))
+        for first, last in zip(self.first[here], self.last[here], strict=True):
+            is_still[max(first - part.start, 0) : last + 1 - part.start] = True
         return is_still
 
 

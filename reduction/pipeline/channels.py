@@ -10,20 +10,19 @@ import numpy as np
 
 from reduction.pipeline.locate import Located
 from reduction.record import Floats, Quality, Record, Specimen, areas_of
+from reduction.samples import copied, empty_like, let_go, sample_blocks
 from reduction.strain.evaluate import extrapolated, strain_by_model
 from reduction.strain.model import StrainModel
 from reduction.workers import run_blocks
 
 __all__ = ["flagged_record", "parts_of_stress", "strain_of_record"]
 
-_BLOCK = 1 << 16  # samples that stay in the cache
-
 
 def strain_of_record(
     record: Record, position: Floats, tension: Floats, models: Sequence[StrainModel]
 ) -> Floats:
     """Strain of each specimen; NaN where position, or a tension that it needs, is not usable."""
-    strain = np.empty_like(tension)
+    strain = empty_like(tension)
     measured = record.measured_strain
 
     def fill(place: tuple[int, slice]) -> None:
@@ -35,9 +34,11 @@ def strain_of_record(
             measured_strain=None if measured is None else measured[place],
         )
 
-    starts = range(0, record.n_samples, _BLOCK)
+    parts = list(sample_blocks(record.n_samples))
     run_blocks(
-        fill, [(row, slice(low, low + _BLOCK)) for row in range(len(models)) for low in starts]
+        fill,
+        [(row, part) for row in range(len(models)) for part in parts],
+        samples=(position, tension, strain, *(() if measured is None else (measured,))),
     )
     return strain
 
@@ -56,14 +57,16 @@ def parts_of_stress(record: Record, specimens: tuple[Specimen, ...]) -> dict[str
 def flagged_record(located: Located, models: Sequence[StrainModel]) -> Record:
     """The record with the flags that only cycles and strain models can set."""
     record, cycles = located.record, located.cycles
-    flags = record.quality_flag.copy()
-    of_position = record.crosshead_position_quality_flag
-    for index, model in enumerate(models):
-        outside = extrapolated(model, record.crosshead_position, record.tension[index])
-        flags[index][outside] |= np.uint16(Quality.EXTRAPOLATED)
-    if cycles is not None:
-        uneven = (cycles.cycle_number > 0) & ~cycles.is_constant_rate
-        flags[:, uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
-        of_position = of_position.copy()
-        of_position[uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
+    position, tension = record.crosshead_position, record.tension
+    flags = copied(record.quality_flag)
+    of_position = copied(record.crosshead_position_quality_flag)
+    for part in sample_blocks(record.n_samples, position, tension, flags, of_position):
+        for index, model in enumerate(models):
+            outside = extrapolated(model, position[part], tension[index, part])
+            flags[index, part][outside] |= np.uint16(Quality.EXTRAPOLATED)
+        if cycles is not None:
+            uneven = (cycles.cycle_number[part] > 0) & ~cycles.is_constant_rate[part]
+            flags[:, part][:, uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
+            of_position[part][uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
+            let_go(cycles.cycle_number, cycles.is_constant_rate)
     return replace(record, quality_flag=flags, crosshead_position_quality_flag=of_position)

@@ -14,6 +14,7 @@ from reduction.moduli.slack import slack_crossings
 from reduction.moduli.stepwise import greatest_step_strain
 from reduction.pipeline.locate import Located
 from reduction.record import Floats, StepReadings
+from reduction.samples import finite_extremes, first_sample, take_samples, thinned
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
 
@@ -28,6 +29,7 @@ __all__ = [
 
 # share of the greatest tension up to which the first rise is kept, to tell where slack ends
 _FIRST_RISE = 0.5
+_MOST_KEPT = 1 << 20  # samples, or up to twice as many
 
 
 @dataclass(frozen=True)
@@ -235,33 +237,35 @@ def growth_of_slack_length(
 
 def _greatest(specimens: tuple[str, ...], values: Floats) -> dict[str, float]:
     """The greatest value of each specimen that has one."""
-    return {
-        name: float(np.nanmax(one))
-        for name, one in zip(specimens, values, strict=True)
-        if np.isfinite(one).any()
-    }
+    greatest = [finite_extremes(one)[1] for one in values]
+    return {name: most for name, most in zip(specimens, greatest, strict=True) if np.isfinite(most)}
 
 
 def _at_greatest_position(located: Located) -> dict[str, Samples]:
-    """Samples within the tolerance of a standstill of the greatest position."""
+    """Samples within the tolerance of a standstill of the greatest position, some of many."""
     position = located.position
-    if not np.isfinite(position).any():
+    near = finite_extremes(position)[1] - located.standstills.position_tolerance
+    if not np.isfinite(near):
         return {}
-    far = float(np.nanmax(position))
-    at_top = np.flatnonzero(position >= far - located.standstills.position_tolerance)
+    at_top = thinned(
+        lambda part: position[part] >= near, position.size, most=_MOST_KEPT, samples=(position,)
+    )
+    place, loads = take_samples(position, at_top), take_samples(located.tension, at_top)
     return {
-        name: Samples(position[at_top], tension[at_top])
-        for name, tension in zip(located.record.specimens, located.tension, strict=True)
-        if np.isfinite(tension[at_top]).any()
+        name: Samples(place, load)
+        for name, load in zip(located.record.specimens, loads, strict=True)
+        if np.isfinite(load).any()
     }
 
 
 def _first_rise(located: Located) -> dict[str, Samples]:
-    """Samples up to the first that is over half of the greatest tension."""
+    """Samples up to the first that is over half of the greatest tension; of many, the last."""
     found = {}
     for name, tension in zip(located.record.specimens, located.tension, strict=True):
-        taut = tension > _FIRST_RISE * np.nanmax(tension, initial=0.0)
-        stop = int(np.argmax(taut)) + 1 if taut.any() else 0
+        taut = _FIRST_RISE * max(finite_extremes(tension)[1], 0.0)
+        over = first_sample(lambda part: tension[part] > taut, 0, tension.size)  # noqa: B023
+        stop = 0 if over is None else over + 1
+        rise = slice(max(stop - _MOST_KEPT, 0), stop)
         # copies, lest the whole record is kept with its first part
-        found[name] = Samples(located.position[:stop].copy(), tension[:stop].copy())
+        found[name] = Samples(np.array(located.position[rise]), np.array(tension[rise]))
     return found

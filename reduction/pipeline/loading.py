@@ -15,6 +15,7 @@ from reduction.moduli.stress_at import stress_at_strain
 from reduction.pipeline.locate import Located
 from reduction.product import History
 from reduction.record import Bools, Floats, Specimen, areas_of
+from reduction.samples import first_sample
 from reduction.settings import ReductionSettings
 from reduction.workers import run_blocks
 
@@ -49,6 +50,12 @@ def _elastomers(
     return tuple(replace(fit, notes=(*fit.notes, note)) for fit in fits), ""
 
 
+def _first_finite(series: Floats) -> float:
+    """First finite sample of a series; NaN where there is none."""
+    at = first_sample(lambda part: np.isfinite(series[part]), 0, series.size)
+    return float("nan") if at is None else float(series[at])
+
+
 def _is_new(history: History, index: int) -> bool:
     """Whether a specimen had seen nothing before the test, logged or not."""
     return not (history.earlier_tests[index] or history.earlier_cycles[index] > 0)
@@ -80,7 +87,7 @@ def parts_of_first_loading(
     Without an area there is one of a bedding-in alone: its tension, and no modulus.  Beside the
     fields, what a reader has to know of them.
     """
-    begins = [force[np.isfinite(force).argmax()] for force in tension]
+    begins = [_first_finite(force) for force in tension]
     if all(start > located.standstills.slack_tension for start in begins):
         return {}, []
     area = areas_of(specimens)
@@ -102,10 +109,13 @@ def parts_of_first_loading(
         # cords carry a hose: neither a law of rubber nor its trade's stress at an elongation
         return parts, []
     levels = settings.modulus.stress_at_strain
-    is_still = located.standstills.covers(located.record.n_samples)
     stresses = run_blocks(
         lambda row: stress_at_strain(
-            strain[row], tension[row], area=area[row], levels=levels, is_still=is_still
+            strain[row],
+            tension[row],
+            area=area[row],
+            levels=levels,
+            is_still=located.standstills.covers,
         ),
         range(area.size),
     )

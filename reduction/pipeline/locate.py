@@ -13,6 +13,7 @@ from reduction.errors import DataError
 from reduction.phases.constant_tension import find_tension_stands
 from reduction.phases.standstill import Standstills, find_standstills
 from reduction.record import UNUSABLE, Floats, Quality, Record
+from reduction.samples import copied, empty_like, sample_blocks
 from reduction.settings import ReductionSettings
 
 __all__ = ["HELD", "PULLED", "Located", "locate", "usable"]
@@ -70,27 +71,40 @@ def _held_on_tension(
     record: Record, position: Floats, settings: ReductionSettings
 ) -> tuple[Record, Standstills]:
     """Holds at constant tension, in which a load that repeats one value is no fault."""
-    kept = record.quality_flag & ~np.uint16(_REPEATS)
     standstills = find_tension_stands(
-        record.time, position, usable(record.tension, kept), settings=settings.phases
+        record.time,
+        position,
+        usable(record.tension, record.quality_flag, but=_REPEATS),
+        settings=settings.phases,
     )
-    in_hold = np.zeros(record.n_samples, dtype=bool)
+    flags, freed = copied(record.quality_flag), 0
     for first, last, is_rest in zip(
         standstills.first, standstills.last, standstills.is_rest, strict=True
     ):
-        in_hold[first : last + 1] = not is_rest
-    freed = int(np.count_nonzero(in_hold & (kept != record.quality_flag)))
+        of_hold = flags[:, first : last + 1]
+        for part in sample_blocks(0 if is_rest else of_hold.shape[1], flags):
+            freed += int(np.count_nonzero(of_hold[:, part] & _REPEATS))
+            of_hold[:, part] &= ~np.uint16(_REPEATS)
     if not freed:
         return record, standstills
     note = (
         f"{freed} samples in holds at constant tension repeat one value of it: their flags stuck "
         "and saturated are taken off, since the machine holds it there"
     )
-    flags = np.where(in_hold, kept, record.quality_flag)
     return replace(record, quality_flag=flags, notes=(*record.notes, note)), standstills
 
 
-def usable(values: Floats, flags: NDArray[np.uint16]) -> Floats:
-    """A channel without the samples that no number may rest on, NaN there."""
-    flagged = (flags & UNUSABLE) != 0
-    return np.where(flagged, np.nan, values) if flagged.any() else values
+def usable(values: Floats, flags: NDArray[np.uint16], *, but: int = 0) -> Floats:
+    """A channel without the samples that no number may rest on, NaN there.
+
+    Flags of the masks ``but`` are passed over.
+    """
+    masks = UNUSABLE & ~np.uint16(but)
+    n_samples = values.shape[-1]
+    if not any(np.any(flags[..., part] & masks) for part in sample_blocks(n_samples, flags)):
+        return values
+    kept = empty_like(values)
+    for part in sample_blocks(n_samples, values, flags, kept):
+        flagged = (flags[..., part] & masks) != 0
+        kept[..., part] = np.where(flagged, np.nan, values[..., part])
+    return np.asarray(kept)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from reduction.pipeline.locate import Located
 from reduction.record import Floats, Integers, Record, Specimen
+from reduction.samples import take_samples, thinned
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import error_field
@@ -73,7 +74,7 @@ def reading_spread(
     channel, and for an extensometer, which reads neither.
     """
     rows = _rows_of(phase)
-    position, tension = located.position[rows], located.tension[:, rows]
+    position, tension = take_samples(located.position, rows), take_samples(located.tension, rows)
     found = np.full(len(models), np.nan)
     for index, (model, errors) in enumerate(zip(models, readings, strict=True)):
         if model.method == "extensometer" or not (
@@ -119,10 +120,16 @@ def channel_contributions(
         return Contributions(())
     rows = _rows_of(phase)
     own = [
-        _of_specimen(located.tension[index, rows], strain[index, rows], model, specimen, one)
+        _of_specimen(
+            take_samples(located.tension[index], rows),
+            take_samples(strain[index], rows),
+            model,
+            specimen,
+            one,
+        )
         for index, (model, specimen, one) in enumerate(zip(models, specimens, errors, strict=True))
     ]
-    reach = _rms(located.position[rows])
+    reach = _rms(take_samples(located.position, rows))
     first = errors[0]
     is_length = located.record.position_is_length
     of_position = _of_channel(
@@ -175,10 +182,11 @@ def _of_channel(name: str, stated: dict[Component, float]) -> Contributions:
 
 def _rows_of(phase: NDArray[np.int8]) -> Integers:
     """Cycling samples, or all but rests where none cycles."""
-    rows = np.flatnonzero(phase == PHASE_VALUES["cycling"])
-    if rows.size == 0:
-        rows = np.flatnonzero(phase != PHASE_VALUES["rest"])
-    return np.asarray(rows[:: max(1, rows.size // _SAMPLES)])
+    cycling, rest = PHASE_VALUES["cycling"], PHASE_VALUES["rest"]
+    rows = thinned(lambda part: phase[part] == cycling, phase.size, most=_SAMPLES, samples=(phase,))
+    if rows.size:
+        return rows
+    return thinned(lambda part: phase[part] != rest, phase.size, most=_SAMPLES, samples=(phase,))
 
 
 def _rms(values: Floats) -> float:

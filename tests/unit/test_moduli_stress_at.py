@@ -22,7 +22,9 @@ def test_what_comes_after_the_level_does_not_enter():
     tension = 100 * strain
     tension[np.count_nonzero(X <= 1.01) :] -= 20
     still = np.arange(strain.size) >= np.count_nonzero(X <= 1.01)
-    stress, _, _ = stress_at_strain(strain, tension, area=1e-4, levels=(1.0,), is_still=still)
+    stress, _, _ = stress_at_strain(
+        strain, tension, area=1e-4, levels=(1.0,), is_still=still.__getitem__
+    )
     assert stress == pytest.approx([1e6])
 
 
@@ -30,7 +32,9 @@ def test_a_hold_before_the_level_is_left_out():
     strain = np.concatenate([X[X < 0.95], np.full(100, 0.95), X[X > 0.95]])
     still = strain == 0.95
     tension = 100 * strain - 30 * still
-    stress, _, _ = stress_at_strain(strain, tension, area=1e-4, levels=(1.0,), is_still=still)
+    stress, _, _ = stress_at_strain(
+        strain, tension, area=1e-4, levels=(1.0,), is_still=still.__getitem__
+    )
     assert stress == pytest.approx([1e6])
 
 
