@@ -28,6 +28,7 @@ __all__ = [
     "finite_extremes",
     "first_sample",
     "full_like",
+    "interval_labels",
     "is_on_disk",
     "join_columns",
     "last_sample",
@@ -231,6 +232,49 @@ def thinned(
         kept.append(block[-before % step :: step])
         before += block.size
     return np.concatenate(kept)
+
+
+def interval_labels(
+    like: NDArray[Any],
+    first: NDArray[np.integer[Any]],
+    stop: NDArray[np.integer[Any]],
+    values: NDArray[Any],
+) -> NDArray[Any]:
+    """Value of the interval of each sample, 0 outside all.
+
+    Parameters
+    ----------
+    like : ndarray, shape (..., n_samples)
+        A series of the record, beside which the labels lie. [any]
+    first, stop : ndarray of int, shape (n_intervals,)
+        First sample, and the one after the last; in order, without overlap. [1]
+    values : ndarray, shape (n_intervals,)
+        One an interval. [any]
+
+    Returns
+    -------
+    labels : ndarray, shape (n_samples,)
+        Of the type of the values. [as values]
+
+    Raises
+    ------
+    ValueError
+        If intervals overlap.
+
+    Examples
+    --------
+    >>> interval_labels(np.zeros(5), np.array([1, 3]), np.array([2, 5]), np.array([7, 8]))
+    array([0, 7, 0, 8, 8])
+    """
+    edges = np.column_stack([first, stop]).ravel()
+    between = np.zeros(edges.size + 1, dtype=values.dtype)
+    between[1::2] = values
+    labels = empty_like(like, shape=like.shape[-1], dtype=values.dtype)
+    for part in sample_blocks(labels.size, labels):
+        inside = slice(*np.searchsorted(edges, [part.start, part.stop]))
+        lengths = np.diff(np.concatenate([[part.start], edges[inside], [part.stop]]))
+        labels[part] = np.repeat(between[inside.start : inside.stop + 1], lengths)
+    return labels
 
 
 def mean_of_rows(rows: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -26,7 +26,7 @@ from reduction.errors import DataError
 from reduction.phases.noise import estimate_noise
 from reduction.phases.standstill import Standstills
 from reduction.record import Floats, Integers
-from reduction.samples import empty_like, mean_of_rows, sample_blocks, take_samples
+from reduction.samples import finite_extremes, interval_labels, mean_of_rows, take_samples
 from reduction.settings import CycleSettings
 from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
 
@@ -69,26 +69,15 @@ def _reversals(values: Floats, settings: CycleSettings) -> tuple[Indices, float]
 
 def _range(values: Floats) -> float:
     """Range of the finite samples; 0 where there is none."""
-    low, high = np.inf, -np.inf
-    for part in sample_blocks(values.size, values):
-        finite = values[part][np.isfinite(values[part])]
-        low, high = finite.min(initial=low), finite.max(initial=high)
-    return float(max(high - low, 0.0))
+    low, high = finite_extremes(values)
+    return max(high - low, 0.0)
 
 
 def _labels(first: Indices, last: Indices, values: NDArray[Any], time: Floats) -> NDArray[Any]:
     """Value of the interval of each sample, 0 outside; a shared sample is the later one's."""
     end = last + 1
     end[:-1] = np.minimum(end[:-1], first[1:])
-    edges = np.column_stack([first, end]).ravel()
-    values_between = np.zeros(edges.size + 1, dtype=values.dtype)
-    values_between[1::2] = values
-    labels = empty_like(time, dtype=values.dtype)
-    for part in sample_blocks(time.size, labels):
-        inside = slice(*np.searchsorted(edges, [part.start, part.stop]))
-        lengths = np.diff(np.concatenate([[part.start], edges[inside], [part.stop]]))
-        labels[part] = np.repeat(values_between[inside.start : inside.stop + 1], lengths)
-    return labels
+    return interval_labels(time, first, end, values)
 
 
 def _trimmed(

@@ -11,6 +11,14 @@ import numpy as np
 
 from reduction.ingest.quality import noise_of
 from reduction.record import Bools, Floats, Integers
+from reduction.samples import (
+    BLOCK,
+    finite_extremes,
+    interval_labels,
+    over_intervals,
+    sample_blocks,
+    take_samples,
+)
 
 __all__ = ["Runs", "constant_runs", "find_saturated", "find_stuck", "find_stuck_position", "moves"]
 
@@ -37,14 +45,9 @@ class Runs:
         """Some of the runs."""
         return Runs(self.start[keep], self.stop[keep])
 
-    def mask(self, n_samples: int) -> Bools:
-        """True inside the runs, shape (n_samples,)."""
-        edges = np.zeros(n_samples + 1, dtype=np.int8)
-        if not self.start.size:
-            return edges[:-1].view(bool)
-        edges[self.start] = 1
-        edges[self.stop] -= 1
-        return np.cumsum(edges[:-1], dtype=np.int8).view(bool)
+    def mask(self, like: Floats) -> Bools:
+        """True inside the runs, for each sample of a series like that."""
+        return interval_labels(like, self.start, self.stop, np.ones(self.start.size, dtype=bool))
 
 
 def constant_runs(values: Floats, minimum: int) -> Runs:
@@ -66,22 +69,29 @@ def constant_runs(values: Floats, minimum: int) -> Runs:
         In order.
     """
     length = max(minimum // 2, 1)
-    grid = values[: values.size // length * length].reshape(-1, length)
-    place = np.flatnonzero((grid[:, 0] == grid[:, length // 2]) & (grid[:, 0] == grid[:, -1]))
-    place = place[(grid[place] == grid[place, :1]).all(axis=1)]
+    found = [np.empty(0, dtype=np.intp)]
+    step = length * max(BLOCK // length, 1)
+    for part in sample_blocks(values.size // length * length, values, size=step):
+        grid = values[part].reshape(-1, length)
+        equal = np.flatnonzero((grid[:, 0] == grid[:, length // 2]) & (grid[:, 0] == grid[:, -1]))
+        equal = equal[(grid[equal] == grid[equal, :1]).all(axis=1)]
+        found.append(part.start // length + equal)
+    place = np.concatenate(found)
     if not place.size:
         return Runs(place, place)
-    level = grid[place, 0]
+    level = take_samples(values, place * length)
     is_first = np.concatenate([[True], (np.diff(place) > 1) | (np.diff(level) != 0)])
     is_last = np.concatenate([is_first[1:], [True]])
     reach = np.arange(1, length)
     start, stop = place[is_first] * length, (place[is_last] + 1) * length
     before = start[:, np.newaxis] - reach
-    same = (values[np.maximum(before, 0)] == values[start, np.newaxis]) & (before >= 0)
+    level = take_samples(values, start)[:, np.newaxis]
+    same = (take_samples(values, np.maximum(before, 0)) == level) & (before >= 0)
     start = start - np.cumprod(same, axis=1).sum(axis=1)
     after = stop[:, np.newaxis] + reach - 1
     inside = np.minimum(after, values.size - 1)
-    same = (values[inside] == values[stop - 1, np.newaxis]) & (after < values.size)
+    level = take_samples(values, stop - 1)[:, np.newaxis]
+    same = (take_samples(values, inside) == level) & (after < values.size)
     stop = stop + np.cumprod(same, axis=1).sum(axis=1)
     runs = Runs(start, stop)
     return runs.where(stop - start >= minimum)
@@ -92,9 +102,12 @@ def moves(position: Floats, runs: Runs) -> Bools:
     if not runs.start.size:
         return np.empty(0, dtype=bool)
     noise, _ = noise_of(position)
-    tolerance = _MOVING_NOISE * noise + _MOVING_SHARE * np.nanmax(np.abs(position - position[0]))
+    low, high = finite_extremes(position)
+    reach = np.fmax(high - position[0], position[0] - low)
+    tolerance = _MOVING_NOISE * noise + _MOVING_SHARE * reach
     length = (runs.stop - runs.start)[:, np.newaxis]
-    looks = position[runs.start[:, np.newaxis] + (_LOOKS * length).astype(np.int64)]
+    places = runs.start[:, np.newaxis] + (_LOOKS * length).astype(np.int64)
+    looks = take_samples(position, places)
     travel = np.fmax.reduce(looks, axis=1) - np.fmin.reduce(looks, axis=1)
     return np.asarray(travel > tolerance)
 
@@ -120,14 +133,14 @@ def find_stuck(tension: Floats, position: Floats, *, samples: int) -> Bools:
     runs = constant_runs(tension, samples)
     runs = runs.where(moves(position, runs))
     if not runs.start.size:
-        return runs.mask(tension.size)
-    low, high = float(np.nanmin(tension)), float(np.nanmax(tension))
-    level = tension[runs.start]
-    into = np.abs(level - tension[np.maximum(runs.start - 1, 0)])
-    out = np.abs(level - tension[np.minimum(runs.stop, tension.size - 1)])
+        return runs.mask(tension)
+    low, high = finite_extremes(tension)
+    level = take_samples(tension, runs.start)
+    into = np.abs(level - take_samples(tension, np.maximum(runs.start - 1, 0)))
+    out = np.abs(level - take_samples(tension, np.minimum(runs.stop, tension.size - 1)))
     is_slack = (level <= low + _SLACK_SHARE * (high - low)) & (high > low)
     jumps = np.fmax(into, out) > _JUMP_SHARE * (high - low)
-    return runs.where(~is_slack | jumps).mask(tension.size)
+    return runs.where(~is_slack | jumps).mask(tension)
 
 
 def find_saturated(tension: Floats, position: Floats) -> Bools:
@@ -148,12 +161,18 @@ def find_saturated(tension: Floats, position: Floats) -> Bools:
     is_saturated : ndarray of bool, shape (n_samples,)
         Runs of at least five samples while the crosshead moves.
     """
-    is_saturated = np.zeros(tension.size, dtype=bool)
-    low, high = float(np.nanmin(tension)), float(np.nanmax(tension))
+    starts: list[Integers] = [np.empty(0, dtype=np.intp)]
+    stops = list(starts)
+    low, high = finite_extremes(tension)
     for level in (low, high):
         if level == low and (low == high or abs(low) <= _SLACK_SHARE * (high - low)):
             continue  # a slack specimen reads zero, a dead channel is stuck
-        place = np.flatnonzero(tension == level)
+        place = np.concatenate(
+            [
+                part.start + np.flatnonzero(tension[part] == level)
+                for part in sample_blocks(tension.size, tension)
+            ]
+        )
         if place.size < _SATURATED_SAMPLES:
             continue
         is_first = np.concatenate([[True], np.diff(place) > 1])
@@ -164,8 +183,10 @@ def find_saturated(tension: Floats, position: Floats) -> Bools:
         if not runs.start.size:
             continue
         runs = runs.where(_comes_from_afar(tension, runs))
-        is_saturated |= runs.where(moves(position, runs)).mask(tension.size)
-    return is_saturated
+        runs = runs.where(moves(position, runs))
+        starts.append(runs.start)
+        stops.append(runs.stop)
+    return Runs(np.sort(np.concatenate(starts)), np.sort(np.concatenate(stops))).mask(tension)
 
 
 def _comes_from_afar(tension: Floats, runs: Runs) -> Bools:
@@ -175,15 +196,16 @@ def _comes_from_afar(tension: Floats, runs: Runs) -> Bools:
     width further out is eight such steps lower; that of a triangle, two.
     """
     length, last = runs.stop - runs.start, tension.size - 1
-    level = tension[runs.start]
+    level = take_samples(tension, runs.start)
+
+    def away(places: Integers) -> Floats:
+        return np.asarray(np.abs(level - take_samples(tension, np.clip(places, 0, last))))
+
     step = np.fmin(
-        np.abs(level - tension[np.maximum(runs.start - 1, 0)])
-        + np.where(runs.start == 0, np.inf, 0),
-        np.abs(level - tension[np.minimum(runs.stop, last)])
-        + np.where(runs.stop > last, np.inf, 0),
+        away(runs.start - 1) + np.where(runs.start == 0, np.inf, 0),
+        away(runs.stop) + np.where(runs.stop > last, np.inf, 0),
     )
-    before = np.abs(level - tension[np.maximum(runs.start - length, 0)])
-    after = np.abs(level - tension[np.minimum(runs.stop - 1 + length, last)])
+    before, after = away(runs.start - length), away(runs.stop - 1 + length)
     return np.asarray(np.fmax(before, after) >= _SATURATED_STEPS * step)
 
 
@@ -206,16 +228,17 @@ def find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> B
     """
     runs = constant_runs(position, samples)
     if not runs.start.size:
-        return runs.mask(position.size)
+        return runs.mask(position)
     rises = np.zeros(runs.start.size, dtype=bool)
     middle = (runs.start + runs.stop) // 2
-    edges = np.ravel(np.column_stack([runs.start, middle, runs.stop - 1]))
     for load in tension:
         noise, _ = noise_of(load)
-        enough = max(_RISE_SHARE * float(np.nanmax(load) - np.nanmin(load)), _RISE_NOISE * noise)
-        most = np.fmax.reduceat(load, edges).reshape(-1, 3)
-        least = np.fmin.reduceat(load, edges).reshape(-1, 3)
-        rises |= most[:, 1] - least[:, 0] > enough
-        rises |= np.fmax(most[:, 0], most[:, 1]) - load[runs.start] > enough
-        rises |= load[runs.stop - 1] - np.fmin(least[:, 0], least[:, 1]) > enough
-    return runs.where(rises).mask(position.size)
+        low, high = finite_extremes(load)
+        enough = max(_RISE_SHARE * (high - low), _RISE_NOISE * noise)
+        halves = (runs.start, middle), (middle, runs.stop - 1)
+        most = [over_intervals(np.fmax, load, *half) for half in halves]
+        least = [over_intervals(np.fmin, load, *half) for half in halves]
+        rises |= most[1] - least[0] > enough
+        rises |= np.fmax(*most) - take_samples(load, runs.start) > enough
+        rises |= take_samples(load, runs.stop - 1) - np.fmin(*least) > enough
+    return runs.where(rises).mask(position)

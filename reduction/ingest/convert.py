@@ -14,6 +14,7 @@ from reduction.ingest.layout import Layout
 from reduction.ingest.piece import Piece, to_piece
 from reduction.ingest.rawlog import RawLog
 from reduction.record import Floats, Integers, Record
+from reduction.samples import empty_like, finite_extremes, join_columns, sample_blocks, zeros_like
 from reduction.settings import QualitySettings
 from reduction.units import Dimension, parse_quantity
 
@@ -69,9 +70,10 @@ def to_record(
     pieces = [to_piece(log, layout, gap_factor=quality.gap_factor) for log, layout in logs]
     _check_order(pieces)
     n_samples = sum(piece.time.size for piece in pieces)
-    position = np.empty(n_samples)
-    tension = np.empty((len(specimens), n_samples))
-    strain = np.empty((len(specimens), n_samples)) if any(n_strain) else None
+    beside, rows = pieces[0].time, (len(specimens), n_samples)
+    position = empty_like(beside, shape=n_samples)
+    tension = empty_like(beside, shape=rows)
+    strain = empty_like(beside, shape=rows) if any(n_strain) else None
     targets = [("crosshead_position", position)]
     targets += [(f"tension.{number}", row) for number, row in enumerate(tension, 1)]
     if strain is not None:
@@ -83,11 +85,11 @@ def to_record(
     record = Record(
         test_id=test_id,
         specimens=tuple(specimens),
-        time=times[0] if len(times) == 1 else np.concatenate(times),
+        time=join_columns(times),
         crosshead_position=position,
         tension=tension,
-        quality_flag=np.zeros(tension.shape, dtype=np.uint16),
-        crosshead_position_quality_flag=np.zeros(n_samples, dtype=np.uint16),
+        quality_flag=zeros_like(tension, dtype=np.uint16),
+        crosshead_position_quality_flag=zeros_like(position, dtype=np.uint16),
         measured_strain=strain,
         cycle_counter=counter,
         position_is_length=position_is_length,
@@ -158,7 +160,7 @@ def _check_datum(layouts: Sequence[Layout], test_id: str, length_needed: bool) -
 def _check_order(pieces: Sequence[Piece]) -> None:
     """Time goes on from piece to piece; strain and counter are in all pieces or in none."""
     for before, after in pairwise(pieces):
-        end, start = np.nanmax(before.time), np.nanmin(after.time)
+        end, start = finite_extremes(before.time)[1], finite_extremes(after.time)[0]
         if start <= end:
             raise DataError(
                 "the pieces of a record have two time bases",
@@ -182,18 +184,27 @@ def _fill(target: Floats, pieces: Sequence[Piece], key: str) -> None:
     for piece in pieces:
         part = target[start : start + piece.time.size]
         factor, shift = piece.scale[key]
-        np.multiply(piece.values[key], factor, out=part)
-        if shift:
-            part += shift
-        _check_size(part, piece, key)
+        values = piece.values[key]
+        is_absurd = False
+        for block in sample_blocks(part.size, values, target):
+            np.multiply(values[block], factor, out=part[block])
+            if shift:
+                part[block] += shift
+            low, high = part[block].min(), part[block].max()
+            is_absurd |= not (low >= -_ABSURD and high <= _ABSURD)  # so is a NaN, at first
+        if is_absurd:
+            _check_size(part, piece, key)
         start += piece.time.size
 
 
 def _check_size(part: Floats, piece: Piece, key: str) -> None:
     """Refuse numbers that no machine can have measured."""
-    if not part.size or (part.min() >= -_ABSURD and part.max() <= _ABSURD):
-        return
-    absurd = np.flatnonzero(np.abs(part) > _ABSURD)  # none where the extremes are NaN
+    absurd = np.concatenate(
+        [
+            block.start + np.flatnonzero(np.abs(part[block]) > _ABSURD)
+            for block in sample_blocks(part.size, part)
+        ]
+    )
     if absurd.size:
         raise DataError(
             f"{key} has {absurd.size} values that nothing measures, "
@@ -209,20 +220,25 @@ def _counter(pieces: Sequence[Piece], n_samples: int) -> tuple[Integers | None, 
     key = "cycle_counter"
     if key not in pieces[0].values:
         return None, ()
-    count = np.empty(n_samples)
+    count = empty_like(pieces[0].time, shape=n_samples)
     _fill(count, pieces, key)
-    missing = np.isnan(count)
-    count[missing] = _NO_COUNT
-    whole = count.astype(np.int64)
-    if np.any(whole != count):
-        bad = int(np.flatnonzero(whole != count)[0])
-        raise DataError(
-            f"the cycle counter is not a whole number, first at sample {bad + 1}",
-            found=f"{count[bad]:g}",
-            needed="whole numbers",
-        )
-    if missing.any():
-        return whole, (f"the cycle counter is missing on {int(missing.sum())} rows, -1 there",)
+    whole, n_missing = empty_like(count, dtype=np.int64), 0
+    for part in sample_blocks(n_samples, count, whole):
+        block = count[part]
+        missing = np.isnan(block)
+        n_missing += int(np.count_nonzero(missing))
+        numbers = np.where(missing, _NO_COUNT, block)
+        whole[part] = numbers
+        odd = np.flatnonzero(whole[part] != numbers)
+        if odd.size:
+            raise DataError(
+                "the cycle counter is not a whole number, first at sample "
+                f"{part.start + int(odd[0]) + 1}",
+                found=f"{block[odd[0]]:g}",
+                needed="whole numbers",
+            )
+    if n_missing:
+        return whole, (f"the cycle counter is missing on {n_missing} rows, -1 there",)
     return whole, ()
 
 
@@ -276,17 +292,24 @@ def _datum_notes(record: Record, piece: Piece) -> tuple[str, ...]:
         return ()
     zero = parse_quantity(channel.reference_length, "length")
     stated = parse_quantity(channel.reference_tension or "0 N", "force")
-    away = record.crosshead_position - zero
-    crossing = np.flatnonzero(away[:-1] * away[1:] <= 0)[:1]
-    if not crossing.size:
+    position = record.crosshead_position
+    before = None
+    for part in sample_blocks(position.size, position, overlap=1):
+        away = position[part] - zero
+        crossing = np.flatnonzero(away[:-1] * away[1:] <= 0)
+        if crossing.size:
+            before = part.start + int(crossing[0])
+            break
+    if before is None:
         return ()
-    before, after = int(crossing[0]), int(crossing[0]) + 1
-    span = away[before] - away[after]
-    weight = away[before] / span if span else 0.0
+    after = before + 1
+    span = position[before] - position[after]
+    weight = (position[before] - zero) / span if span else 0.0
     notes = []
     for name, load in zip(record.specimens, record.tension, strict=True):
         found = float(load[before] + weight * (load[after] - load[before]))
-        if abs(found - stated) > _DATUM_SHARE * float(np.nanmax(load) - np.nanmin(load)):
+        low, high = finite_extremes(load)
+        if abs(found - stated) > _DATUM_SHARE * (high - low):
             notes.append(
                 f"reference_length is stated at {stated:.4g} N, but where displacement is first "
                 f"zero the tension of {name} is {found:.4g} N"

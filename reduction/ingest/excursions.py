@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from reduction.record import Bools, Floats, Integers
+from reduction.samples import take_samples
 
 __all__ = ["find_excursions", "usual_step"]
 
@@ -27,12 +28,13 @@ def usual_step(values: Floats, first: Integers, last: Integers) -> Floats:
     left = np.concatenate([first[:, np.newaxis] - around, last[:, np.newaxis] + around], axis=1)
     is_inside = (left >= 0) & (left < values.size - 1)
     left = np.where(is_inside, left, 0)
-    steps = np.where(is_inside, np.abs(values[left + 1] - values[left]), 0.0)
+    change = np.abs(take_samples(values, left + 1) - take_samples(values, left))
+    steps = np.where(is_inside, change, 0.0)
     usual: Floats = np.sort(np.nan_to_num(steps), axis=1)[:, -3]
     return usual
 
 
-def find_excursions(values: Floats, jumps: Integers, *, limit: float) -> Bools:
+def find_excursions(values: Floats, jumps: Integers, *, limit: float) -> Integers:
     """Samples between a jump off the course of a series and the jump back to it.
 
     Parameters
@@ -46,8 +48,8 @@ def find_excursions(values: Floats, jumps: Integers, *, limit: float) -> Bools:
 
     Returns
     -------
-    is_off : ndarray of bool, shape (n_samples,)
-        Excursions of two to ten samples, whose jumps have opposite signs and are five
+    off : ndarray of int, shape (n_off,)
+        Samples of excursions of two to ten samples, whose jumps have opposite signs and are five
         times the usual step nearby.  Every sample between is off the line across by half
         the jump, and the channel comes back to its course, extrapolated from before and
         after, a turn within allowed for, within a tenth of the jump.
@@ -59,20 +61,18 @@ def find_excursions(values: Floats, jumps: Integers, *, limit: float) -> Bools:
     one is longer than what is between them, nor any where together they make more than a
     tenth of the series.
     """
-    is_off = np.zeros(values.size, dtype=bool)
-    size = values[jumps + 1] - values[jumps]
+    none = np.empty(0, dtype=np.intp)
+    size = take_samples(values, jumps + 1) - take_samples(values, jumps)
     is_jump = np.abs(size) > np.fmax(limit, _JUMP_TO_STEPS * usual_step(values, jumps, jumps))
     jumps, size = jumps[is_jump], np.abs(size[is_jump])
     if not jumps.size:
-        return is_off
+        return none
     row_start, n_jumps = _rows(jumps)
     largest = np.repeat(np.maximum.reduceat(size, row_start), n_jumps)
     out, back = _pairs(jumps[size > _SMALL_JUMP * largest])
     returns = _returns(values, out, back, limit)
-    is_off[_between(out[returns], back[returns])] = True
-    if np.count_nonzero(is_off) > _SIGNAL_SHARE * values.size:
-        is_off[:] = False
-    return is_off
+    off = np.unique(_between(out[returns], back[returns]))
+    return none if off.size > _SIGNAL_SHARE * values.size else off
 
 
 def _rows(jumps: Integers) -> tuple[Integers, Integers]:
@@ -108,19 +108,20 @@ def _between(out: Integers, back: Integers) -> Integers:
 def _returns(values: Floats, out: Integers, back: Integers, limit: float) -> Bools:
     """Whether what lies between two jumps is off the course, and the course goes on after it."""
     n_steps = back + 1 - out
-    before, after = values[out], values[back + 1]
-    leaves, comes = values[out + 1] - before, after - values[back]
+    before, after = take_samples(values, out), take_samples(values, back + 1)
+    leaves = take_samples(values, out + 1) - before
+    comes = after - take_samples(values, back)
     size = np.fmin(np.abs(leaves), np.abs(comes))
     earlier = np.maximum(out - _NEIGHBOURS, 0)
     later = np.minimum(back + 1 + _NEIGHBOURS, values.size - 1)
-    rise_before = (before - values[earlier]) / np.maximum(out - earlier, 1)
-    rise_after = (values[later] - after) / np.maximum(later - back - 1, 1)
+    rise_before = (before - take_samples(values, earlier)) / np.maximum(out - earlier, 1)
+    rise_after = (take_samples(values, later) - after) / np.maximum(later - back - 1, 1)
     ends = n_steps * np.nan_to_num(np.stack([rise_before, rise_after]))
     change = after - before
     missed = np.fmax(np.fmax(ends.min(axis=0) - change, change - ends.max(axis=0)), 0)
     rows = _between(out, back)
     line = before[:, np.newaxis] + (rows - out[:, np.newaxis]) * (change / n_steps)[:, np.newaxis]
-    off = np.sign(leaves)[:, np.newaxis] * (values[rows] - line)
+    off = np.sign(leaves)[:, np.newaxis] * (take_samples(values, rows) - line)
     is_large = (n_steps > 2) & (
         size > np.fmax(limit, _JUMP_TO_STEPS * usual_step(values, out, back))
     )

@@ -20,6 +20,7 @@ from reduction.ingest.quality import (
 )
 from reduction.ingest.stamps import bridge_stamps
 from reduction.record import Bools, Floats, Quality, Record
+from reduction.samples import any_sample, finite_extremes, first_sample, sample_blocks, zeros_like
 from reduction.settings import QualitySettings
 from reduction.workers import run_blocks
 
@@ -65,8 +66,8 @@ def flag_record(
         If a channel holds no number that can be used, a tension is zero throughout, or a
         pin-to-pin length is not positive.
     """
-    position_flag: _Flags = np.zeros(record.n_samples, dtype=np.uint16)
-    tension_flag: _Flags = np.zeros(record.tension.shape, dtype=np.uint16)
+    position_flag: _Flags = zeros_like(record.time, dtype=np.uint16)
+    tension_flag: _Flags = zeros_like(record.tension, dtype=np.uint16)
     position = record.crosshead_position
     no_stamp = _missing("time", record.time)
     record = replace(record, time=bridge_stamps(record.time, no_stamp))
@@ -81,18 +82,18 @@ def flag_record(
     if record.position_is_length:
         _set(position_flag, _no_length(position, position_flag), Quality.SPIKE)
     if "crosshead_position" in resampled:
-        position_flag |= np.uint16(Quality.RESAMPLED)
+        _set_all(position_flag, Quality.RESAMPLED)
 
     def flag_tension(index: int) -> None:
         load, flags = record.tension[index], tension_flag[index]
         _set(flags, _missing(f"tension of '{record.specimens[index]}'", load), Quality.MISSING)
         saturated = find_saturated(load, position)
         stuck = find_stuck(load, position, samples=settings.stuck_samples)
-        _set(flags, saturated, Quality.SATURATED)
-        _set(flags, stuck & ~saturated, Quality.STUCK)
+        _set(flags, stuck, Quality.STUCK)
+        _set(flags, saturated, Quality.SATURATED, instead_of=Quality.STUCK)
         _set(flags, _spikes(load, settings), Quality.SPIKE)
         if f"tension.{index + 1}" in resampled:
-            flags |= np.uint16(Quality.RESAMPLED)
+            _set_all(flags, Quality.RESAMPLED)
 
     run_blocks(flag_tension, range(len(record.specimens)))
     for (index, start, stop), (low, high) in (verified or {}).items():
@@ -104,9 +105,10 @@ def flag_record(
         record, quality_flag=tension_flag, crosshead_position_quality_flag=position_flag
     )
     found = [*record.notes, *notes]
-    if no_stamp.any():
+    first_lost = first_sample(no_stamp.__getitem__, 0, no_stamp.size)
+    if first_lost is not None:
         found.append(
-            f"{int(no_stamp.sum())} rows have no time, first sample {int(no_stamp.argmax()) + 1}: "
+            f"{_count(no_stamp)} rows have no time, first sample {first_lost + 1}: "
             "their time is that of even steps between the rows beside them, and their position is "
             "not used"
         )
@@ -128,14 +130,27 @@ def flag_record(
     return replace(flagged, notes=tuple(found))
 
 
-def _set(flags: _Flags, where: Bools, mask: Quality) -> None:
-    if where.any():
-        flags[where] |= np.uint16(mask)
+def _set(flags: _Flags, where: Bools, mask: Quality, *, instead_of: int = 0) -> None:
+    """Set a mask on some samples, and take another off them."""
+    for part in sample_blocks(flags.size, flags, where):
+        chosen = where[part]
+        if chosen.any():
+            flags[part][chosen] &= ~np.uint16(instead_of)
+            flags[part][chosen] |= np.uint16(mask)
+
+
+def _set_all(flags: _Flags, mask: Quality) -> None:
+    for part in sample_blocks(flags.size, flags):
+        flags[part] |= np.uint16(mask)
+
+
+def _count(where: Bools) -> int:
+    return sum(int(np.count_nonzero(where[part])) for part in sample_blocks(where.size, where))
 
 
 def _missing(name: str, values: Floats) -> Bools:
     missing = find_missing(values)
-    if missing.all():
+    if _count(missing) == missing.size:
         raise DataError(
             f"{name} holds no number", found=f"{values.size} missing values", needed="a channel"
         )
@@ -149,14 +164,15 @@ def _spikes(values: Floats, settings: QualitySettings) -> Bools:
 
 def _no_length(position: Floats, flags: _Flags) -> Bools:
     """Where a pin-to-pin length is zero or less although nothing else is known against it."""
-    if position.min() > 0:
-        return np.zeros(position.size, dtype=bool)
-    not_positive: Bools = (position <= 0) & (flags == 0)
-    share = float(np.mean(not_positive))
+    not_positive: Bools = zeros_like(position, dtype=bool)
+    for part in sample_blocks(position.size, position, flags, not_positive):
+        not_positive[part] = (position[part] <= 0) & (flags[part] == 0)
+    share = _count(not_positive) / position.size
     if share > _IMPOSSIBLE_SHARE:
         raise DataError(
             "a pin-to-pin length is not positive",
-            found=f"{share:.0%} of the samples at or below 0 m, least {np.nanmin(position):.4g} m",
+            found=f"{share:.0%} of the samples at or below 0 m, least "
+            f"{finite_extremes(position)[0]:.4g} m",
             needed="the distance between the pins",
             hint='Set datum = "displacement", with a reference_length where one is known, or '
             "correct zero and sign.",
@@ -164,10 +180,15 @@ def _no_length(position: Floats, flags: _Flags) -> Bools:
     return not_positive
 
 
+def _any_reading(flags: _Flags) -> bool:
+    """Whether any sample of a channel holds a number that can be used."""
+    return any_sample(lambda part: (flags[part] & _NO_READING) == 0, flags.size)
+
+
 def _check_usable(record: Record) -> None:
     """Refuse a channel that says nothing, whose flags would leave no sample."""
     position = record.crosshead_position
-    if np.all(record.crosshead_position_quality_flag & _NO_READING):
+    if not _any_reading(record.crosshead_position_quality_flag):
         known = position[np.isfinite(position)]
         stuck = f" or stuck at {known.mean():.4g} m while tension changes" if known.size else ""
         raise DataError(
@@ -179,13 +200,13 @@ def _check_usable(record: Record) -> None:
     for name, load, flags in zip(
         record.specimens, record.tension, record.quality_flag, strict=True
     ):
-        if not load.any():
+        if not any_sample(lambda part: load[part] != 0, load.size):  # noqa: B023
             raise DataError(
                 f"tension of '{name}' is zero throughout",
                 found=f"{load.size} samples of 0 N",
                 needed="a load cell that is connected, or a test without this specimen",
             )
-        if np.all(flags & _NO_READING):
+        if not _any_reading(flags):
             raise DataError(
                 f"tension of '{name}' has no sample that can be used",
                 found=f"{load.size} samples missing or stuck at {np.nanmean(load):.4g} N",

@@ -11,6 +11,7 @@ from reduction.ingest.layout import CLOCK, Channel, Layout
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.resample import on_common_time
 from reduction.record import Floats
+from reduction.samples import empty_like, finite_extremes, sample_blocks
 from reduction.units import Dimension, parse_quantity, scale_to_si
 
 __all__ = ["Piece", "to_piece"]
@@ -128,7 +129,12 @@ def _scale(channel: Channel, dimension: Dimension) -> tuple[float, float]:
 
 def _seconds(values: Floats, unit: str) -> Floats:
     factor, _ = (1.0, 0.0) if unit == CLOCK else scale_to_si(unit, "time")
-    return values if factor == 1 else factor * values
+    if factor == 1:
+        return values
+    seconds = empty_like(values)
+    for part in sample_blocks(values.size, values, seconds):
+        np.multiply(values[part], factor, out=seconds[part])
+    return seconds
 
 
 def _shared_time(log: RawLog, layout: Layout) -> Floats | None:
@@ -142,17 +148,22 @@ def _shared_time(log: RawLog, layout: Layout) -> Floats | None:
         raise SettingsError(
             "sample_interval is not positive", found=layout.sample_interval, needed="above zero"
         )
-    return step * np.arange(log.n_rows_read, dtype=np.float64)
+    beside = next(iter(log.columns.values()), np.empty(0))
+    time = empty_like(beside, shape=log.n_rows_read)
+    for part in sample_blocks(time.size, time):
+        time[part] = step * np.arange(part.start, part.stop)
+    return time
 
 
 def _check_restart(piece: Piece) -> None:
     """Refuse a log in which time starts again: a slip of the clock is short or small."""
     time = piece.time
-    # a fall is looked at in whole only where there is one
-    if not time.size or not np.any(time[1:] < time[:-1]):
-        return
-    for last in np.flatnonzero(time[1:] < time[:-1]):
-        first, top = np.nanmin(time[: last + 1]), np.nanmax(time[: last + 1])
+    falls_after = [
+        part.start + np.flatnonzero(np.diff(time[part]) < 0)
+        for part in sample_blocks(time.size, time, overlap=1)
+    ]
+    for last in np.concatenate([np.empty(0, dtype=np.intp), *falls_after]):
+        first, top = finite_extremes(time[: last + 1])
         after = time[last + 1 : last + 2 + _RESTART_SAMPLES]
         falls = top - after[0] > (top - first) / 2 and after.size > _RESTART_SAMPLES
         if falls and after[-1] < top and np.all(np.diff(after) > 0):

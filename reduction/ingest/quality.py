@@ -8,14 +8,13 @@ question that clean data answers with no.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from reduction.ingest.excursions import find_excursions, usual_step
 from reduction.record import Bools, Floats, Integers, Quality, Record
-from reduction.samples import sample_blocks
+from reduction.samples import sample_blocks, take_samples, zeros_like
 
 __all__ = [
     "RowAccount",
@@ -28,7 +27,6 @@ __all__ = [
     "time_faults",
 ]
 
-_BLOCK = 1 << 16  # samples that stay in the cache
 _WINDOWS, _WINDOW = 64, 1024
 _NEIGHBOURS = 4
 _SPIKE_TO_NEIGHBOURS = 3.0
@@ -100,24 +98,22 @@ def account_rows(record: Record) -> RowAccount:
     return RowAccount(record.n_rows_read, record.n_samples, n_flagged)
 
 
-def _blocks(n_samples: int, overlap: int) -> Iterator[slice]:
-    """Slices that cover a series, each with ``overlap`` samples of the next one."""
-    for start in range(0, n_samples, _BLOCK):
-        yield slice(start, min(start + _BLOCK + overlap, n_samples))
-
-
 def find_missing(values: Floats) -> Bools:
     """Where a value is NaN, shape (n_samples,)."""
-    if np.isfinite(values.sum()):
-        return np.zeros(values.size, dtype=bool)
-    return np.isnan(values)
+    missing = zeros_like(values, dtype=bool)
+    for part in sample_blocks(values.size, values, missing):
+        if not np.isfinite(values[part].sum()):
+            np.isnan(values[part], out=missing[part])
+    return missing
 
 
 def find_outside_range(values: Floats, low: float, high: float) -> Bools:
     """Where a value lies outside the range a load cell is verified for, shape (n_samples,)."""
-    if values.min() >= low and values.max() <= high:
-        return np.zeros(values.size, dtype=bool)
-    return (values < low) | (values > high)
+    outside = zeros_like(values, dtype=bool)
+    for part in sample_blocks(values.size, values, outside):
+        block = values[part]
+        outside[part] = (block < low) | (block > high)
+    return outside
 
 
 def _sampled(values: Floats) -> Floats:
@@ -125,7 +121,7 @@ def _sampled(values: Floats) -> Floats:
     if values.size <= _WINDOWS * _WINDOW:
         return values[np.newaxis]
     starts = np.linspace(0, values.size - _WINDOW, _WINDOWS).astype(np.int64)
-    windows: Floats = values[starts[:, np.newaxis] + np.arange(_WINDOW)]
+    windows: Floats = take_samples(values, starts[:, np.newaxis] + np.arange(_WINDOW))
     return windows
 
 
@@ -150,8 +146,7 @@ def time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> Ti
         Masks and steps.
     """
     n_samples = time.size
-    gap = np.zeros(n_samples, dtype=bool)
-    backward = np.zeros(n_samples, dtype=bool)
+    gap, backward = zeros_like(time, dtype=bool), zeros_like(time, dtype=bool)
     steps = np.diff(_sampled(time), axis=1).ravel()
     steps = steps[steps > 0]
     if not steps.size:
@@ -160,7 +155,7 @@ def time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> Ti
     step = float(np.median(steps))
     low, high = (1 - rate_tolerance) * step, (1 + rate_tolerance) * step
     latest, n_uneven, shortest, longest = -np.inf, 0, np.inf, -np.inf
-    for part in _blocks(n_samples, 1):
+    for part in sample_blocks(n_samples, time, gap, backward, overlap=1):
         piece = time[part]
         step_here = np.diff(piece)
         least, most = (step_here.min(), step_here.max()) if step_here.size else (step, step)
@@ -189,7 +184,7 @@ def _usual_time_step(time: Floats, place: Integers) -> Floats:
     near = place[:, np.newaxis] + around
     is_inside = (near >= 0) & (near < time.size - 1)
     near = np.where(is_inside, near, 0)
-    steps = time[near + 1] - time[near]
+    steps = take_samples(time, near + 1) - take_samples(time, near)
     steps = np.where(is_inside & (steps > 0), steps, np.nan)
     usual = np.zeros(place.size)
     is_known = np.isfinite(steps).any(axis=1)
@@ -246,12 +241,12 @@ def find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
     is_spike : ndarray of bool, shape (n_samples,)
         True at the samples that are off.
     """
-    is_spike = np.zeros(values.size, dtype=bool)
+    is_spike = zeros_like(values, dtype=bool)
     limit = factor * noise
     if limit <= 0:
         return is_spike
     jumps = []
-    for part in _blocks(values.size, 3):
+    for part in sample_blocks(values.size, values, overlap=3):
         step = np.diff(values[part])
         bend = step[1:] - step[:-1]
         # a jump bends the course at both its ends, against each other; a spike is two jumps
@@ -261,11 +256,12 @@ def find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
     if not jump.size:
         return is_spike
     place = np.unique(np.concatenate([jump, jump + 1]))
-    before, here, after = values[place - 1], values[place], values[place + 1]
+    before, here, after = (take_samples(values, place + step) for step in (-1, 0, 1))
     off = np.minimum(np.abs(here - before), np.abs(here - after))
     opposite = (here - before) * (after - here) < -(limit**2)
     nearby = np.fmax(np.abs(after - before), usual_step(values, place - 1, place))
     single = place[opposite & (off > limit) & (off > _SPIKE_TO_NEIGHBOURS * nearby)]
     is_spike[single] = True
     of_single = is_spike[jump] | is_spike[jump + 1]
-    return is_spike | find_excursions(values, jump[~of_single], limit=limit)
+    is_spike[find_excursions(values, jump[~of_single], limit=limit)] = True
+    return is_spike

@@ -98,7 +98,7 @@ def test_units_change_nothing_but_the_last_digit(tmp_path, rows, feet, pounds):
     minimum=st.integers(2, 12),
 )
 def test_runs_cover_exactly_the_samples_that_repeat(values, minimum):
-    mask = constant_runs(values, minimum).mask(values.size)
+    mask = constant_runs(values, minimum).mask(values)
     edges = np.r_[0, np.flatnonzero(np.diff(values)) + 1, values.size]
     expected = np.zeros(values.size, dtype=bool)
     for start, stop in pairwise(edges):

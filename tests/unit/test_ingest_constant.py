@@ -48,14 +48,14 @@ def test_runs_are_those_that_a_plain_search_finds(minimum, seed):
     values = np.repeat(source.integers(0, 3, 300), source.integers(1, 120, 300)).astype(float)
     runs = constant_runs(values, minimum)
     assert list(zip(runs.start.tolist(), runs.stop.tolist(), strict=True)) == brute(values, minimum)
-    assert runs.mask(values.size).sum() == sum(
+    assert runs.mask(values).sum() == sum(
         stop - start for start, stop in brute(values, minimum)
     )
 
 
 def test_a_series_shorter_than_a_run_has_none():
     assert constant_runs(np.ones(10), 50).start.size == 0
-    assert not constant_runs(np.ones(10), 50).mask(10).any()
+    assert not constant_runs(np.ones(10), 50).mask(np.ones(10)).any()
 
 
 def test_a_noisy_hold_does_not_move_and_a_ramp_does():

@@ -84,7 +84,7 @@ def test_a_missing_sample_beside_an_excursion_leaves_it_alone():
 
 
 def test_no_jump_is_no_excursion():
-    assert not find_excursions(COURSE, np.empty(0, dtype=np.intp), limit=1.0).any()
+    assert find_excursions(COURSE, np.empty(0, dtype=np.intp), limit=1.0).size == 0
 
 
 def test_the_usual_step_passes_over_two_large_ones():
