@@ -31,11 +31,11 @@ import time, json, resource, sys
 from pathlib import Path
 from reduction.batch.models import fit_strain_models
 from reduction.batch.reduce import reduce_survey
-from reduction.batch.survey import survey_campaign
+from reduction.batch.survey import read_test
 from reduction.campaign.load import load_campaign
 campaign = load_campaign(Path(sys.argv[1]))
 start = time.perf_counter()
-surveys = survey_campaign(campaign)
+surveys = [one for plan in campaign.tests.values() for one in read_test(campaign, plan)]
 located = time.perf_counter()
 models, errors = fit_strain_models(campaign, surveys)
 survey = surveys[0]

@@ -20,7 +20,7 @@ from reduction.batch.basis import basis_of
 from reduction.batch.describe import describe
 from reduction.batch.instruments import instruments_of
 from reduction.batch.models import fit_strain_models
-from reduction.batch.survey import located_again, survey_campaign
+from reduction.batch.survey import located_again, read_test
 from reduction.campaign.load import load_campaign
 from reduction.pipeline.reduce import reduce_test
 from reduction.uncertainty.stated import StatedErrors
@@ -35,7 +35,7 @@ def seconds(path: Path, *, propagated: bool) -> tuple[float, int]:
     """Time from the file to the reduced test, and its cycles."""
     campaign = replace(load_campaign(path), uncertainty=STATED)
     start = time.perf_counter()
-    surveys = survey_campaign(campaign)
+    surveys = [one for plan in campaign.tests.values() for one in read_test(campaign, plan)]
     models, _ = fit_strain_models(campaign, surveys)
     (survey,) = surveys
     basis = basis_of(campaign, survey, surveys, models=models, pulls={}, failed=())

@@ -19,7 +19,7 @@ from reduction.cycles.product import Cycles
 from reduction.moduli.groups import select_cycles
 from reduction.product import ReducedTest
 from reduction.record import UNUSABLE, Floats, Integers, freeze_arrays
-from reduction.samples import sample_blocks
+from reduction.samples import let_go, sample_blocks
 from reduction.settings import ReductionSettings
 
 __all__ = ["KeptSamples", "SamplePlaces", "kept_samples", "select_places"]
@@ -75,7 +75,9 @@ class KeptSamples:
 
     def of(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return the stored samples of a series, shape (..., n_stored)."""
-        return np.asarray(np.take(values, self.index, axis=-1))
+        stored = np.asarray(np.take(values, self.index, axis=-1))
+        let_go(values)
+        return stored
 
 
 def kept_samples(test: ReducedTest, settings: ReductionSettings) -> KeptSamples | None:

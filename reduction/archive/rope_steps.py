@@ -195,8 +195,10 @@ def _first_peak(dataset: xr.Dataset, row: int) -> float:
     """Greatest strain until the first cycle is over: what lies beyond is of later cycles."""
     if "cycle_last_sample" not in dataset:
         return float("inf")
-    last = int(dataset["cycle_last_sample"].values[0])
-    return float(np.nanmax(dataset["strain"].values[row, : last + 1]))
+    stop = int(dataset["cycle_last_sample"].values[0]) + 1
+    if "sample_index" in dataset:
+        stop = int(np.searchsorted(dataset["sample_index"].values, stop))
+    return float(np.nanmax(dataset["strain"].values[row, :stop]))
 
 
 def _bedding(read: _Reader) -> BeddingCycles | None:

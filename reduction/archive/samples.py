@@ -12,7 +12,7 @@ from reduction.archive.schema import QUALITY_MASKS
 from reduction.archive.values import Values, texts
 from reduction.product import ReducedTest
 from reduction.record import UNUSABLE, Floats, Integers, Record, Specimen
-from reduction.samples import full_like, sample_blocks
+from reduction.samples import empty_like, full_like, sample_blocks
 from reduction.strain.stress import nominal_stress
 
 __all__ = ["row_account", "sample_values"]
@@ -47,7 +47,7 @@ def sample_values(test: ReducedTest, record: Record, kept: KeptSamples | None = 
     if record.measured_strain is not None:
         values["measured_strain"] = stored(record.measured_strain)
     if record.cycle_counter is not None:
-        values["machine_cycle_number"] = stored(record.cycle_counter)
+        values["machine_cycle_number"] = _narrowed(stored(record.cycle_counter))
     if test.strain is not None:
         values["strain"] = stored(test.strain)
     if test.strain_standard_uncertainty is not None:
@@ -62,6 +62,14 @@ def sample_values(test: ReducedTest, record: Record, kept: KeptSamples | None = 
         values["cycle_number"] = stored(test.cycles.cycle_number)
         values["branch"] = stored(test.cycles.branch)
     return values
+
+
+def _narrowed(numbers: Integers) -> Integers:
+    """Whole numbers of the width that they are stored in, by blocks."""
+    narrow: Integers = empty_like(numbers, dtype=np.int32)
+    for part in sample_blocks(numbers.size, numbers, narrow):
+        narrow[part] = numbers[part]
+    return narrow
 
 
 def _stress(tension: Floats, flags: Integers, specimens: tuple[Specimen, ...]) -> Floats:

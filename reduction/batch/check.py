@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
+from reduction.batch.firstpass import survey_campaign
 from reduction.batch.models import fit_strain_models
 from reduction.batch.outcome import status_row
+from reduction.batch.progress import Progress
 from reduction.batch.status import TestStatus
-from reduction.batch.survey import Survey, survey_campaign
+from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.errors import SettingsError
 from reduction.strain.model import StrainModel
 
-__all__ = ["Progress", "check_campaign", "selected_surveys"]
-
-Progress = Callable[[str, str], None]
+__all__ = ["check_campaign", "selected_surveys"]
 
 
 def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
@@ -48,8 +48,8 @@ def check_campaign(
         As loaded.
     tests : sequence of str
         Only these; all where empty.
-    progress : callable, optional
-        Called with a stage and a test id.
+    progress : Progress, optional
+        Told of each log.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def check_campaign(
     models : dict of (test, specimen) to StrainModel
         How position would become strain.
     """
-    surveys = survey_campaign(campaign, progress=progress)
+    surveys = survey_campaign(campaign, progress=progress).surveys
     models, errors = fit_strain_models(campaign, surveys)
     statuses = []
     for survey in selected_surveys(surveys, tests):

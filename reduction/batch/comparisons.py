@@ -155,11 +155,20 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
             shared=shared,
             calibrate=plan.calibrate,
         )
-        comparison = replace(comparison, notes=(*notes, *comparison.notes))
+        comparison = replace(comparison, notes=(*notes, *_of_part(archive), *comparison.notes))
         if plan.loading is None and comparison.measured.loading == "dynamic":
             assumed = f'taken as dynamic, as {kind} tests are; a slow one has loading = "static"'
             comparison = replace(comparison, notes=(assumed, *comparison.notes))
         return NamedComparison(plan.name, archive.attrs["test"], specimen, hose.name, comparison)
+
+
+def _of_part(archive: xr.Dataset) -> tuple[str, ...]:
+    """What a reader has to know where an archive holds a part of the samples."""
+    if "sample_index" not in archive:
+        return ()
+    return (
+        f"from the samples that are stored of a long record: {archive.attrs['stored_samples']}",
+    )
 
 
 def _require_hose(path: Path, archive: xr.Dataset, index: int) -> None:

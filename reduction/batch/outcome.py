@@ -52,6 +52,7 @@ def status_row(
     error: ReductionError | None = None,
     message: str = "",
     seconds: float = 0.0,
+    worker: str = "",
 ) -> TestStatus:
     """One row of the status table."""
     return TestStatus(
@@ -64,4 +65,5 @@ def status_row(
         raw_sha256=" ".join(source.sha256 for source in survey.sources),
         seconds=seconds,
         found=survey.found,
+        worker=worker,
     )

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from reduction.batch.executor import Executor
+from reduction.batch.firstpass import FirstPass, with_record
 from reduction.batch.instruments import instruments_of
+from reduction.batch.progress import Progress
 from reduction.batch.survey import Survey, as_reduction_error, located_again
 from reduction.campaign.plan import Campaign
 from reduction.errors import ReductionError
@@ -18,6 +21,7 @@ from reduction.units import parse_quantity
 __all__ = ["fit_pulls", "origins_of", "pull_conditions", "pull_tests", "pulls_of"]
 
 Pulls = Mapping[tuple[str, str], SlowPull]
+_Found = tuple[list[SlowPull | None], ReductionError | None]
 
 
 def pull_conditions(campaign: Campaign, survey: Survey) -> PullConditions:
@@ -50,8 +54,11 @@ def pull_conditions(campaign: Campaign, survey: Survey) -> PullConditions:
 
 def fit_pulls(
     campaign: Campaign,
-    surveys: Sequence[Survey],
+    first: FirstPass,
     models: Mapping[tuple[str, str], StrainModel],
+    *,
+    executor: Executor,
+    progress: Progress,
 ) -> tuple[dict[tuple[str, str], SlowPull], dict[str, ReductionError]]:
     """Fit every slow pull that an experiment names.
 
@@ -59,10 +66,14 @@ def fit_pulls(
     ----------
     campaign : Campaign
         With its experiments.
-    surveys : sequence of Survey
-        All tests of the campaign.
+    first : FirstPass
+        All tests of the campaign, and the records that are kept.
     models : mapping of (test, specimen) to StrainModel
         How position becomes strain.
+    executor : Executor
+        Where it is done.
+    progress : Progress
+        Told of each pull.
 
     Returns
     -------
@@ -72,31 +83,52 @@ def fit_pulls(
         Pulls that could not be looked at.
     """
     named = {test for plan in campaign.experiments.values() for test in plan.quasi_static.values()}
-    pulls: dict[tuple[str, str], SlowPull] = {}
-    errors: dict[str, ReductionError] = {}
-    for survey in surveys:
+    shared = executor.send(campaign)
+    specimens_of, tasks = {}, []
+    for survey in first.surveys:
         test = survey.plan.id
         of_test = [models.get((test, name)) for name in survey.plan.specimens]
         known = [model for model in of_test if model is not None]
         if test not in named or survey.error is not None or len(known) < len(of_test):
             continue
-        try:
-            located = located_again(campaign, survey)
-            position, tension = located.position, located.tension
-            strain = strain_of_record(located.record, position, tension, known)
-            found, _ = pull_specimens(
-                located, strain, tension, pull_conditions(campaign, survey),
-                specimens=[campaign.specimens[name] for name in survey.plan.specimens],
-                models=known,
-            )  # fmt: skip
-        except Exception as error:
-            # one test's failure, even where it is a defect here
-            errors[test] = as_reduction_error(error)
-            continue
-        for name, pull in zip(survey.plan.specimens, found, strict=True):
+        specimens_of[test] = survey.plan.specimens
+        kept = first.kept.get(survey.plan.log)
+        tasks.append(executor.start(_fit, shared, survey, kept, known, stage="pull", test=test))
+    if tasks:
+        progress.stage("slow pulls", len(tasks))
+    pulls: dict[tuple[str, str], SlowPull] = {}
+    errors: dict[str, ReductionError] = {}
+    for ended in executor.ended(tasks):
+        found, error = ended.value or ([], ended.error)
+        if error is not None:
+            errors[ended.test] = error
+        for name, pull in zip(specimens_of[ended.test], found, strict=False):
             if pull is not None:
-                pulls[test, name] = pull
+                pulls[ended.test, name] = pull
+        progress.ended(ended.test)
     return pulls, errors
+
+
+def _fit(
+    campaign: Campaign,
+    survey: Survey,
+    kept: Sequence[Survey] | None,
+    models: Sequence[StrainModel],
+) -> _Found:
+    """Slow pull of each specimen of a test, or what was wrong with it."""
+    try:
+        located = located_again(campaign, with_record(survey, kept))
+        position, tension = located.position, located.tension
+        strain = strain_of_record(located.record, position, tension, models)
+        found, _ = pull_specimens(
+            located, strain, tension, pull_conditions(campaign, survey),
+            specimens=[campaign.specimens[name] for name in survey.plan.specimens],
+            models=models,
+        )  # fmt: skip
+    except Exception as error:
+        # one test's failure, even where it is a defect here
+        return [], as_reduction_error(error)
+    return list(found), None
 
 
 def pull_tests(campaign: Campaign, run: str) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -102,7 +102,14 @@ def reduce_survey(
 
 
 def bring_up_to_date(
-    campaign: Campaign, survey: Survey, basis: Basis, path: Path, *, force: bool, command: str
+    campaign: Campaign,
+    survey: Survey,
+    basis: Basis,
+    path: Path,
+    *,
+    force: bool,
+    command: str,
+    before_writing: Callable[[], None],
 ) -> tuple[Status, str]:
     """Write the archive of one test, unless one stands that is of the same logs and settings.
 
@@ -120,6 +127,8 @@ def bring_up_to_date(
         Write it in any case.
     command : str
         For the product's ``command`` attribute, without paths.
+    before_writing : callable
+        Raises an error where nothing may be written any more.
 
     Returns
     -------
@@ -147,6 +156,8 @@ def bring_up_to_date(
     kept = kept_samples(product, survey.plan.settings)
     of_archive = () if kept is None else (kept.note,)
     product = replace(product, notes=(*product.notes, *basis.remarks, *of_archive))
-    write_archive(to_dataset(product, version=__version__, command=command, kept=kept), path)
+    dataset = to_dataset(product, version=__version__, command=command, kept=kept)
+    before_writing()
+    write_archive(dataset, path)
     notes = product.all_notes()
     return "reduced_with_notes" if notes else "reduced", note_message(notes)

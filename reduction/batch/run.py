@@ -11,19 +11,22 @@ from typing import NamedTuple
 from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.write import write_whole
 from reduction.batch.basis import Basis, basis_of
-from reduction.batch.check import Progress, selected_surveys
+from reduction.batch.check import selected_surveys
 from reduction.batch.comparisons import write_comparisons
+from reduction.batch.executor import Executor, Serial
 from reduction.batch.experiments import write_experiments
+from reduction.batch.firstpass import survey_campaign
+from reduction.batch.lock import RunLock, run_lock
 from reduction.batch.models import fit_strain_models
-from reduction.batch.outcome import status_row
 from reduction.batch.part import PartStatus
 from reduction.batch.predictions import write_predictions
+from reduction.batch.progress import Progress, Silent
 from reduction.batch.properties import tests_of_ropes, write_change_in_length
 from reduction.batch.pulls import fit_pulls
-from reduction.batch.reduce import bring_up_to_date
 from reduction.batch.results import write_outcomes
-from reduction.batch.status import Status, TestStatus, read_status, status_csv
-from reduction.batch.survey import Survey, as_reduction_error, survey_campaign
+from reduction.batch.secondpass import reduce_campaign
+from reduction.batch.status import TestStatus, read_status, status_csv
+from reduction.batch.survey import Survey
 from reduction.batch.waiting import waiting_runs
 from reduction.campaign.plan import Campaign
 from reduction.report.page import write_report
@@ -68,9 +71,13 @@ def run_campaign(
     force: bool = False,
     command: str = "",
     units: UnitSystem = "si",
+    executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> CampaignResult:
     """Reduce a campaign: archives, tables, status, report.
+
+    No other run may be at work on the same products.  Tests whose archives stand are left as
+    they are, so that a run that was ended goes on where it was.
 
     Parameters
     ----------
@@ -88,8 +95,11 @@ def run_campaign(
         For the product's ``command`` attribute, without paths.
     units : {"si", "us"}
         What the report shows; files are SI.
-    progress : callable, optional
-        Called with a stage and a test id.
+    executor : Executor, optional
+        Where the tests are worked on; one after another in this process where left out.  No
+        product depends on it.
+    progress : Progress, optional
+        Told how far it is.
 
     Returns
     -------
@@ -101,13 +111,41 @@ def run_campaign(
     SettingsError
         If ``tests`` names a test that the campaign lacks.
     ArchiveError
-        If the folder or a table cannot be written.
+        If the folder or a table cannot be written, or another run holds the folder.
+    WorkerError
+        If the workers or their scheduler are lost.
     """
-    folder = processed / campaign.id
-    surveys = survey_campaign(campaign, progress=progress)
+    progress = progress or Silent()
+    with run_lock(processed / campaign.id, remark=progress.remark) as lock:
+        return _run(
+            campaign, processed / campaign.id, reports, lock, clock=clock, tests=tests,
+            force=force, command=command, units=units, executor=executor or Serial(),
+            progress=progress,
+        )  # fmt: skip
+
+
+def _run(
+    campaign: Campaign,
+    folder: Path,
+    reports: Path,
+    lock: RunLock,
+    *,
+    clock: Callable[[], float],
+    tests: Sequence[str],
+    force: bool,
+    command: str,
+    units: UnitSystem,
+    executor: Executor,
+    progress: Progress,
+) -> CampaignResult:
+    executor.begun = progress.begun
+    first = survey_campaign(campaign, executor=executor, lock=lock, progress=progress)
+    surveys = first.surveys
     chosen = selected_surveys(surveys, tests)
     models, errors = fit_strain_models(campaign, surveys)
-    pulls, errors_of_pulls = fit_pulls(campaign, surveys, models)
+    pulls, errors_of_pulls = fit_pulls(
+        campaign, first, models, executor=executor, progress=progress
+    )
     errors |= errors_of_pulls
     failed = [entry.plan.id for entry in surveys if entry.error or entry.plan.id in errors]
     basis = partial(
@@ -118,36 +156,16 @@ def run_campaign(
         pulls=pulls,
         failed=failed,
     )
-    statuses: list[TestStatus] = []
-    status: Status
-    for survey in chosen:
-        name = survey.plan.id
-        path = folder / f"{name}.nc"
-        start = clock()
-        error = survey.error or errors.get(name)
-        if error is None and progress is not None:
-            progress("reduce", name)
-        try:
-            if error is not None:
-                raise error
-            status, message = bring_up_to_date(
-                campaign, survey, basis(survey), path, force=force, command=command
-            )
-        except Exception as failure:
-            # a campaign goes on after a failed test, even where the failure is a defect here
-            error, status, message = as_reduction_error(failure), "failed", ""
-        survey.located = None  # its record is in the archive now, or is of no more use
-        seconds = clock() - start
-        statuses.append(
-            status_row(campaign, survey, status, error=error, message=message, seconds=seconds)
-        )
+    statuses = reduce_campaign(
+        campaign, first, chosen, errors=errors, basis=basis, folder=folder, executor=executor,
+        lock=lock, progress=progress, clock=clock, force=force, command=command,
+    )  # fmt: skip
     now_failed = {status.test for status in statuses if status.status == "failed"}.union(failed)
     asked = {survey.plan.id for survey in chosen}
     parts = _write_parts(
         campaign, folder, surveys, asked=asked, failed=now_failed, basis=basis, command=command
     )
-    if progress is not None:
-        progress("tables", campaign.id)
+    progress.stage("tables", 0)
     ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
     archives = [path for path in ours if path.exists()]
     report, tables = None, []
@@ -157,8 +175,7 @@ def run_campaign(
     products = _products_of_campaign(campaign, folder, has_lengths=parts.has_lengths)
     if archives or products:
         tables = write_tables(archives, folder / "tables", **products)
-        if progress is not None:
-            progress("report", campaign.id)
+        progress.stage("report", 0)
         report = write_report(folder, reports / campaign.id, units=units)
     stray = sorted(path.name for path in archives_of_tests(folder) if path not in ours)
     stray += [

@@ -37,6 +37,8 @@ class TestStatus:
         Wall time; not part of any product.
     found : dict
         What `check` prints: rate, gaps, flags.
+    worker : str
+        Address of the worker that reduced it, where there are several.
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -50,6 +52,7 @@ class TestStatus:
     raw_sha256: str
     seconds: float
     found: dict[str, Any] = field(default_factory=dict)
+    worker: str = ""
 
     def document(self) -> dict[str, Any]:
         """The entry of ``tests`` in the JSON answer."""

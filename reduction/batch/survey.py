@@ -1,4 +1,4 @@
-"""The first pass over a campaign: what each test holds, before any is reduced.
+"""The first look at a test: what its log holds, before it is reduced.
 
 The marks of a specimen are pooled over its tests, and a test's history is what came
 before it; so every log is read and located once, and only then reduced.
@@ -6,7 +6,6 @@ before it; so every log is read and located once, and only then reduced.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -24,10 +23,7 @@ from reduction.provenance import Source
 from reduction.record import Floats, Record, SpliceMarks, StepReadings
 from reduction.strain.fit import zero_strain_position
 
-__all__ = ["Survey", "as_reduction_error", "located_again", "read_test", "survey_campaign"]
-
-# records larger than this together are read again rather than kept between the passes
-KEPT_SAMPLES = 10_000_000
+__all__ = ["Survey", "as_reduction_error", "located_again", "read_test", "survey_log"]
 
 
 @dataclass
@@ -158,38 +154,13 @@ def _measure_marks(survey: Survey, located: Located | None, marks: dict[str, Spl
         survey.mark_tension, survey.mark_tension_at_start = at["end"], at["start"]
 
 
-def survey_campaign(
-    campaign: Campaign, *, progress: Callable[[str, str], None] | None = None
-) -> list[Survey]:
-    """Read and locate every test of a campaign.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    progress : callable, optional
-        Called with ("survey", test id) before each test.
-
-    Returns
-    -------
-    surveys : list of Survey
-        In the order of the campaign; a test that failed carries its error.
-    """
-    surveys: list[Survey] = []
-    kept = 0
-    for plan in campaign.tests.values():
-        if progress is not None:
-            progress("survey", plan.id)
-        try:
-            of_test = read_test(campaign, plan)
-        except Exception as error:
-            of_test = [Survey(plan, error=as_reduction_error(error))]
-        for survey in of_test:
-            kept += survey.n_rows
-            if kept > KEPT_SAMPLES and len(campaign.tests) > 1:
-                survey.located = None
-        surveys.extend(of_test)
-    return surveys
+def survey_log(campaign: Campaign, name: str) -> list[Survey]:
+    """Read and locate one log; a log that cannot be read has one survey, with its error."""
+    plan = campaign.tests[name]
+    try:
+        return read_test(campaign, plan)
+    except Exception as error:
+        return [Survey(plan, error=as_reduction_error(error))]
 
 
 def located_again(campaign: Campaign, survey: Survey) -> Located:

@@ -63,7 +63,14 @@ def run(
     campaign: CampaignPath,
     processed: Annotated[str, typer.Option(help="Where products go.")] = "processed",
     reports: Annotated[str, typer.Option(help="Where the report goes.")] = "reports",
-    jobs: Annotated[int, typer.Option(min=1, help="Accepted; tests run one by one.")] = 1,
+    jobs: Annotated[
+        int | None,
+        typer.Option(min=1, help="Worker processes on this machine; 1 where left out."),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Dask scheduler with workers, tcp://HOST:PORT."),
+    ] = None,
     test: Annotated[list[str] | None, typer.Option("--test", help="Only this test.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Redo unchanged tests too.")] = False,
     allow_remote: AllowRemote = False,
@@ -84,6 +91,8 @@ def run(
                 allow_remote=allow_remote,
                 tests=tuple(test or ()),
                 force=force,
+                jobs=jobs,
+                scheduler=scheduler,
                 output=output,
             )
 

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
-import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, cast
 
-from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from reduction.batch.check import check_campaign as check_tests
@@ -24,30 +20,15 @@ from reduction.batch.run import run_campaign as run_tests
 from reduction.batch.status import TestStatus
 from reduction.campaign.plan import Campaign
 from reduction.cli.commandoutput import CommandOutput
+from reduction.cli.progress import campaign_progress
 from reduction.cli.remote import product_folders
+from reduction.cli.workers import chosen_executor
 from reduction.errors import ArchiveError
 from reduction.report.page import write_report
 from reduction.strain.model import StrainModel
 from reduction.units import UnitSystem, display_unit
 
 __all__ = ["check_campaign", "report_again", "run_campaign"]
-
-ProgressCall = Callable[[str, str], None]
-
-
-@contextmanager
-def _progress(output: CommandOutput, n_steps: int) -> Iterator[ProgressCall]:
-    """A line on standard error while a person waits; nothing where no terminal is."""
-    if output.quiet or output.json or not sys.stderr.isatty():
-        yield lambda stage, name: None
-        return
-    columns = (
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
-    )  # fmt: skip
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("", total=n_steps)
-        # each call announces a step, so the ones before it are done
-        yield lambda stage, name: bar.update(task, description=f"{stage} {name}", advance=1)
 
 
 def _status_table(tests: Sequence[TestStatus]) -> Table:
@@ -63,6 +44,8 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
                 "rate [Hz]": "" if rate is None else f"{rate:.4g}",
                 "gaps": str(test.found.get("gaps", "")),
                 "cycles": str(test.n_cycles),
+                "seconds": f"{test.seconds:.1f}" if test.worker else "",
+                "worker": test.worker,
                 "message": message,
             }
         )
@@ -70,7 +53,7 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
     # weights hung by hand have no rate, and of a log that was reduced a run keeps none
     shown = [name for name in rows[0] if any(row[name] for row in rows)] if rows else []
     for name in shown:
-        is_count = name not in ("test", "status", "message")
+        is_count = name not in ("test", "status", "worker", "message")
         table.add_column(escape(name), justify="right" if is_count else "left")
     for row in rows:
         table.add_row(*(row[name] for name in shown))
@@ -156,7 +139,7 @@ def _say_experiments(
 def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: CommandOutput) -> None:
     """Read and validate everything, print what was found, write nothing."""
     units = cast("UnitSystem", output.units)
-    with _progress(output, len(campaign.tests)) as progress:
+    with campaign_progress(output) as progress:
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
     if statuses or not (campaign.outcomes or campaign.hoses):
         output.show(_status_table(statuses))
@@ -199,18 +182,24 @@ def run_campaign(
     allow_remote: bool,
     tests: tuple[str, ...],
     force: bool,
+    jobs: int | None,
+    scheduler: str | None,
     output: CommandOutput,
 ) -> None:
     """Reduce a campaign and say what became of each test."""
-    # each log is surveyed, then reduced; then come the tables and the report
     with (
         product_folders(campaign, processed, reports, allow_remote=allow_remote, output=output) as (
             campaign,
             processed_here,
             reports_here,
         ),
-        _progress(output, 2 * len(campaign.tests) + 2) as progress,
+        chosen_executor(jobs, scheduler) as executor,
+        campaign_progress(output) as progress,
     ):
+        if scheduler is not None:
+            # the workers have working folders of their own
+            campaign = replace(campaign, path=campaign.path.absolute())
+            processed_here = processed_here.absolute()
         result = run_tests(
             campaign,
             processed=processed_here,
@@ -221,6 +210,7 @@ def run_campaign(
             # paths, jobs and choices of tests are left out, so that equal inputs give equal bytes
             command="reduction run campaign.toml",
             units=cast("UnitSystem", output.units),
+            executor=executor,
             progress=progress,
         )
     if result.tests or not (campaign.outcomes or campaign.hoses):

@@ -35,7 +35,7 @@ class BranchSamples:
     row : ndarray of int, shape (n_samples,)
         2 k where cycle k ascends, 2 k + 1 where it descends.
     cycle_number : ndarray of int, shape (n_cycle,)
-        First cycle of each k.
+        First cycle of each k; cycles without a sample have none.
     cycles_pooled, n_break_in : int
         Consecutive cycles in one k; how many k are break-in.
     """
@@ -143,15 +143,18 @@ def select_samples(
             found=f"{n_cycles} cycles, {break_in_cycles} of them break-in",
             needed="at least one cycle more than break_in_cycles",
         )
-    pooled = -(-n_cycles // _MOST_ROWS)
-    k = (number[use].astype(np.int64) - 1) // pooled
+    # of a long test there are samples of some cycles alone: each of those is one, and no other
+    there = np.flatnonzero(np.bincount(number[(number > 0) & (number <= n_cycles)]))
+    pooled = -(-there.size // _MOST_ROWS)
+    k = np.searchsorted(there, number[use]) // pooled
+    n_break_in = int(np.searchsorted(there, break_in_cycles, side="right"))
     return BranchSamples(
         strain=strains[use],
         tension=tensions[use],
         row=2 * k + side[use] - 1,
-        cycle_number=np.arange(1, n_cycles + 1, pooled),
+        cycle_number=there[::pooled],
         cycles_pooled=pooled,
-        n_break_in=min(-(-break_in_cycles // pooled), (n_cycles - 1) // pooled),
+        n_break_in=min(-(-n_break_in // pooled), (there.size - 1) // pooled),
         notes=() if pooled == 1 else (f"each row pools {pooled} consecutive cycles",),
     )
 

@@ -14,11 +14,14 @@ import numpy as np
 
 from reduction.errors import LogError
 from reduction.ingest.columns import Wanted, check_lengths, find_column, wanted_columns
-from reduction.ingest.fields import TextRows, line_starts, read_fields, split_line
+from reduction.ingest.encoding import decode
+from reduction.ingest.fields import read_fields
+from reduction.ingest.growing import GrowingLog
 from reduction.ingest.layout import Layout
 from reduction.ingest.preamble import check_units, keep_line
 from reduction.ingest.rawlog import RawLog
-from reduction.ingest.source import decode, read_bytes, source_of
+from reduction.ingest.source import read_bytes, source_of
+from reduction.ingest.textrows import TextRows, line_starts, split_line
 from reduction.record import Bools, Integers
 
 __all__ = ["read_blocks"]
@@ -88,8 +91,10 @@ def read_blocks(path: Path, layout: Layout, *, name: str) -> RawLog:
     kept = np.frombuffer(data, np.uint8)[np.repeat(used, lines.stops - starts)].tobytes()
     line_row = np.flatnonzero(used) + 1
     body = memoryview(kept.rstrip(b"\r\n"))
-    rows = TextRows(path, body, int(line_row[0]), line_row, layout.quote)
-    columns, text, _ = read_fields(rows, layout, wanted, len(names))
+    rows = TextRows(path, layout, body, int(line_row[0]), line_row)
+    log = GrowingLog([want for want, _ in wanted], None)
+    log.add(read_fields(rows, wanted, len(names)), rows.first_row)
+    columns = log.finish(path, layout)
 
     metadata: dict[str, str] = {}
     loose = np.flatnonzero((in_block < 0) | (below & ~is_row))
@@ -109,9 +114,9 @@ def read_blocks(path: Path, layout: Layout, *, name: str) -> RawLog:
     return RawLog(
         source=source_of(raw, name),
         columns=columns,
-        text=text,
-        first_row=rows.first_row,
-        row=line_row,
+        text=log.text,
+        first_row=log.first_row,
+        row=log.row,
         n_rows_read=check_lengths(path, columns),
         metadata=metadata,
         notes=tuple(notes),

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import re
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from reduction.errors import LogError
-from reduction.ingest.columns import check_lengths, find_column, wanted_columns
-from reduction.ingest.fields import TextRows, line_starts, read_fields, split_line
+from reduction.ingest.columns import Wanted, check_lengths, find_column, wanted_columns
+from reduction.ingest.fields import read_fields
+from reduction.ingest.growing import GrowingLog
 from reduction.ingest.layout import Layout
+from reduction.ingest.parts import Parts
 from reduction.ingest.preamble import check_units, keep_line
 from reduction.ingest.rawlog import RawLog
-from reduction.ingest.source import decode, read_bytes, source_of
+from reduction.ingest.source import unchanged
+from reduction.ingest.textparts import open_text
+from reduction.ingest.textrows import TextRows, line_starts, split_line
 
 __all__ = ["read_delimited"]
 
-_PIECE = 1 << 17  # stays in the cache
-_LINE_ENDS = (b"\n", b"\r", b"\x1a")  # the last one is what DOS ends a file with
+_LINE = 1 << 12  # bytes that most lines of a header have at most
 
 
 @dataclass
@@ -32,15 +35,15 @@ class _Head:
     units: list[str] = field(default_factory=list)
     unit_row: int | None = None
     metadata: dict[str, str] = field(default_factory=dict)
+    last_row: int = 0
+    """Editor's row of the last line that is not blank."""
     first_line: str = ""
     """First data row."""
-    start: int = 0
-    """Place of its first byte."""
     first_row: int = 0
     """Its editor's row."""
 
 
-def read_delimited(path: Path, layout: Layout, *, name: str) -> RawLog:
+def read_delimited(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
     """Read a delimited text log.
 
     Parameters
@@ -51,6 +54,8 @@ def read_delimited(path: Path, layout: Layout, *, name: str) -> RawLog:
         What it looks like.
     name : str
         File name relative to the campaign folder.
+    parts : Parts, optional
+        How much of it is read at a time.
 
     Returns
     -------
@@ -61,59 +66,55 @@ def read_delimited(path: Path, layout: Layout, *, name: str) -> RawLog:
     ------
     LogError
         If the file is not what the layout says, naming row and channel.
+    DataError
+        If the disk is full.
     """
-    raw = read_bytes(path)
-    with ThreadPoolExecutor(1) as worker:  # hashing needs no interpreter lock
-        source = worker.submit(source_of, raw, name)
-        data = _tidy(decode(path, raw, layout.encoding), layout)
-        head = _read_head(path, data, layout)
-        rows = _data_rows(path, data, head, layout)
-        n_fields = _count_fields(path, head, layout)
-        wanted = []
-        names = head.names or [""] * n_fields
-        for want in wanted_columns(layout):
-            place = find_column(path, want, names[:n_fields], row=head.name_row)
-            wanted.append((want, place))
-        check_units(path, wanted, names=names, units=head.units, unit_row=head.unit_row)
-        columns, text, rows = read_fields(rows, layout, wanted, n_fields)
-        n_rows = check_lengths(path, columns)
-        row = rows.rows(n_rows)
+    head = _Head()
+    log: GrowingLog | None = None
+    wanted: list[tuple[Wanted, int]] = []
+    n_fields = 0
+    with unchanged(path), open_text(path, layout.encoding, parts or Parts()) as file:
+        for part in file:
+            text, row = _tidy(part.text, layout), part.first_row
+            if log is None:
+                begin = _read_head(head, text, row, layout)
+                if begin is None:
+                    continue
+                text, row = text[begin:], head.first_row
+                n_fields = _count_fields(path, head, layout)
+                wanted = _find_columns(path, head, layout, n_fields)
+                log = GrowingLog([want for want, _ in wanted], file.folder)
+            rows = TextRows(path, layout, text, row, is_open=part.is_open)
+            rows = _without_comments(rows, head.metadata)
+            log.add(read_fields(rows, wanted, n_fields), row)
+        if log is None:
+            raise _no_rows(path, head)
+        columns = log.finish(path, layout)
+        source = file.source(name)
     return RawLog(
-        source=source.result(),
+        source=source,
         columns=columns,
-        text=text,
-        first_row=head.first_row if row is None else int(row[0]),
-        row=row,
-        n_rows_read=n_rows,
+        text=log.text,
+        first_row=log.first_row,
+        row=log.row,
+        n_rows_read=check_lengths(path, columns),
         metadata=head.metadata,
     )
 
 
-def _tidy(data: bytes, layout: Layout) -> bytes:
-    """One kind of line end, and one blank between fields where blanks part them."""
-    if b"\r" in data and _has_lone_return(data):
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    if layout.delimiter == " ":
-        data = re.sub(rb"[ \t]+", b" ", data)
-        data = re.sub(rb"(?m)^ | (?=\r?$)", b"", data)
-    return data
+def _tidy(text: memoryview, layout: Layout) -> memoryview:
+    """One blank between fields where blanks part them."""
+    if layout.delimiter != " ":
+        return text
+    single = re.sub(rb"[ \t]+", b" ", text)
+    return memoryview(re.sub(rb"(?m)^ | (?=\r?$)", b"", single))
 
 
-def _has_lone_return(data: bytes) -> bool:
-    """Whether a carriage return stands without a line feed after it."""
-    codes = np.frombuffer(data + b"\0", np.uint8)
-    pieces = (codes[start : start + _PIECE + 1] for start in range(0, len(data), _PIECE))
-    return any(np.any((piece[:-1] == ord("\r")) & (piece[1:] != ord("\n"))) for piece in pieces)
-
-
-def _read_head(path: Path, data: bytes, layout: Layout) -> _Head:
-    head = _Head()
-    place, row = 0, 0
-    while place < len(data):
-        start, row = place, row + 1
-        end = data.find(b"\n", start)
-        place = len(data) if end < 0 else end + 1
-        line = data[start:place].decode("utf-8").strip("\r\n")
+def _read_head(head: _Head, text: memoryview, first_row: int, layout: Layout) -> int | None:
+    """Take in lines above the data; place of the first data row, None where it is not there."""
+    for row, (place, line) in enumerate(_lines(text), first_row):
+        if line.strip():
+            head.last_row = row
         if row <= layout.preamble_rows or (layout.comment and line.startswith(layout.comment)):
             keep_line(head.metadata, line, row, layout)
         elif not line.strip():
@@ -123,12 +124,29 @@ def _read_head(path: Path, data: bytes, layout: Layout) -> _Head:
         elif layout.has_unit_row and not head.units:
             head.units, head.unit_row = split_line(line, layout), row
         else:
-            head.first_line, head.start, head.first_row = line, start, row
-            return head
-    raise LogError(
+            head.first_line, head.first_row = line, row
+            return place
+    return None
+
+
+def _lines(text: memoryview) -> Iterator[tuple[int, str]]:
+    """Lines one by one with the place of each; those that are not asked for cost nothing."""
+    place, length = 0, _LINE
+    while place < len(text):
+        line, end, _ = bytes(text[place : place + length]).partition(b"\n")
+        if not end and place + length < len(text):
+            length *= 2
+            continue
+        yield place, line.decode("utf-8").strip("\r")
+        place, length = place + len(line) + 1, _LINE
+
+
+def _no_rows(path: Path, head: _Head) -> LogError:
+    row = head.last_row
+    return LogError(
         path,
         "there are no data rows",
-        row=row,
+        row=row or None,
         found=f"{row} lines above them" if row > 1 else "one line above them",
         needed="at least one row below the header",
         hint="Check preamble_rows, has_name_row and has_unit_row of the layout.",
@@ -151,24 +169,38 @@ def _count_fields(path: Path, head: _Head, layout: Layout) -> int:
     return n_fields
 
 
-def _data_rows(path: Path, data: bytes, head: _Head, layout: Layout) -> TextRows:
-    end = len(data)
-    while data[end - 1 : end] in _LINE_ENDS:
-        end -= 1
-    text = memoryview(data)[head.start : end]
-    comment = layout.comment.encode()
-    if not comment or data.find(comment, head.start) < 0:
-        return TextRows(path, text, head.first_row, quote=layout.quote)
-    starts = line_starts(text)
-    lengths = np.diff(starts, append=len(text))
+def _find_columns(
+    path: Path, head: _Head, layout: Layout, n_fields: int
+) -> list[tuple[Wanted, int]]:
+    """Each declared column with its place, found in the header and in the declared unit."""
+    names = head.names or [""] * n_fields
+    wanted = [
+        (want, find_column(path, want, names[:n_fields], row=head.name_row))
+        for want in wanted_columns(layout)
+    ]
+    check_units(path, wanted, names=names, units=head.units, unit_row=head.unit_row)
+    return wanted
+
+
+def _without_comments(rows: TextRows, metadata: dict[str, str]) -> TextRows:
+    """Rows without the comment lines between them, which are kept as metadata."""
+    comment = rows.layout.comment.encode()
+    if not comment or comment not in bytes(rows.text):
+        return rows
+    starts = line_starts(rows.text)
+    lengths = np.diff(starts, append=len(rows.text))
     is_comment = np.zeros(starts.size, dtype=bool)
-    for match in re.finditer(rb"(?m)^" + re.escape(comment) + rb".*", text):
+    for match in re.finditer(rb"(?m)^" + re.escape(comment) + rb".*", rows.text):
         line = int(np.searchsorted(starts, match.start()))
         is_comment[line] = True
-        keep_line(
-            head.metadata, match[0].decode("utf-8").rstrip("\r"), head.first_row + line, layout
-        )
-    kept = np.frombuffer(text, np.uint8)[np.repeat(~is_comment, lengths)]
-    line_row = np.flatnonzero(~is_comment) + head.first_row
-    body = memoryview(kept.tobytes().rstrip(b"\r\n"))
-    return TextRows(path, body, head.first_row, line_row, layout.quote)
+        text = match[0].decode("utf-8").rstrip("\r")
+        keep_line(metadata, text, rows.row_of_line(line), rows.layout)
+    kept = np.frombuffer(rows.text, np.uint8)[np.repeat(~is_comment, lengths)]
+    return TextRows(
+        rows.path,
+        rows.layout,
+        memoryview(kept.tobytes().rstrip(b"\r\n")),
+        rows.first_row,
+        np.flatnonzero(~is_comment) + rows.first_row,
+        is_open=rows.is_open and not is_comment[-1],
+    )

@@ -6,12 +6,9 @@ as text, column by column, so that the first offending field can be named by its
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import pyarrow as pa  # type: ignore[import-untyped]
@@ -19,113 +16,44 @@ import pyarrow.compute as pc  # type: ignore[import-untyped]
 import pyarrow.csv as pa_csv  # type: ignore[import-untyped]
 
 from reduction.errors import LogError
-from reduction.ingest.clock import clock_to_seconds
 from reduction.ingest.columns import Wanted, without_marks
-from reduction.ingest.layout import CLOCK, Layout
+from reduction.ingest.layout import CLOCK
+from reduction.ingest.textrows import TextRows, count_lines, split_line
 from reduction.record import Floats, Integers
 
-__all__ = ["TextRows", "count_lines", "line_starts", "read_fields", "split_line"]
-
-_PIECE = 1 << 17  # stays in the cache
-_WORKERS = 4
-_NEWLINE = 10
+__all__ = ["Fields", "read_fields"]
 
 
 @dataclass(frozen=True)
-class TextRows:
-    """Data rows of a text file, in UTF-8, without header and comments.
+class Fields:
+    """Declared columns of delimited rows.
 
     Parameters
     ----------
-    path : pathlib.Path
-        For messages.
-    text : memoryview
-        The bytes, without line ends after the last row.
-    first_row : int
-        Editor's row of the first line.
-    line_row : ndarray of int, shape (n_lines,), optional
-        Editor's row of each line where they are not consecutive.
-    quote : str
-        Quote character, or empty text.
+    numbers : dict of str to list of ndarray
+        By channel key, in the file's unit, in pieces one after another; declared missing
+        marks are NaN.
+    clock : dict of str to list of str
+        Text of the channels that are a clock.
+    n_rows : int
+        Data rows.
+    row : ndarray of int, shape (n_rows,), optional
+        Editor's row of each where they are not those of consecutive lines.
     """
 
-    path: Path
-    text: memoryview
-    first_row: int
-    line_row: Integers | None = None
-    quote: str = '"'
-
-    def row_of_line(self, line: int) -> int:
-        """Editor's row of a line counted from 0."""
-        return self.first_row + line if self.line_row is None else int(self.line_row[line])
-
-    def rows(self, n_rows: int) -> Integers | None:
-        """Editor's row of each data row, or None where they are consecutive.
-
-        Raises
-        ------
-        LogError
-            If a quoted field goes over the end of its line.
-        """
-        n_lines = count_lines(self.text)
-        if n_lines == n_rows:
-            return self.line_row
-        starts = line_starts(self.text)
-        body = np.frombuffer(self.text, np.uint8)[starts]
-        filled = np.flatnonzero((body != _NEWLINE) & (body != ord("\r")))
-        if filled.size != n_rows:
-            lines = bytes(self.text).split(b"\n")
-            mark = self.quote.encode()
-            odd = (line for line, text in enumerate(lines) if mark and text.count(mark) % 2)
-            raise LogError(
-                self.path,
-                "a quoted field goes over the end of its line",
-                row=self.row_of_line(next(odd, 0)),
-                found=f"{filled.size} lines that make {n_rows} rows",
-                needed="one line a row",
-                hint="Close the quote, or declare another quote character in the layout.",
-            )
-        return filled + self.first_row if self.line_row is None else self.line_row[filled]
+    numbers: dict[str, list[Floats]]
+    clock: dict[str, list[str]]
+    n_rows: int
+    row: Integers | None
 
 
-def count_lines(text: memoryview) -> int:
-    """Number of lines; the last one needs no line end."""
-    bytes_ = np.frombuffer(text, np.uint8)
-    pieces = (bytes_[start : start + _PIECE] for start in range(0, bytes_.size, _PIECE))
-    return int(sum(np.count_nonzero(piece == _NEWLINE) for piece in pieces)) + 1
-
-
-def line_starts(text: memoryview) -> Integers:
-    """Place of the first byte of each line, shape (n_lines,)."""
-    return np.concatenate([[0], np.flatnonzero(np.frombuffer(text, np.uint8) == _NEWLINE) + 1])
-
-
-def split_line(line: str, layout: Layout) -> list[str]:
-    """Fields of one line, without quotes and the blanks around them."""
-    reader = csv.reader(
-        [line],
-        delimiter=layout.delimiter,
-        quotechar=layout.quote or None,
-        quoting=csv.QUOTE_MINIMAL if layout.quote else csv.QUOTE_NONE,
-    )
-    try:
-        fields = next(reader, [])
-    except csv.Error:  # a field longer than the csv module takes
-        fields = line.split(layout.delimiter)
-    return [field.strip() for field in fields]
-
-
-def read_fields(
-    rows: TextRows, layout: Layout, wanted: Sequence[tuple[Wanted, int]], n_fields: int
-) -> tuple[dict[str, Floats], dict[str, tuple[str, ...]], TextRows]:
+def read_fields(rows: TextRows, wanted: Sequence[tuple[Wanted, int]], n_fields: int) -> Fields:
     """Declared columns of delimited rows: numbers, and the text of a clock.
 
     Parameters
     ----------
     rows : TextRows
         What to parse.
-    layout : Layout
-        Separators and missing marks.
     wanted : sequence of (Wanted, int)
         Each column with its place from 0.
     n_fields : int
@@ -133,12 +61,8 @@ def read_fields(
 
     Returns
     -------
-    columns : dict of str to ndarray, shape (n_rows,)
-        In the file's unit; declared missing marks are NaN.
-    text : dict of str to tuple of str
-        Clock text.
-    rows : TextRows
-        What was parsed: lines of blanks alone are empty in it.
+    fields : Fields
+        Of no rows where the lines are blank.
 
     Raises
     ------
@@ -146,64 +70,71 @@ def read_fields(
         Naming row and channel of the first field that is neither a number nor a
         declared missing mark, or the first row with another number of fields.
     """
-    clocks = [place for want, place in wanted if want.unit == CLOCK]
-    has_thousands = bool(layout.thousands) and (
-        re.search(re.escape(layout.thousands.encode()), rows.text) is not None
-    )
-    columns: dict[str, Floats] = {}
-    text: dict[str, tuple[str, ...]] = {}
     try:
-        table = _parse(rows, layout, n_fields, [place for _, place in wanted], clocks)
-    except pa.ArrowInvalid:
-        table, rows = None, _blank_to_empty(rows, layout)
-    if table is None or has_thousands:
-        table = _parse_as_text(rows, layout, n_fields, [place for _, place in wanted])
-    with ThreadPoolExecutor(_WORKERS) as workers:  # fresh memory is slow to touch
-        numbers = dict(
-            zip(wanted, workers.map(lambda one: _filled(table, one[1]), wanted), strict=True)
-        )
+        return _read(rows, wanted, n_fields)
+    except LogError as error:
+        if error.row is not None:  # what is wrong further up is told first
+            read_fields(rows.above(error.row), wanted, n_fields)
+        raise
+
+
+def _read(rows: TextRows, wanted: Sequence[tuple[Wanted, int]], n_fields: int) -> Fields:
+    layout = rows.layout
+    places = [place for _, place in wanted]
+    clocks = [place for want, place in wanted if want.unit == CLOCK]
+    has_thousands = _has_thousands(rows)
+    if n_fields == 1 or has_thousands:  # a line of blanks would be a field, or one too few
+        rows = _blank_to_empty(rows)
+    table = None
+    if not has_thousands:
+        try:
+            table = _parse(rows, n_fields, places, clocks)
+        except pa.ArrowInvalid:
+            rows = _blank_to_empty(rows)
+    if not rows.text:
+        return Fields({want.key: [] for want, _ in wanted}, {}, 0, None)
+    if table is None:
+        table = _parse_as_text(rows, n_fields, places)
+    row = rows.rows(table.num_rows)
+    numbers: dict[str, list[Floats]] = {}
+    clock: dict[str, list[str]] = {}
     for want, place in wanted:
         column = table.column(str(place))
         if want.unit == CLOCK:
-            text[want.key] = tuple(field.strip() for field in column.to_pylist())
-            columns[want.key] = clock_to_seconds(
-                rows.path,
-                text[want.key],
-                channel=str(want.column),
-                missing=layout.missing,
-                row=rows.rows(len(column)),
-                first_row=rows.first_row,
-            )
+            clock[want.key] = [field.strip() for field in column.to_pylist()]
             continue
-        values = numbers[want, place]
-        if values is None:
+        pieces = _numbers(column)
+        if pieces is None:
             if not pa.types.is_string(column.type):
-                column = _parse_as_text(rows, layout, n_fields, [place]).column(str(place))
-            values = _second_look(rows, layout, want, column)
-        columns[want.key] = without_marks(values, layout)
-    return columns, text, rows
+                column = _parse_as_text(rows, n_fields, [place]).column(str(place))
+            pieces = [_second_look(rows, row, want, column)]
+        numbers[want.key] = [without_marks(piece, layout) for piece in pieces]
+    return Fields(numbers, clock, table.num_rows, row)
 
 
-def _filled(table: pa.Table, place: int) -> Floats | None:
-    """Numbers of a parsed column, or None where it has to be looked at as text."""
-    column = table.column(str(place))
+def _numbers(column: pa.ChunkedArray) -> list[Floats] | None:
+    """Numbers of a parsed column in pieces, or None where it has to be looked at as text."""
     if pa.types.is_string(column.type):
         return None
-    values = np.empty(len(column))
-    start = 0
-    for piece in column.chunks:
-        part = values[start : start + len(piece)]
-        part[:] = piece.to_numpy(zero_copy_only=False)
+    pieces = []
+    for chunk in column.chunks:
+        piece = chunk.to_numpy(zero_copy_only=False)
         # arrow takes the words nan and inf for numbers; a log may not
-        if np.count_nonzero(np.isfinite(part)) != len(piece) - piece.null_count:
+        if np.count_nonzero(np.isfinite(piece)) != len(chunk) - chunk.null_count:
             return None
-        start += len(piece)
-    return values
+        pieces.append(piece)
+    return pieces
+
+
+def _has_thousands(rows: TextRows) -> bool:
+    mark = rows.layout.thousands.encode()
+    return bool(mark) and re.search(re.escape(mark), rows.text) is not None
 
 
 def _parse(
-    rows: TextRows, layout: Layout, n_fields: int, places: Sequence[int], as_text: Sequence[int]
+    rows: TextRows, n_fields: int, places: Sequence[int], as_text: Sequence[int]
 ) -> pa.Table:
+    layout = rows.layout
     names = [str(place) for place in range(n_fields)]
     types = {str(place): pa.string() if place in as_text else pa.float64() for place in set(places)}
     return pa_csv.read_csv(
@@ -223,41 +154,46 @@ def _parse(
     )
 
 
-def _parse_as_text(
-    rows: TextRows, layout: Layout, n_fields: int, places: Sequence[int]
-) -> pa.Table:
+def _parse_as_text(rows: TextRows, n_fields: int, places: Sequence[int]) -> pa.Table:
     try:
-        return _parse(rows, layout, n_fields, places, places)
+        return _parse(rows, n_fields, places, places)
     except pa.ArrowInvalid as error:
-        raise _ragged(rows, layout, n_fields, str(error)) from error
+        raise _ragged(rows, n_fields, str(error)) from error
 
 
-def _blank_to_empty(rows: TextRows, layout: Layout) -> TextRows:
+def _blank_to_empty(rows: TextRows) -> TextRows:
     """Lines of blanks alone made empty, so that they are no rows; line numbers stay."""
-    blank = rb"(?m)^[ \t]+(?=\r?$)" if layout.delimiter != "\t" else rb"(?m)^ +(?=\r?$)"
-    text = re.sub(blank, b"", rows.text).rstrip(b"\r\n")
-    return replace(rows, text=memoryview(text))
+    blank = rb"(?m)^[ \t]+(?=\r?$)" if rows.layout.delimiter != "\t" else rb"(?m)^ +(?=\r?$)"
+    text = re.sub(blank, b"", rows.text)
+    filled = text.rstrip(b"\r\n")
+    return replace(rows, text=memoryview(filled), is_open=rows.is_open and filled == text)
 
 
-def _ragged(rows: TextRows, layout: Layout, n_fields: int, message: str) -> LogError:
-    lines = bytes(rows.text).decode("utf-8").split("\n")
-    for line, text in enumerate(lines):
-        found = len(split_line(text, layout))
+def _ragged(rows: TextRows, n_fields: int, message: str) -> LogError:
+    """First row with another number of fields, or in which a quote is not closed."""
+    n_lines = count_lines(rows.text)
+    for line, text in enumerate(rows.lines()):
+        found = len(split_line(text, rows.layout))
         if text.strip("\r") and found != n_fields:
-            is_last = line == len(lines) - 1
+            is_cut_off = rows.is_open and line == n_lines - 1
             return LogError(
                 rows.path,
                 f"a row has {found} fields where the first has {n_fields}",
                 row=rows.row_of_line(line),
                 found=repr(text.strip()[:60]),
                 needed=f"{n_fields} fields",
-                hint="The log was cut off; remove its last line." if is_last else None,
+                hint="The log was cut off; remove its last line." if is_cut_off else None,
             )
-    return LogError(rows.path, "the rows cannot be told apart", found=message)
+        if error := rows.unclosed(line, text):
+            return error
+    return rows.not_told_apart(message)
 
 
-def _second_look(rows: TextRows, layout: Layout, want: Wanted, column: pa.ChunkedArray) -> Floats:
+def _second_look(
+    rows: TextRows, row: Integers | None, want: Wanted, column: pa.ChunkedArray
+) -> Floats:
     """Numbers of a text column, or a `LogError` that names its first bad field."""
+    layout = rows.layout
     trimmed = pc.utf8_trim_whitespace(column)
     is_missing = pc.is_in(trimmed, value_set=pa.array(layout.missing, pa.string()))
     point, mark = re.escape(layout.decimal), re.escape(layout.thousands)
@@ -274,12 +210,11 @@ def _second_look(rows: TextRows, layout: Layout, want: Wanted, column: pa.Chunke
             return np.asarray(values, dtype=np.float64)
         bad = int(infinite[0])
     found = trimmed[bad].as_py()
-    row = rows.rows(len(column))
     sample = f"12{layout.decimal}5"
     raise LogError(
         rows.path,
         "a value is not a number",
-        row=rows.first_row + bad if row is None else int(row[bad]),
+        row=rows.row_of_line(bad) if row is None else int(row[bad]),
         channel=str(want.column),
         found=repr(found) if found else "an empty field",
         needed=f"a decimal number such as {sample} in {want.unit}, or a declared missing mark",

@@ -12,9 +12,10 @@ import numpy as np
 
 from reduction.errors import LogError
 from reduction.ingest.columns import check_unit, wanted_columns
+from reduction.ingest.encoding import decode
 from reduction.ingest.layout import Layout
 from reduction.ingest.rawlog import RawLog
-from reduction.ingest.source import decode, read_bytes, source_of
+from reduction.ingest.source import read_bytes, source_of
 from reduction.ingest.table import matrix_table, read_columns
 from reduction.record import Floats
 

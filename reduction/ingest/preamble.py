@@ -9,8 +9,8 @@ from pathlib import Path
 
 from reduction.errors import LogError, SettingsError
 from reduction.ingest.columns import Wanted, check_unit
-from reduction.ingest.fields import split_line
 from reduction.ingest.layout import Layout
+from reduction.ingest.textrows import split_line
 from reduction.units import scale_to_si
 
 __all__ = ["check_units", "keep_line"]

@@ -12,6 +12,7 @@ from reduction.ingest.layout import Format, Layout
 from reduction.ingest.matlab import read_matlab
 from reduction.ingest.matrix import read_json
 from reduction.ingest.parquet import read_parquet
+from reduction.ingest.parts import Parts
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import unchanged
 from reduction.ingest.spreadsheet import read_spreadsheet
@@ -19,19 +20,21 @@ from reduction.ingest.tdms import read_tdms
 
 __all__ = ["read_log"]
 
-_READERS: dict[Format, Callable[..., RawLog]] = {
+_IN_PARTS: dict[Format, Callable[..., RawLog]] = {
     "delimited": read_delimited,
+}
+_WHOLE: dict[Format, Callable[..., RawLog]] = {
     "blocks": read_blocks,
-    "spreadsheet": read_spreadsheet,
     "tdms": read_tdms,
-    "matlab": read_matlab,
     "hdf5": read_hdf5,
     "parquet": read_parquet,
+    "spreadsheet": read_spreadsheet,
+    "matlab": read_matlab,
     "json": read_json,
 }
 
 
-def read_log(path: Path, layout: Layout, *, name: str) -> RawLog:
+def read_log(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
     """Read a log in its declared layout.
 
     Parameters
@@ -42,6 +45,9 @@ def read_log(path: Path, layout: Layout, *, name: str) -> RawLog:
         What it looks like.
     name : str
         File name relative to the campaign folder.
+    parts : Parts, optional
+        How much is read at a time, and from which length on columns lie on disk.  No number
+        depends on it.
 
     Returns
     -------
@@ -52,6 +58,10 @@ def read_log(path: Path, layout: Layout, *, name: str) -> RawLog:
     ------
     LogError
         If the file is not what the layout says, or changes while it is read.
+    DataError
+        If the scratch files of a long log do not fit on the disk.
     """
     with unchanged(path):
-        return _READERS[layout.format](path, layout, name=name)
+        if layout.format in _IN_PARTS:
+            return _IN_PARTS[layout.format](path, layout, name=name, parts=parts)
+        return _WHOLE[layout.format](path, layout, name=name)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from reduction.ingest.convert import to_record
 from reduction.ingest.layout import Layout
+from reduction.ingest.parts import Parts
 from reduction.ingest.read import read_log
 from reduction.provenance import Source
 from reduction.record import Record
@@ -22,6 +23,7 @@ def read_record(
     specimens: Sequence[str],
     quality: QualitySettings,
     length_needed: bool = True,
+    parts: Parts | None = None,
 ) -> tuple[Record, tuple[Source, ...]]:
     """Read the file or files of a test.
 
@@ -37,6 +39,8 @@ def read_record(
         When a sample is flagged.
     length_needed : bool
         As in `reduction.ingest.convert.to_record`.
+    parts : Parts, optional
+        How much of a file is read at a time.
 
     Returns
     -------
@@ -52,7 +56,9 @@ def read_record(
     SettingsError, DataError
         As in `reduction.ingest.convert.to_record`.
     """
-    logs = [(read_log(path, layout, name=name), layout) for path, layout, name in files]
+    logs = [
+        (read_log(path, layout, name=name, parts=parts), layout) for path, layout, name in files
+    ]
     record = to_record(
         logs, test_id=test_id, specimens=specimens, quality=quality, length_needed=length_needed
     )

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.errors import DataError
-from reduction.record import Floats
+from reduction.record import Floats, Integers
 
-__all__ = ["POINTS", "keep_extremes"]
+__all__ = ["POINTS", "keep_extremes", "with_gaps"]
 
 POINTS = 2000
 """Most points of one trace; a screen has fewer columns than that."""
@@ -72,6 +72,30 @@ def keep_extremes(coordinate: Floats, *channels: Floats, limit: int = POINTS) ->
             missing = np.flatnonzero(gap)
             kept.append(missing[np.flatnonzero(np.diff(interval[missing], prepend=-1))])
     return np.unique(np.concatenate(kept))
+
+
+def with_gaps(piece: Integers, *series: Floats) -> list[Floats]:
+    """Put a sample that is not there between pieces, so that no line is drawn across.
+
+    Parameters
+    ----------
+    piece : ndarray of int, shape (n_samples,)
+        Number of the piece that each sample is in.
+    *series : ndarray, shape (n_samples,)
+        What is drawn. [any]
+
+    Returns
+    -------
+    broken : list of ndarray, shape (n_samples + n_gaps,)
+        NaN in each gap. [as in series]
+
+    Examples
+    --------
+    >>> print(*with_gaps(np.array([0, 0, 1]), np.array([1.0, 2.0, 9.0])))
+    [ 1.  2. nan  9.]
+    """
+    places = np.flatnonzero(np.diff(piece)) + 1
+    return [np.insert(values, places, np.nan) for values in series]
 
 
 def _intervals(coordinate: Floats, n_intervals: int) -> NDArray[np.int64]:

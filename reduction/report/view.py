@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from reduction.record import Floats
+from reduction.record import Floats, Integers
 from reduction.units import UnitSystem
 
 __all__ = ["Status", "TestView", "all_specimens", "any_synthetic", "natural_order"]
@@ -98,6 +98,31 @@ class TestView:
         time = self.array("time")
         known = np.zeros(0) if time is None else time[np.isfinite(time)]
         return float(known[0]) if known.size else float("inf")
+
+    @property
+    def is_whole(self) -> bool:
+        """False where samples of some cycles alone are stored."""
+        return "sample_index" not in self.data
+
+    @property
+    def pieces(self) -> Integers:
+        """Piece of the record that each stored sample is in: between two, cycles are left out."""
+        index, first = self.array("sample_index"), self.array("cycle_first_sample")
+        if index is None or first is None:
+            return np.zeros(int(self.data.sizes.get("sample", 0)), dtype=np.int64)
+        begun, before = (
+            np.searchsorted(first, index[:-1], side="right"),
+            np.searchsorted(first, index[1:], side="left"),
+        )
+        return np.concatenate([[0], np.cumsum(before > begun)])
+
+    def stored_near(self, cycles: Floats) -> Floats:
+        """Numbers of cycles, each once; where samples of some alone are stored, the nearest."""
+        number = None if self.is_whole else self.array("cycle_number")
+        stored = np.zeros(0) if number is None else np.unique(number[number > 0])
+        if not stored.size:
+            return np.unique(cycles)
+        return np.unique(stored[np.abs(stored[:, None] - cycles).argmin(axis=0)])
 
     def attribute(self, name: str) -> str:
         """Global attribute as text; empty where there is none."""

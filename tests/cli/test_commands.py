@@ -342,7 +342,7 @@ def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
         "run", small / "raw" / "campaign.toml", "--test", "A", "--processed", "a.csv", cwd=small
     )
     assert done.returncode == 6
-    assert "a.csv/small/status.csv cannot be written; found Not a directory" in done.stderr
+    assert "a.csv/small/run.lock cannot be written; found Not a directory" in done.stderr
 
 
 @pytest.mark.parametrize(

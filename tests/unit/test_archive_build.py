@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from reduction.archive.build import build_dataset
+from reduction.archive.netcdf import write_netcdf
 from reduction.archive.schema import SCHEMA
 
 # 65,536 doubles are half a megabyte: a few milliseconds to read, and 1,526 chunks in 1e8 samples
@@ -44,3 +45,22 @@ def test_a_short_variable_is_not_cut(tmp_path):
     build_dataset(values, SCHEMA, attributes={}).to_netcdf(tmp_path / "short.nc", engine="netcdf4")
     with netCDF4.Dataset(tmp_path / "short.nc") as file:
         assert file["crosshead_position"].chunking() == "contiguous"
+
+
+@pytest.mark.parametrize("is_quantised", [True, False])
+def test_a_quantised_channel_is_stored_without_the_filter_that_would_make_it_larger(
+    is_quantised, tmp_path
+):
+    rng = np.random.default_rng(12)
+    tension = 400 + 100 * np.sin(np.arange(150_000) / 60) + rng.normal(0, 1, 150_000)
+    if is_quantised:
+        tension = np.round(tension / 1.085) * 1.085
+    dataset = build_dataset({"tension": np.stack([tension, tension])}, SCHEMA, attributes={})
+    sizes = {}
+    for shuffle in (True, False):
+        dataset["tension"].encoding["shuffle"] = shuffle
+        write_netcdf(dataset, tmp_path / "tried.nc")
+        sizes[shuffle] = (tmp_path / "tried.nc").stat().st_size
+    found = build_dataset({"tension": np.stack([tension, tension])}, SCHEMA, attributes={})
+    assert found["tension"].encoding["shuffle"] is (sizes[True] < sizes[False])
+    assert found["tension"].encoding["shuffle"] is not is_quantised

@@ -356,4 +356,23 @@ def test_rows_are_ascending_then_descending():
         [0.1, 0.2, 0.1], [1.0, 2.0, 1.0], cycle_number=[2, 2, 2], branch=[1, 1, 2],
         break_in_cycles=0,
     )  # fmt: skip
-    assert found.row.tolist() == [2, 2, 3] and found.cycle_number.tolist() == [1, 2]
+    assert found.row.tolist() == [0, 0, 1] and found.cycle_number.tolist() == [2]
+
+
+def test_cycles_without_samples_are_no_cycles_of_the_mean():
+    strain, branch, number = strokes(4, 801)
+    apart = np.array([0, 1, 2, 700, 90000])[number]
+    tension = 500 * strain
+    whole = measured_curve(strain, tension, loading="static", cycle_number=number, branch=branch)
+    found = measured_curve(
+        strain, tension, loading="static", cycle_number=apart, branch=branch, break_in_cycles=2
+    )
+    assert found.cycle_number.tolist() == [1, 2, 700, 90000] and found.cycles_pooled == 1
+    np.testing.assert_allclose(found.midline_tension, whole.midline_tension)
+    # the two after break-in alone
+    noise = np.where(apart <= 2, 1e3, 0.0)
+    later = measured_curve(
+        strain, tension + noise, loading="static", cycle_number=apart, branch=branch,
+        break_in_cycles=2,
+    )  # fmt: skip
+    np.testing.assert_allclose(later.midline_tension, whole.midline_tension)

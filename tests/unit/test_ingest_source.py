@@ -6,7 +6,8 @@ import pytest
 
 from reduction.errors import LogError, SettingsError
 from reduction.ingest import source
-from reduction.ingest.source import decode, hash_source, read_bytes, source_of, unchanged
+from reduction.ingest.encoding import decode
+from reduction.ingest.source import hash_source, read_bytes, source_of, unchanged
 
 
 @pytest.fixture

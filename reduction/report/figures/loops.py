@@ -29,7 +29,9 @@ def draw_loops(view: TestView) -> list[Figure]:
         return []
     in_strain = shown("strain", view.units)
     # the number on the samples, not the coordinate: a selection of cycles is still right
-    cycles = np.unique(np.array([1, (view.n_cycles + 1) // 2, view.n_cycles]))
+    wanted = np.array([1, (view.n_cycles + 1) // 2, view.n_cycles], dtype=np.float64)
+    cycles = view.stored_near(wanted).astype(int)
+    of_stored = "" if view.is_whole else " of those whose samples are stored"
     found = []
     for index, specimen in enumerate(view.specimens):
         data: list[Trace] = []
@@ -57,7 +59,7 @@ def draw_loops(view: TestView) -> list[Figure]:
             make_figure(
                 f"{view.key}-loops-{index}", f"{view.id}: loops, {specimen}",
                 f"{words.capitalize()} against strain of the splice-free length, first, middle and"
-                " last cycle; ascending solid, descending dashed.",
+                f" last cycle{of_stored}; ascending solid, descending dashed.",
                 data, synthetic=view.is_synthetic, height=400,
                 xaxis=axis(in_strain.label("strain")), yaxis=axis(in_load.label(words)),
             )

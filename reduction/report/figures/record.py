@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.record import Bools, Floats
-from reduction.report.decimate import POINTS, keep_extremes
+from reduction.record import Bools, Floats, Integers
+from reduction.report.decimate import POINTS, keep_extremes, with_gaps
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
 from reduction.report.style import PHASE_FILLS, Shown, colour, plot_text, shown
 from reduction.report.view import TestView
@@ -50,6 +50,7 @@ def draw_record(view: TestView) -> list[Figure]:
     if time[-1] - time[0] > LONG_RECORD:
         time, in_time = time / SECONDS_IN_AN_HOUR, Shown("h", 1.0)
     data: list[Trace] = []
+    pieces = view.pieces
     position = position_of(view)
     if position is not None:
         words, values = position
@@ -57,8 +58,8 @@ def draw_record(view: TestView) -> list[Figure]:
         kept = keep_extremes(time, values)
         data.append(
             line(
-                time[kept], values[kept] * length.factor, name=words, colour="#8C8C8C",
-                width=1.2, x_digits=TIME_DIGITS, yaxis="y2",
+                *with_gaps(pieces[kept], time[kept], values[kept] * length.factor), name=words,
+                colour="#8C8C8C", width=1.2, x_digits=TIME_DIGITS, yaxis="y2",
             )
         )  # fmt: skip
         flags = view.array("crosshead_position_quality_flag")
@@ -70,8 +71,8 @@ def draw_record(view: TestView) -> list[Figure]:
         force = tension[index] * in_tension.factor
         data.append(
             line(
-                time[kept], force[kept], name=f"tension, {specimen}", colour=colour(index),
-                width=1.2, x_digits=TIME_DIGITS,
+                *with_gaps(pieces[kept], time[kept], force[kept]), name=f"tension, {specimen}",
+                colour=colour(index), width=1.2, x_digits=TIME_DIGITS,
             )
         )  # fmt: skip
         of_specimen = None if flags is None else flags[index]
@@ -98,6 +99,7 @@ def draw_record(view: TestView) -> list[Figure]:
         + ". Marks are flagged samples; flags that hold for whole stretches"
         + " (rate not constant, resampled, extrapolated) can be switched on in the legend."
     )
+    caption += _of_part(view)
     if time.shape[0] > POINTS:
         caption += (
             f" The {time.shape[0]:,} samples are thinned out so that the least and the greatest"
@@ -123,25 +125,27 @@ def draw_tension_position(view: TestView) -> list[Figure]:
         return []
     words, values = position
     length, force = shown("length", view.units), shown("tension", view.units)
-    number = view.array("cycle_number")
+    number, pieces = view.array("cycle_number"), view.pieces
     drawn = np.zeros(0)
     data: list[Trace] = []
     for index, specimen in enumerate(view.specimens):
         kept: NDArray[np.intp]
         if time.shape[0] <= 2 * POINTS or number is None or view.n_cycles == 0:
             kept = keep_extremes(time, values, tension[index], limit=2 * POINTS)
-            x, y = values[kept], tension[index][kept]
+            x, y = with_gaps(pieces[kept], values[kept], tension[index][kept])
         else:
             # a polygon through the extremes of many cycles is no loop: draw whole ones
-            drawn = np.unique(np.geomspace(1, view.n_cycles, WHOLE_CYCLES).round())
-            pieces = [number == 0, *(number == cycle for cycle in drawn)]
-            x, y = _pieces(time, values, tension[index], pieces)
+            drawn = view.stored_near(np.geomspace(1, view.n_cycles, WHOLE_CYCLES).round())
+            shown_parts = [number == 0, *(number == cycle for cycle in drawn)]
+            x, y = _pieces(time, values, tension[index], shown_parts, pieces)
         data.append(
             line(
                 x * length.factor, y * force.factor, name=specimen, colour=colour(index), width=1.0
             )
         )
-    caption = "Tension against crosshead position over the whole record, as logged."
+    caption = (
+        f"Tension against crosshead position over the whole record, as logged.{_of_part(view)}"
+    )
     if drawn.size:
         cycles = ", ".join(f"{cycle:.0f}" for cycle in drawn)
         caption = (
@@ -157,18 +161,29 @@ def draw_tension_position(view: TestView) -> list[Figure]:
     ]  # fmt: skip
 
 
+def _of_part(view: TestView) -> str:
+    """Return what a caption says where samples of some cycles alone are stored."""
+    if view.is_whole:
+        return ""
+    return (
+        f" Of the {view.scalar('n_rows_kept'):,.0f} samples {view.scalar('n_rows_stored'):,.0f}"
+        " are stored; the line is broken where cycles are left out."
+    )
+
+
 def _pieces(
-    time: Floats, values: Floats, tension: Floats, pieces: list[Bools]
+    time: Floats, values: Floats, tension: Floats, parts: list[Bools], pieces: Integers
 ) -> tuple[Floats, Floats]:
-    """Return the pieces one after another, a gap between."""
+    """Return the parts one after another, a gap between."""
     x: list[Floats] = []
     y: list[Floats] = []
-    for piece in pieces:
-        own = np.flatnonzero(piece)
+    for is_part in parts:
+        own = np.flatnonzero(is_part)
         if own.size:
-            # a jump in the index is another visit to the same phase
-            visit = np.split(own, np.flatnonzero(np.diff(own) > 1) + 1)
-            limit = max(POINTS // len(pieces) // len(visit), 20)
+            # a jump in the index is another visit to the same phase, and so is another piece
+            jumps = (np.diff(own) > 1) | (np.diff(pieces[own]) > 0)
+            visit = np.split(own, np.flatnonzero(jumps) + 1)
+            limit = max(POINTS // len(parts) // len(visit), 20)
             for part in visit:
                 kept = part[keep_extremes(time[part], values[part], tension[part], limit=limit)]
                 x += [values[kept], np.array([np.nan])]

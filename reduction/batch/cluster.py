@@ -1,0 +1,319 @@
+"""The tests of a campaign on the worker processes of Dask: of this machine, or the user's own."""
+
+from __future__ import annotations
+
+import logging
+import os
+import pickle
+import time
+import uuid
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from queue import Empty, SimpleQueue
+from threading import Lock
+from typing import Any, Generic, TypeVar
+
+import dask
+from distributed import Client, Future, KilledWorker, LocalCluster, get_worker
+
+from reduction import __version__
+from reduction.batch.executor import Ended, Task
+from reduction.errors import ReductionError, SettingsError, WorkerError
+
+__all__ = ["Cluster", "local_cluster", "users_cluster"]
+
+Result = TypeVar("Result")
+
+# how long a run waits for the first worker, and for one after the last was lost [s]
+PATIENCE = 60.0
+_LOOK = 1.0  # between two looks at whether scheduler and workers are there [s]
+_DEATHS = 1  # of workers at a test, before it is tried by itself
+
+
+# a worker may have several threads, and the netCDF library bears one
+_AT_WORK = Lock()
+
+
+class _Told(Generic[Result]):
+    """What a function gave, and which worker was asked."""
+
+    def __init__(self, value: Result, worker: str) -> None:
+        self.value = value
+        self.worker = worker
+
+
+class _Sent(Generic[Result]):
+    """Work that was sent to the scheduler, and how it was asked for."""
+
+    def __init__(self, order: Callable[[], Future[_Told[Result]]], test: str) -> None:
+        self.test = test
+        self.order: Callable[[], Future[_Told[Result]]] | None = order
+        self.future = order()
+        self.takes: tuple[_Sent[Any], ...] = ()
+
+    def result(self) -> Result:
+        return self.future.result().value
+
+    def again(self) -> None:
+        """Send it anew, with what it takes where that failed too."""
+        for one in self.takes:
+            if one.future.status != "finished":
+                one.again()
+        if self.order is not None:
+            self.future = self.order()
+
+    def let_go(self) -> None:
+        """Forget how it was asked for, and with it what the scheduler keeps for that."""
+        self.order, self.takes = None, ()
+
+
+class Cluster:
+    """Workers behind a scheduler of Dask; one test is at one worker at a time."""
+
+    is_elsewhere = True
+
+    def __init__(self, client: Client, n_workers: int) -> None:
+        self.begun: Callable[[str], None] = lambda test: None
+        self.n_workers = n_workers
+        self._client = client
+        self._run = uuid.uuid4().hex
+        self._number = 0
+        client.subscribe_topic(self._run, lambda event: self.begun(event[1]))
+
+    def send(self, value: Result) -> Task[Result]:
+        """Send a value once; a worker that is lost with it loses nothing."""
+        # a task and not a scattered value, which nobody could make again
+        return self.start(pickle.loads, pickle.dumps(value), stage="", test="")
+
+    def start(
+        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str
+    ) -> Task[Result]:
+        """Order a function of arguments at once; those without a stage come before others."""
+
+        def order() -> Future[_Told[Result]]:
+            self._number += 1
+            given = [one.future if isinstance(one, _Sent) else one for one in arguments]
+            return self._client.submit(
+                _work, __version__, self._run if stage else "", test, function, *given,
+                key=f"{stage or 'small'}-{self._run}-{self._number}", pure=False,
+                priority=0 if stage else 10,
+            )  # fmt: skip
+
+        sent = _Sent(order, test)
+        sent.takes = tuple(one for one in arguments if isinstance(one, _Sent))
+        return sent
+
+    def ended(self, tasks: Iterable[Task[Result]]) -> Iterator[Ended[Result]]:
+        """Give what the tasks gave, as they end; those at which workers died come last."""
+        deadly: list[_Sent[Result]] = []
+        for task in self._as_they_end(tasks):
+            if isinstance(self._error_of(task), KilledWorker):
+                deadly.append(task)
+            else:
+                yield self._told(task)
+        for task in deadly:
+            # by itself: it may only have been beside another at which they died
+            task.again()
+            for one in self._as_they_end([task]):
+                yield self._told(one)
+
+    def _told(self, task: _Sent[Result]) -> Ended[Result]:
+        error = self._error_of(task)
+        task.let_go()
+        if error is None:
+            told = task.future.result()
+            return Ended(task.test, told.value, worker=told.worker)
+        if not isinstance(error, KilledWorker):
+            raise error
+        died = WorkerError(
+            "every worker that began this test died at it",
+            found=f"{_DEATHS + 1} workers or more lost, also with no other test beside it",
+            needed="workers that live as long as a test takes",
+            hint="Most often the memory did not suffice: take fewer workers (--jobs), or workers "
+            "with more memory.",
+        )
+        return Ended(task.test, None, died)
+
+    def _as_they_end(self, tasks: Iterable[Task[Result]]) -> Iterator[_Sent[Result]]:
+        ended: SimpleQueue[_Sent[Result]] = SimpleQueue()
+        open_tasks = 0
+        for task in tasks:
+            if isinstance(task, _Sent):
+                task.future.add_done_callback(lambda _, one=task: ended.put(one))
+                open_tasks += 1
+        last_seen = time.monotonic()
+        while open_tasks:
+            try:
+                task = ended.get(timeout=_LOOK)
+            except Empty:
+                last_seen = self._look(last_seen)
+                continue
+            open_tasks -= 1
+            last_seen = time.monotonic()
+            yield task
+
+    def _look(self, last_seen: float) -> float:
+        """Refuse to wait for workers that do not come."""
+        if self._client.status != "running":
+            raise _scheduler_lost()
+        if self._client.nthreads():
+            return time.monotonic()
+        if time.monotonic() - last_seen > PATIENCE:
+            raise WorkerError(
+                "no worker is left",
+                found=f"none for {PATIENCE:.0f} s",
+                needed="a worker at the scheduler",
+                hint="Products that were finished are kept; start workers, and run again to go on.",
+            )
+        return last_seen
+
+    def _error_of(self, task: _Sent[Any]) -> BaseException | None:
+        """What a task ended with, where it is no result."""
+        status = task.future.status
+        if status == "finished":
+            return None
+        if status != "error":  # the client gives up what a lost scheduler knew
+            return _scheduler_lost()
+        error = task.future.exception()
+        if error is None or isinstance(error, (ReductionError, KilledWorker)):
+            return error
+        return WorkerError(
+            "a worker could not do what it was asked",
+            found=f"{type(error).__name__}: {error}",
+            needed=f"workers with reduction {__version__} and the packages of this environment",
+        )
+
+
+def _work(
+    version: str, topic: str, test: str, function: Callable[..., Result], *given: Any
+) -> _Told[Result]:
+    """Do what a task asks for, on a worker."""
+    worker = get_worker()
+    if version != __version__:
+        raise SettingsError(
+            f"the worker {worker.address} has another version of reduction",
+            found=__version__,
+            needed=version,
+        )
+    known = [one.value if isinstance(one, _Told) else one for one in given]
+    if not topic:
+        return _Told(function(*known), worker.address)
+    # xarray asks the scheduler for a lock at every variable where it finds itself on a worker;
+    # the file is this task's alone
+    with _AT_WORK, dask.config.set(scheduler="synchronous"):
+        worker.log_event(topic, test)
+        return _Told(function(*known), worker.address)
+
+
+def _scheduler_lost() -> WorkerError:
+    return WorkerError(
+        "the scheduler was lost",
+        hint="Products that were finished are kept; start it anew, and run again to go on.",
+    )
+
+
+@contextmanager
+def local_cluster(n_workers: int) -> Iterator[Cluster]:
+    """Start worker processes on this machine, and end them.
+
+    Parameters
+    ----------
+    n_workers : int
+        How many; they share the processors.
+
+    Yields
+    ------
+    cluster : Cluster
+        Reachable from this machine alone.
+
+    Raises
+    ------
+    WorkerError
+        If they do not start.
+    """
+    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    threads = str(max(1, (available or 1) // n_workers))
+    _silence()
+    settings = {
+        "distributed.scheduler.allowed-failures": _DEATHS,
+        "distributed.worker.daemon": True,
+    }
+    with dask.config.set(settings):
+        try:
+            cluster = LocalCluster(
+                n_workers=n_workers,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=None,
+                # as in one process, the system says when memory ends: a worker that waits for
+                # memory that it holds itself would wait for ever
+                memory_limit=0,
+                silence_logs=logging.CRITICAL,
+                env={"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": "1"},
+            )
+        except (OSError, RuntimeError, TimeoutError) as error:
+            raise WorkerError(
+                "worker processes cannot be started on this machine",
+                found=f"{type(error).__name__}: {error}",
+                hint="Run with --jobs 1, which needs none.",
+            ) from error
+        with cluster, Client(cluster, set_as_default=False) as client:
+            yield from _used(client, n_workers)
+
+
+@contextmanager
+def users_cluster(address: str) -> Iterator[Cluster]:
+    """Use the workers of a scheduler that runs already.
+
+    Parameters
+    ----------
+    address : str
+        ``tcp://HOST:PORT``.
+
+    Yields
+    ------
+    cluster : Cluster
+        Whose workers are left as they are.
+
+    Raises
+    ------
+    SettingsError
+        If no scheduler answers there.
+    WorkerError
+        If it has no worker.
+    """
+    _silence()
+    try:
+        client = Client(address, timeout=10, set_as_default=False)
+    except (OSError, ValueError, ImportError) as error:
+        raise SettingsError(
+            "no scheduler answers at the address of --scheduler",
+            found=f"{address}: {error}",
+            needed="the address that `dask scheduler` prints, tcp://HOST:PORT",
+        ) from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError as error:
+            raise WorkerError(
+                f"the scheduler {address} has no worker",
+                found=f"none for {PATIENCE:.0f} s",
+                needed=f"one started with `dask worker {address}`",
+            ) from error
+        yield from _used(client, len(client.nthreads()))
+
+
+def _used(client: Client, n_workers: int) -> Iterator[Cluster]:
+    cluster = Cluster(client, n_workers)
+    try:
+        yield cluster
+    finally:
+        # the futures of a run that was ended are let go with the client
+        with suppress(Exception):
+            client.unsubscribe_topic(cluster._run)
+
+
+def _silence() -> None:
+    """Keep what Dask says of lost workers off the terminal: the run says it in its own words."""
+    for name in ("distributed", "tornado.application", "asyncio"):
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)

@@ -1,0 +1,233 @@
+"""One run at a time on the products of a campaign."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import shlex
+import sys
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from reduction.errors import ArchiveError
+
+__all__ = ["LOCK_NAME", "RunLock", "run_lock"]
+
+LOCK_NAME = "run.lock"
+_BOOT = Path("/proc/sys/kernel/random/boot_id")
+_NAMESPACE = Path("/proc/self/ns/pid")
+
+
+@dataclass(frozen=True)
+class _Holder:
+    """Who holds a lock.
+
+    Names of processes are those of a host and of a space of its own in a container; one process
+    is told from a later one of the same number by its start, in ticks of a boot of the machine.
+    """
+
+    host: str
+    space: str
+    boot: str
+    pid: int
+    process_start: str
+    started: str
+    command: str
+    token: str
+
+    def __str__(self) -> str:
+        """Name who, where and since when."""
+        return f"'{self.command}', process {self.pid} on {self.host}, since {self.started}"
+
+
+@dataclass(frozen=True)
+class RunLock:
+    """A lock as the workers of a run know it."""
+
+    path: Path
+    token: str
+
+    def confirm(self) -> None:
+        """Refuse to go on where the lock is not this run's, or is not seen.
+
+        Raises
+        ------
+        ArchiveError
+            So that what is left of a run that was ended writes nothing into those of the next.
+        """
+        text = _text_of(self.path)
+        holder = _holder_in(text)
+        if holder is not None and holder.token == self.token:
+            return
+        raise ArchiveError(
+            f"{self.path} is not the lock of this run any more",
+            found="no such file on this machine" if text is None else str(holder or "another text"),
+            needed="a folder of products that every worker sees, and one run at a time on it",
+            hint="Products that were finished are kept; run again to go on.",
+        )
+
+
+@contextmanager
+def run_lock(folder: Path, *, remark: Callable[[str], None]) -> Iterator[RunLock]:
+    """Hold the folder of a campaign's products for one run.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Made where it is not there.
+    remark : callable
+        Told where the lock of a process that is no more was taken over.
+
+    Yields
+    ------
+    lock : RunLock
+        Given back at the end, however it comes about.
+
+    Raises
+    ------
+    ArchiveError
+        If another run holds it, or the folder cannot be written to.
+    """
+    path = folder / LOCK_NAME
+    own = _own()
+    new = [one for one in (folder, *folder.parents) if not one.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        _take(path, own, remark)
+        for part in folder.rglob(".*.part"):
+            part.unlink(missing_ok=True)  # begun by a run that was killed
+    except ArchiveError:
+        raise
+    except OSError as error:
+        raise ArchiveError(
+            f"{path} cannot be written",
+            found=error.strerror or str(error),
+            needed="a folder for products that this user may write to",
+        ) from error
+    try:
+        yield RunLock(path, own.token)
+    finally:
+        holder = _holder_in(_text_of(path))
+        with suppress(OSError):  # a disk that is gone keeps its lock, and the next run says so
+            if holder is not None and holder.token == own.token:
+                path.unlink()
+            for one in new:
+                one.rmdir()  # goes only where nothing was written
+
+
+def _take(path: Path, own: _Holder, remark: Callable[[str], None]) -> None:
+    for _ in range(100):
+        try:
+            # one of several that try at once makes the file, on NFS too
+            handle = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
+        except FileExistsError:
+            pass
+        else:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                json.dump(asdict(own), file, indent=1)
+                file.flush()
+                os.fsync(file.fileno())
+            return
+        text = _text_of(path)
+        if text is None:
+            continue  # given back in this moment
+        holder = _holder_in(text)
+        if holder is None or not _is_gone(holder, own):
+            raise _refusal(path, holder, own)
+        if _put_away(path, text):
+            remark(f"{path}: taken over from {holder}, which is no more")
+    raise _refusal(path, None, own)
+
+
+def _put_away(path: Path, text: str) -> bool:
+    """Remove the lock of a process that is gone; of several that try, one does."""
+    aside = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
+    try:
+        path.rename(aside)
+    except FileNotFoundError:
+        return False
+    if _text_of(aside) == text:
+        aside.unlink()
+        return True
+    # another was quicker, and this is its lock
+    with suppress(FileExistsError):
+        os.link(aside, path)
+    aside.unlink()
+    return False
+
+
+def _refusal(path: Path, holder: _Holder | None, own: _Holder) -> ArchiveError:
+    if holder is None:
+        hint = "Try again in a moment; if no run is at work there, delete the file."
+    elif (holder.host, holder.space) == (own.host, own.space):
+        hint = "Wait for it or end it; products that it finished are kept."
+    else:
+        hint = (
+            "Wait for it or end it there. If it is no more, which cannot be seen from "
+            f"{own.host}, delete the file."
+        )
+    return ArchiveError(
+        f"another run holds {path.parent}",
+        found=f"{path}: {'a text that is no lock' if holder is None else holder}",
+        needed="one run at a time on a folder of products",
+        hint=hint,
+    )
+
+
+def _own() -> _Holder:
+    return _Holder(
+        host=platform.node(),
+        space=_NAMESPACE.readlink().name if _NAMESPACE.is_symlink() else "",
+        boot=(_text_of(_BOOT) or "").strip(),
+        pid=os.getpid(),
+        process_start=_process_start(os.getpid()) or "",
+        started=datetime.now(UTC).isoformat(sep=" ", timespec="seconds"),
+        command=shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
+        token=uuid.uuid4().hex,
+    )
+
+
+def _is_gone(holder: _Holder, own: _Holder) -> bool:
+    """Whether the process of a lock is known to be no more."""
+    if (holder.host, holder.space) != (own.host, own.space) or os.name != "posix":
+        return False
+    if holder.boot != own.boot:
+        return True
+    if own.process_start:
+        return _process_start(holder.pid) != holder.process_start
+    try:
+        os.kill(holder.pid, 0)
+    except ProcessLookupError:
+        return True
+    except PermissionError:
+        return False  # of another user
+    return False
+
+
+def _process_start(pid: int) -> str | None:
+    """Start of a process in ticks since the boot; None where it ended or the system tells not."""
+    text = _text_of(Path(f"/proc/{pid}/stat"))
+    if text is None:
+        return None
+    # the name of the program, in brackets, may hold blanks and brackets
+    fields = text.rpartition(")")[2].split()
+    return None if fields[0] in "ZX" else fields[19]
+
+
+def _text_of(path: Path) -> str | None:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return None
+
+
+def _holder_in(text: str | None) -> _Holder | None:
+    try:
+        return _Holder(**json.loads(text or ""))
+    except (TypeError, ValueError):
+        return None

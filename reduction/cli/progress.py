@@ -1,0 +1,105 @@
+"""How far a campaign is, on standard error: one line a test, and a bar where a person waits."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from reduction.batch.status import TestStatus
+from reduction.cli.commandoutput import CommandOutput
+
+__all__ = ["CampaignProgress", "campaign_progress"]
+
+_MANY = 4  # tests at work that are named one by one
+
+
+class CampaignProgress:
+    """Tells a person how far a campaign is.
+
+    Parameters
+    ----------
+    bar : rich.progress.Progress, optional
+        On a terminal.
+    is_quiet : bool
+        Nothing is said, but remarks are.
+    """
+
+    def __init__(self, bar: Progress | None = None, *, is_quiet: bool = False) -> None:
+        self._bar = bar
+        self._is_quiet = is_quiet
+        self._task = None if bar is None else bar.add_task("", total=None)
+        self._stage, self._done, self._total = "", 0, 0
+        self._running: dict[str, None] = {}
+
+    def stage(self, name: str, n_tests: int) -> None:
+        """A stage begins."""
+        self._stage, self._done, self._total = name, 0, n_tests
+        self._running.clear()
+        if self._bar is not None and self._task is not None:
+            self._bar.reset(self._task, total=n_tests or None)
+        self._show()
+
+    def begun(self, test: str) -> None:
+        """Work on a test began."""
+        self._running[test] = None
+        self._show()
+
+    def ended(self, test: str, status: TestStatus | None = None) -> None:
+        """Work on a test ended: a line where it has a status."""
+        self._done += 1
+        self._running.pop(test, None)
+        self._show()
+        if status is None:
+            return
+        width = len(str(self._total))
+        words = [f"{self._done:{width}}/{self._total} {test} {status.status}"]
+        if status.status != "unchanged":
+            words.append(f"{status.seconds:.1f} s")
+        if status.worker:
+            words.append(status.worker)
+        if self._running:
+            words.append(f"at work: {self._at_work()}")
+        self._line(", ".join(words))
+
+    def remark(self, text: str) -> None:
+        """Something that a person should know."""
+        self._say(text)
+
+    def _at_work(self) -> str:
+        named = list(self._running)[:_MANY]
+        more = len(self._running) - len(named)
+        return ", ".join(named) + (f" and {more} more" if more else "")
+
+    def _show(self) -> None:
+        if self._bar is not None and self._task is not None:
+            words = escape(f"{self._stage} {self._at_work()}".rstrip())
+            self._bar.update(self._task, description=words, completed=self._done)
+
+    def _line(self, text: str) -> None:
+        if not self._is_quiet:
+            self._say(text)
+
+    def _say(self, text: str) -> None:
+        if self._bar is None:
+            sys.stderr.write(f"{text}\n")
+            sys.stderr.flush()
+        else:
+            self._bar.console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+@contextmanager
+def campaign_progress(output: CommandOutput) -> Iterator[CampaignProgress]:
+    """Lines on standard error, and a bar below them on a terminal; nothing where none is wanted."""
+    if not output.is_text or not sys.stderr.isatty():
+        yield CampaignProgress(is_quiet=not output.is_text)
+        return
+    columns = (
+        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
+    )  # fmt: skip
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        yield CampaignProgress(bar)
