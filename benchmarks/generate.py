@@ -11,7 +11,10 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pa_csv
 
+_BLOCK = 1_000_000
 RATE = 20.0
 RELAXED_FREE, RELAXED_SPLICES = 8.38, 3.88
 COMPLIANCE, EXPONENT = 0.004, 0.8
@@ -62,9 +65,11 @@ def _position(strain: np.ndarray, tension: np.ndarray) -> np.ndarray:
     return RELAXED_FREE * (1 + strain) + splices
 
 
-def columns(n_rows: int, *, per_cycle: int = 400, seed: int = 1) -> dict[str, np.ndarray]:
+def columns(
+    n_rows: int, *, first: int = 0, per_cycle: int = 400, seed: int = 1
+) -> dict[str, np.ndarray]:
     """Time [s], crosshead [ft] and two tensions [lbf] of ``n_rows`` samples at 20 Hz."""
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(seed + first)
     levels = list(HOLDS.values())
     set_up = [np.full(int(20 * RATE), levels[0])]
     for low, high in pairwise(levels):
@@ -73,8 +78,9 @@ def columns(n_rows: int, *, per_cycle: int = 400, seed: int = 1) -> dict[str, np
         np.linspace(levels[-1], levels[1], int(10 * RATE)),
         np.full(int(5 * RATE), levels[1]),
     ]
-    before = np.concatenate(set_up)[:n_rows]
-    step = np.arange(n_rows - before.size)
+    row, approach = np.arange(first, first + n_rows), np.concatenate(set_up)
+    before = approach[row[row < approach.size]]
+    step = row[row >= approach.size] - approach.size
     phase = (step % per_cycle) / per_cycle
     stroke = np.where(phase < 0.5, 2 * phase, 2 - 2 * phase)
     strain = np.concatenate([before, 0.75 + 0.5 * stroke])
@@ -83,7 +89,7 @@ def columns(n_rows: int, *, per_cycle: int = 400, seed: int = 1) -> dict[str, np
     load = _tension(strain, side)
     position = _position(strain, load) + rng.normal(0, 0.004, n_rows)
     table = {
-        "time_s": np.arange(n_rows) / RATE,
+        "time_s": row / RATE,
         "crosshead_ft": np.round(position / 0.0122) * 0.0122,
     }
     for name, scale in SPECIMENS.items():
@@ -105,13 +111,16 @@ def write_marks(path: Path) -> None:
 
 
 def write_csv(path: Path, n_rows: int) -> None:
-    """A log as CSV, about 33 bytes a row."""
-    table = columns(n_rows)
-    with path.open("w", encoding="ascii") as file:
-        file.write(",".join(table) + "\n")
-        for low in range(0, n_rows, 500_000):
-            rows = np.column_stack([values[low : low + 500_000] for values in table.values()])
-            np.savetxt(file, rows, fmt=["%.2f", "%.4f", "%.3f", "%.3f"], delimiter=",")
+    """A log as CSV, about 33 bytes a row; block by block, so that it may have any length."""
+    decimals = (2, 4, 3, 3)
+    names = list(columns(0))
+    schema = pa.schema([(name, pa.float64()) for name in names])
+    options = pa_csv.WriteOptions(quoting_header="none")
+    with pa_csv.CSVWriter(path, schema, write_options=options) as file:
+        for low in range(0, n_rows, _BLOCK):
+            table = columns(min(_BLOCK, n_rows - low), first=low)
+            rounded = [np.round(table[name], d) for name, d in zip(names, decimals, strict=True)]
+            file.write_table(pa.table(rounded, schema=schema))
 
 
 def write_campaign(folder: Path, *, n_rows: int) -> Path:

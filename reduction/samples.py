@@ -24,6 +24,7 @@ __all__ = [
     "ColumnWriter",
     "any_sample",
     "copied",
+    "count_samples",
     "empty_like",
     "finite_extremes",
     "first_sample",
@@ -148,28 +149,38 @@ def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArr
     return taken.reshape(*series.shape[:-1], *index.shape)
 
 
-def first_sample(where: Where, start: int, stop: int) -> int | None:
-    """First sample from ``start`` up to ``stop`` for which a condition on slices is true."""
+def first_sample(where: Where, start: int, stop: int, *samples: NDArray[Any]) -> int | None:
+    """First sample from ``start`` up to ``stop`` for which a condition on slices is true.
+
+    ``samples`` is what the condition reads.
+    """
     for low in range(start, stop, BLOCK):
         found = where(slice(low, min(low + BLOCK, stop)))
+        let_go(*samples)
         if found.any():
             return low + int(found.argmax())
     return None
 
 
-def last_sample(where: Where, start: int, stop: int) -> int | None:
+def last_sample(where: Where, start: int, stop: int, *samples: NDArray[Any]) -> int | None:
     """Last sample from ``start`` up to ``stop`` for which a condition on slices is true."""
     for high in range(stop, start, -BLOCK):
         low = max(high - BLOCK, start)
         found = where(slice(low, high))
+        let_go(*samples)
         if found.any():
             return high - 1 - int(found[::-1].argmax())
     return None
 
 
-def any_sample(where: Where, n_samples: int) -> bool:
+def any_sample(where: Where, n_samples: int, *samples: NDArray[Any]) -> bool:
     """Whether a condition on slices is true for any sample of a series."""
-    return first_sample(where, 0, n_samples) is not None
+    return first_sample(where, 0, n_samples, *samples) is not None
+
+
+def count_samples(where: NDArray[Any]) -> int:
+    """Samples of a series that are true, or not zero."""
+    return sum(int(np.count_nonzero(where[part])) for part in sample_blocks(where.size, where))
 
 
 def finite_extremes(series: NDArray[np.float64]) -> tuple[float, float]:

@@ -20,7 +20,14 @@ from reduction.ingest.quality import (
 )
 from reduction.ingest.stamps import bridge_stamps
 from reduction.record import Bools, Floats, Quality, Record
-from reduction.samples import any_sample, finite_extremes, first_sample, sample_blocks, zeros_like
+from reduction.samples import (
+    any_sample,
+    count_samples,
+    finite_extremes,
+    first_sample,
+    sample_blocks,
+    zeros_like,
+)
 from reduction.settings import QualitySettings
 from reduction.workers import run_blocks
 
@@ -105,10 +112,10 @@ def flag_record(
         record, quality_flag=tension_flag, crosshead_position_quality_flag=position_flag
     )
     found = [*record.notes, *notes]
-    first_lost = first_sample(no_stamp.__getitem__, 0, no_stamp.size)
+    first_lost = first_sample(no_stamp.__getitem__, 0, no_stamp.size, no_stamp)
     if first_lost is not None:
         found.append(
-            f"{_count(no_stamp)} rows have no time, first sample {first_lost + 1}: "
+            f"{count_samples(no_stamp)} rows have no time, first sample {first_lost + 1}: "
             "their time is that of even steps between the rows beside them, and their position is "
             "not used"
         )
@@ -144,13 +151,9 @@ def _set_all(flags: _Flags, mask: Quality) -> None:
         flags[part] |= np.uint16(mask)
 
 
-def _count(where: Bools) -> int:
-    return sum(int(np.count_nonzero(where[part])) for part in sample_blocks(where.size, where))
-
-
 def _missing(name: str, values: Floats) -> Bools:
     missing = find_missing(values)
-    if _count(missing) == missing.size:
+    if count_samples(missing) == missing.size:
         raise DataError(
             f"{name} holds no number", found=f"{values.size} missing values", needed="a channel"
         )
@@ -167,7 +170,7 @@ def _no_length(position: Floats, flags: _Flags) -> Bools:
     not_positive: Bools = zeros_like(position, dtype=bool)
     for part in sample_blocks(position.size, position, flags, not_positive):
         not_positive[part] = (position[part] <= 0) & (flags[part] == 0)
-    share = _count(not_positive) / position.size
+    share = count_samples(not_positive) / position.size
     if share > _IMPOSSIBLE_SHARE:
         raise DataError(
             "a pin-to-pin length is not positive",
@@ -182,7 +185,7 @@ def _no_length(position: Floats, flags: _Flags) -> Bools:
 
 def _any_reading(flags: _Flags) -> bool:
     """Whether any sample of a channel holds a number that can be used."""
-    return any_sample(lambda part: (flags[part] & _NO_READING) == 0, flags.size)
+    return any_sample(lambda part: (flags[part] & _NO_READING) == 0, flags.size, flags)
 
 
 def _check_usable(record: Record) -> None:
@@ -200,7 +203,7 @@ def _check_usable(record: Record) -> None:
     for name, load, flags in zip(
         record.specimens, record.tension, record.quality_flag, strict=True
     ):
-        if not any_sample(lambda part: load[part] != 0, load.size):  # noqa: B023
+        if not any_sample(lambda part: load[part] != 0, load.size, load):  # noqa: B023
             raise DataError(
                 f"tension of '{name}' is zero throughout",
                 found=f"{load.size} samples of 0 N",

@@ -124,7 +124,7 @@ class _Rise:
 def _rise_of(strain: Floats, tension: Floats, is_still: Callable[[slice], Bools] | None) -> _Rise:
     """Rising pieces up to the greatest strain; a standstill or an unloading ends a piece."""
     rise = _Rise()
-    first = first_sample(lambda part: np.isfinite(strain[part]), 0, strain.size)
+    first = first_sample(lambda part: np.isfinite(strain[part]), 0, strain.size, strain)
     if first is None:
         return rise
     end = _end_of_rise(strain, float(strain[first])) + 1

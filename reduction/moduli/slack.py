@@ -199,11 +199,13 @@ def slack_crossings(
         return (load[part] <= slack_tension) & np.isfinite(place[part])
 
     crossing, uncertainty, compliance, rate = np.full((4, 2), np.nan)
-    taut_first, taut_last = first_sample(is_taut, 0, load.size), last_sample(is_taut, 0, load.size)
+    taut_first, taut_last = (
+        find(is_taut, 0, load.size, load, place) for find in (first_sample, last_sample)
+    )
     if taut_first is None or taut_last is None:
         return SlackCrossings(crossing, uncertainty, compliance, rate, "the specimen is never taut")
-    before = last_sample(is_slack, 0, taut_first)
-    after = first_sample(is_slack, taut_last, load.size)
+    before = last_sample(is_slack, 0, taut_first, load, place)
+    after = first_sample(is_slack, taut_last, load.size, load, place)
     reasons = []
     if before is None:
         reasons.append("the record does not begin slack")

@@ -86,7 +86,7 @@ def stress_at_strain(
         found: Bools = np.isfinite(stretch[part]) & np.isfinite(load[part])
         return found if is_still is None else found & ~is_still(part)
 
-    begin = first_sample(known, 0, stretch.size)
+    begin = first_sample(known, 0, stretch.size, stretch, load)
     stress, uncertainty = np.full((2, len(levels)), np.nan)
     reasons = [""] * len(levels)
     for index, level in enumerate(levels):
@@ -94,6 +94,8 @@ def stress_at_strain(
             lambda part: known(part) & (stretch[part] >= level),  # noqa: B023
             0,
             stretch.size,
+            stretch,
+            load,
         )
         if reached is None or reached == begin:
             continue

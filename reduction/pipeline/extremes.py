@@ -263,7 +263,7 @@ def _first_rise(located: Located) -> dict[str, Samples]:
     found = {}
     for name, tension in zip(located.record.specimens, located.tension, strict=True):
         taut = _FIRST_RISE * max(finite_extremes(tension)[1], 0.0)
-        over = first_sample(lambda part: tension[part] > taut, 0, tension.size)  # noqa: B023
+        over = first_sample(lambda part: tension[part] > taut, 0, tension.size, tension)  # noqa: B023
         stop = 0 if over is None else over + 1
         rise = slice(max(stop - _MOST_KEPT, 0), stop)
         # copies, lest the whole record is kept with its first part

@@ -52,7 +52,7 @@ def _elastomers(
 
 def _first_finite(series: Floats) -> float:
     """First finite sample of a series; NaN where there is none."""
-    at = first_sample(lambda part: np.isfinite(series[part]), 0, series.size)
+    at = first_sample(lambda part: np.isfinite(series[part]), 0, series.size, series)
     return float("nan") if at is None else float(series[at])
 
 

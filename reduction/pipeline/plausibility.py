@@ -12,6 +12,7 @@ import numpy as np
 from reduction.cycles.product import Cycles, Loops
 from reduction.moduli.product import ModulusCurves
 from reduction.record import Floats
+from reduction.samples import count_samples, finite_extremes, over_intervals
 
 __all__ = ["plausibility_notes"]
 
@@ -63,7 +64,8 @@ def plausibility_notes(
         Empty for a test that is as tests are.
     """
     notes = []
-    for name, one in zip(specimens, np.fmax.reduce(strain, axis=1), strict=True):
+    greatest = [finite_extremes(one)[1] for one in strain]
+    for name, one in zip(specimens, greatest, strict=True):
         if one > _GREATEST_STRAIN:
             notes.append(
                 f"{name}: strain reaches {one:.4g}, which no specimen does; is the unit of "
@@ -85,9 +87,9 @@ def plausibility_notes(
 
 def _half_range(strain: Floats, cycles: Cycles) -> Floats:
     """Half the range of strain within each cycle."""
-    ends = np.column_stack([cycles.first, cycles.last]).ravel()
-    stop = int(ends[-1]) + 1
-    high, low = (reduce.reduceat(strain[:stop], ends)[::2] for reduce in (np.fmax, np.fmin))
+    high, low = (
+        over_intervals(extreme, strain, cycles.first, cycles.last) for extreme in (np.fmax, np.fmin)
+    )
     return np.asarray((high - low) / 2, dtype=np.float64)
 
 
@@ -157,7 +159,7 @@ def _waveform(cycles: Cycles, waveform: str) -> list[str]:
     n_samples = cycles.branch_last - cycles.branch_first + 1
     if waveform != "triangular" or np.median(n_samples) < _FEWEST_SAMPLES:
         return []
-    share = np.count_nonzero(cycles.is_constant_rate) / int(n_samples.sum())
+    share = count_samples(cycles.is_constant_rate) / int(n_samples.sum())
     if share >= _TRIANGULAR_SHARE:
         return []
     return [

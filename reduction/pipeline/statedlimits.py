@@ -15,6 +15,7 @@ import numpy as np
 from reduction.errors import SettingsError
 from reduction.pipeline.locate import Located
 from reduction.record import Floats
+from reduction.samples import finite_extremes, take_samples
 from reduction.uncertainty.product import InstrumentErrors
 
 __all__ = ["check_stated_errors"]
@@ -112,16 +113,19 @@ def _limits(located: Located, index: int, errors: InstrumentErrors) -> Iterator[
     if period.size:
         yield _Limit("lag", errors.lag, float(period.max()), "s", "the longest cycle")
     else:
-        most = _RECORD * float(np.ptp(record.time))
+        first, last = finite_extremes(record.time)
+        most = _RECORD * (last - first)
         yield _Limit("lag", errors.lag, most, "s", "a quarter of the record")
 
 
 def _periods(located: Located) -> Floats:
     """How long each cycle lasts; empty where there are none. [s]."""
     time, cycles = located.record.time, located.cycles
-    return np.empty(0) if cycles is None else np.asarray(time[cycles.last] - time[cycles.first])
+    if cycles is None:
+        return np.empty(0)
+    return np.asarray(take_samples(time, cycles.last) - take_samples(time, cycles.first))
 
 
 def _greatest(values: Floats) -> float:
-    known = np.abs(values[np.isfinite(values)])
-    return float(known.max()) if known.size else float("nan")
+    low, high = finite_extremes(values)
+    return max(-low, high) if low <= high else float("nan")

@@ -35,7 +35,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
+from reduction.phases.intervals import median_step
 from reduction.record import Floats, Integers, freeze_arrays
+from reduction.samples import take_samples
 
 __all__ = ["LAG_REFUSALS", "LagEstimate", "lag_by_turns"]
 
@@ -170,15 +172,16 @@ def _of_specimen(
     """Lag, its uncertainty, turns used, and code of the refusal."""
     # window and lag may each move by half a reach
     window = turns[:, None] + np.arange(-2 * reach, 2 * reach + 1)
-    turns = turns[np.isfinite(position[window] + tension[window]).all(axis=1)]
+    read = take_samples(position, window) + take_samples(tension, window)
+    turns = turns[np.isfinite(read).all(axis=1)]
     if turns.size < _FEWEST_TURNS:
         return np.nan, np.nan, turns.size, LAG_REFUSALS["few_turns"]
-    step, most = float(np.median(np.diff(time[turns[0] : turns[-1]]))), reach // 2
+    step, most = median_step(time[turns[0] : turns[-1]]), reach // 2
 
     def samples(seconds: Floats) -> Integers:
         return np.rint(np.clip(np.nan_to_num(seconds / step), -most, most)).astype(np.int64)
 
-    turns = turns + samples(_corners(time, position, turns, reach)[0] - time[turns])
+    turns = turns + samples(_corners(time, position, turns, reach)[0] - take_samples(time, turns))
     lags = []
     sharp, jump = np.empty(0), np.empty(0)
     later = 0
@@ -225,9 +228,10 @@ def _corners(
 ) -> tuple[Floats, Floats, Floats]:
     """Times of the corners of a series, their sharpness, and the jumps of its slope."""
     window = turns[:, None] + np.arange(-width, width + 1)
-    since = time[window] - time[turns][:, None]
-    root, sharp, jump = _crossing(since, series[window])
-    return time[turns] + root, sharp, jump
+    at_turn = take_samples(time, turns)
+    since = take_samples(time, window) - at_turn[:, None]
+    root, sharp, jump = _crossing(since, take_samples(series, window))
+    return at_turn + root, sharp, jump
 
 
 def _crossing(since: Floats, values: Floats) -> tuple[Floats, Floats, Floats]:
