@@ -240,7 +240,7 @@ def thinned(
     step = max(1, sum(block.size for block in rows()) // most)
     kept, before = [np.empty(0, dtype=np.intp)], 0
     for block in rows():
-        kept.append(block[-before % step :: step])
+        kept.append(block[-before % step :: step].copy())  # a view would keep the block
         before += block.size
     return np.concatenate(kept)
 

@@ -23,7 +23,7 @@ from reduction.cycles.product import Cycles, Loops
 from reduction.cycles.quantities import MEASURED, Waveform, quantities_of_cycles
 from reduction.cycles.readings import bridge_gaps, reading_noise
 from reduction.record import Floats, Integers
-from reduction.samples import empty_like, take_samples
+from reduction.samples import empty_like, let_go, take_samples
 from reduction.workers import run_blocks
 
 __all__ = ["close_loops"]
@@ -170,7 +170,7 @@ def close_loops(
             )
 
     samples = (time, tension, strain, measured)
-    run_blocks(measure_block, _blocks_of_cycles(cycles), samples=samples)
+    run_blocks(measure_block, cycles.blocks(_BLOCK), samples=samples)
     shape = (tension.shape[0], cycles.n_cycles)
     tables = {name: empty_like(tension, shape=shape) for name in _FIELDS}
     uncertainty = {
@@ -188,6 +188,7 @@ def close_loops(
         for name, column in values.items():
             tables[name][index] = column
             uncertainty[name][index] = errors[name]
+        let_go(measured, *tables.values(), *uncertainty.values())
     tables["cycle_start_time"][:] = begin
     tables["frequency"][:] = 1 / duration
     # a turn is known to one sample at each end of the cycle, evenly spread
@@ -203,7 +204,7 @@ def _sine_period(time: Floats, tension: Floats, cycles: Cycles, period: Floats) 
     hundred samples is known to a hundredth of one.
     """
     turns = np.empty(cycles.n_cycles)
-    blocks = _blocks_of_cycles(cycles)
+    blocks = cycles.blocks(_BLOCK)
 
     def find(block: slice) -> None:
         low, high = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
@@ -218,13 +219,3 @@ def _sine_period(time: Floats, tension: Floats, cycles: Cycles, period: Floats) 
     ends_run = np.append(cycles.last[:-1] != cycles.first[1:], True)
     last_turn[ends_run] = (turns + period)[ends_run]
     return mean_period(turns, cycles.first, cycles.last, last_turn=last_turn)
-
-
-def _blocks_of_cycles(cycles: Cycles) -> list[slice]:
-    """Runs of whole cycles of about `_BLOCK` samples together, one at least."""
-    number = (cycles.first - cycles.first[:1]) // _BLOCK
-    starts = np.flatnonzero(np.diff(number, prepend=-1))
-    return [
-        slice(int(start), int(stop))
-        for start, stop in zip(starts, [*starts[1:], cycles.n_cycles], strict=True)
-    ]

@@ -63,6 +63,15 @@ class Cycles:
         """Number of whole cycles."""
         return int(self.first.shape[0])
 
+    def blocks(self, n_samples: int) -> list[slice]:
+        """Runs of whole cycles of about so many samples together, one cycle at least."""
+        number = (self.first - self.first[:1]) // n_samples
+        starts = np.flatnonzero(np.diff(number, prepend=-1))
+        return [
+            slice(int(start), int(stop))
+            for start, stop in zip(starts, [*starts[1:], self.n_cycles], strict=True)
+        ]
+
 
 @dataclass(frozen=True)
 class Loops:

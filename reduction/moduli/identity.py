@@ -42,57 +42,72 @@ def _tension_change(
     first_tension = take_samples(tension, cycles.branch_first)
     known = np.isfinite(first_tension)
     reference = float(first_tension[known].mean()) if known.any() else 0.0
-    first, stop = int(cycles.first[0]), int(cycles.last[-1]) + 1
+    change = np.empty((cycles.n_cycles, 2))
 
-    def sum_block(block: int) -> tuple[int, Floats]:
-        """First cell of a block, and five sums in it and those after it."""
-        samples = slice(block, min(block + _BLOCK_SAMPLES, stop))
+    def fit_block(block: slice) -> None:
+        samples = slice(int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1)
         number, side = cycles.cycle_number[samples], cycles.branch[samples]
         branch = 2 * number + side - 3
         y = tension[samples] - reference
         u = (strain[samples] - begin[branch]) * per_stroke[branch]
-        used = (number > 0) & (side > 0) & np.isfinite(u) & np.isfinite(y)
+        used = (number > block.start) & (number <= block.stop) & (side > 0)
+        used &= np.isfinite(u) & np.isfinite(y)
         if not used.all():
             branch, side, u, y = branch[used], side[used], u[used], y[used]
-        if branch.size == 0:
-            return 0, np.zeros((5, 0))
         # a sample between two pieces goes to the one of higher strain on either branch, lest a
         # record in step with the cycles divide its branches differently
         at = n_pieces * u + np.where(side == 1, _TIE, -_TIE)
         # noise carries samples past the reversals: they belong to the end pieces
         piece = np.clip(at.astype(np.int32), 0, n_pieces - 1)
-        offset = int(branch.min()) * n_pieces
-        cell = branch * n_pieces + piece - offset
-        adds = sums_by_cell(cell, int(cell.max()) + 1)
-        return offset, np.stack([adds @ value for value in (np.ones_like(u), u, y, u * u, u * y)])
+        cell = (branch - 2 * block.start) * n_pieces + piece
+        adds = sums_by_cell(cell, (block.stop - block.start) * 2 * n_pieces)
+        sums = np.stack([adds @ value for value in (np.ones_like(u), u, y, u * u, u * y)])
+        own = _add_shared_reversals(
+            sums.reshape(5, -1, n_pieces), strain, tension, cycles, block, reference=reference
+        )
+        change[block] = _mean_slope(own, n_pieces)
 
-    sums = np.zeros((5, cycles.n_cycles * 2 * n_pieces))
     samples = (strain, tension, cycles.cycle_number, cycles.branch)
-    blocks = run_blocks(sum_block, range(first, stop, _BLOCK_SAMPLES), samples=samples)
-    for offset, of_block in blocks:
-        sums[:, offset : offset + of_block.shape[1]] += of_block
-    by_branch = sums.reshape(5, -1, n_pieces)
-    own = np.arange(2 * cycles.n_cycles).reshape(-1, 2)
+    run_blocks(fit_block, cycles.blocks(_BLOCK_SAMPLES), samples=samples)
+    return change, stroke
+
+
+def _add_shared_reversals(
+    by_branch: Floats,
+    strain: Floats,
+    tension: Floats,
+    cycles: Cycles,
+    block: slice,
+    *,
+    reference: float,
+) -> Floats:
+    """Sums by branch and piece with each reversal in both branches that it ends.
+
+    A reversal is labelled once.
+    """
+    own = np.arange(2 * block.start, 2 * block.stop).reshape(-1, 2)
     for reversal, u_there, piece_there in (
-        (cycles.branch_first, 0.0, 0),
-        (cycles.branch_last, 1.0, -1),
+        (cycles.branch_first[block], 0.0, 0),
+        (cycles.branch_last[block], 1.0, -1),
     ):
-        # a reversal is labelled once, and is the end of two branches
-        number = take_samples(cycles.cycle_number, reversal).astype(np.int64)
-        label = 2 * number + take_samples(cycles.branch, reversal) - 3
-        load = take_samples(tension, reversal)
-        shared = (label != own) & np.isfinite(take_samples(strain, reversal)) & np.isfinite(load)
+        label = 2 * cycles.cycle_number[reversal].astype(np.int64) + cycles.branch[reversal] - 3
+        load = tension[reversal]
+        shared = (label != own) & np.isfinite(strain[reversal]) & np.isfinite(load)
         y, one = load[shared] - reference, np.ones(np.count_nonzero(shared))
-        by_branch[:, own[shared], piece_there] += np.stack(
+        by_branch[:, own[shared] - own[0, 0], piece_there] += np.stack(
             [one, u_there * one, y, u_there * one, u_there * y]
         )
+    return by_branch
+
+
+def _mean_slope(sums: Floats, n_pieces: int) -> Floats:
+    """Mean over the pieces of each branch of the slope of tension on u, shape (n_cycles, 2)."""
     n, su, sy, suu, suy = sums
     with np.errstate(divide="ignore", invalid="ignore"):
         spread = suu - su * su / n
         slope = (suy - su * sy / n) / spread
         covered = (n >= _FEWEST_SAMPLES) & (spread >= _LEAST_SPREAD * n / (12 * n_pieces**2))
-    slope = np.where(covered, slope, np.nan)
-    return slope.reshape(cycles.n_cycles, 2, n_pieces).mean(axis=-1), stroke
+    return np.asarray(np.where(covered, slope, np.nan).mean(axis=-1).reshape(-1, 2))
 
 
 def _mean_over_cycles(residual: Floats) -> tuple[Floats, Floats]:
