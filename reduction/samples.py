@@ -49,7 +49,7 @@ BLOCK = 1 << 16
 Where = Callable[[slice], NDArray[np.bool_]]
 
 _ON_DISK_FROM = 1 << 20  # bytes; less is not worth a file
-_TAKEN = 1 << 9  # each sample that is touched brings 64 KB of its file into memory
+_TAKEN = 1 << 7  # each sample that is touched brings 64 KB of its file into memory
 
 
 class _ScratchMap(mmap.mmap):

@@ -194,6 +194,7 @@ def close_loops(
     # a turn is known to one sample at each end of the cycle, evenly spread
     step = duration / (cycles.last - cycles.first)
     uncertainty["frequency"][:] = step / duration**2 * np.sqrt(2 / 12)
+    let_go(*tables.values(), *uncertainty.values())
     return Loops(**tables, uncertainty=uncertainty)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from reduction.line.product import SlowPull
 from reduction.line.pullgrid import BREAK_SHARES, tension_grid
+from reduction.pipeline.shared.blocks import blocks_of_cycles, cycles_of_test
 from reduction.pipeline.shared.curves import of_curves, of_segments, rise_rates, strain_rates
 from reduction.pipeline.shared.cycles import of_cycles, of_ends, of_slips
 from reduction.pipeline.shared.holds import of_holds, of_pairs
@@ -21,6 +22,7 @@ from reduction.pipeline.shared.pulls import PullOrigin, of_pull, of_rest
 from reduction.pipeline.shared.ratio import of_ratios
 from reduction.product import ReducedTest
 from reduction.record import Floats, areas_of
+from reduction.samples import full_like, let_go
 from reduction.settings import CycleSettings
 from reduction.uncertainty.join import merged, renamed, stacked
 from reduction.uncertainty.product import Contributions, InstrumentErrors
@@ -107,25 +109,25 @@ def shared_uncertainty_of_cycles(
     """
     if test.loops is None:
         return {}
-    found = []
-    for index, one in enumerate(errors):
-        pull = None if pulls is None else pulls[index]
-        origin = pull_origins[index] if pull_origins else None
-        found.append(_of_cycles(test, index, one, cycles, pull, origin))
-    if not any(part.component for part in found):
-        return {}
-    # a specimen without a slow pull has no line: nothing is known of it, and nothing said
-    none = np.full(test.loops.mean_tension.shape[1:], np.nan)
-    names = dict.fromkeys(name for part in found for name in part.values)
-    return {
-        name: np.stack(
-            [
-                part.shared_standard_uncertainty(name) if name in part.values else none
-                for part in found
-            ]
-        )
-        for name in names
-    }
+    n_specimens, n_cycles = test.loops.mean_tension.shape
+    shared: dict[str, Floats] = {}
+    for block in blocks_of_cycles(n_cycles):
+        part = cycles_of_test(test, block)
+        for index, one in enumerate(errors):
+            pull = None if pulls is None else pulls[index]
+            origin = pull_origins[index] if pull_origins else None
+            found = _of_cycles(test, part, index, one, cycles, pull, origin)
+            for name in found.values if found.component else ():
+                spread = found.shared_standard_uncertainty(name)
+                if name not in shared:
+                    # a specimen without a slow pull has no line: nothing is known of it
+                    shared[name] = full_like(
+                        test.loops.mean_tension, np.nan,
+                        shape=(n_specimens, n_cycles, *spread.shape[1:]),
+                    )  # fmt: skip
+                shared[name][index, block] = spread
+        let_go(*shared.values())
+    return shared
 
 
 def _of_specimen(
@@ -173,27 +175,28 @@ def _of_specimen(
 
 def _of_cycles(
     test: ReducedTest,
+    part: ReducedTest,
     index: int,
     errors: InstrumentErrors,
     cycles: CycleSettings,
     pull: SlowPull | None,
     origin: PullOrigin | None,
 ) -> Contributions:
-    """Quantities of each cycle of a specimen; of its line where it has one."""
-    if test.loops is None or test.cycles is None:
+    """Quantities of each cycle of a part of a test; of its line where it has one."""
+    if part.loops is None or part.cycles is None or test.cycles is None:
         return Contributions(())
     model = test.strain_models[index]
-    of_loop = of_loops(test.loops, index, errors, model, test.cycles, cycles)
+    of_loop = of_loops(part.loops, index, errors, model, part.cycles, cycles)
     parts = [of_loop]
-    if test.end_moduli is not None:
-        parts += of_ends(test, index, errors, float(areas_of(test.specimens)[index]))
-    if test.line is not None and test.amplitude is not None and pull is not None:
+    if part.end_moduli is not None:
+        parts += of_ends(part, index, errors, float(areas_of(test.specimens)[index]))
+    if part.line is not None and test.amplitude is not None and pull is not None:
         rest = of_rest(
             pull, origin or PullOrigin(errors, model),
             np.asarray(test.amplitude.mean_tension[index]),
             of_loops(test.amplitude, index, errors, model, test.cycles, cycles),
         )  # fmt: skip
-        parts.append(of_line(test.line, test.loops, index, of_loop, rest))
+        parts.append(of_line(part.line, part.loops, index, of_loop, rest))
     return merged(parts)
 
 

@@ -16,13 +16,14 @@ from reduction.line.programme import BeddingIn, DynamicStiffness
 from reduction.line.tensile import TensilePull
 from reduction.moduli.product import PeakTrend
 from reduction.moduli.trend import FEWEST_CYCLES, slope_per_decade
+from reduction.pipeline.shared.blocks import blocks_of_cycles, cycles_of_test
 from reduction.pipeline.shared.loops import of_loops
 from reduction.product import ReducedTest
 from reduction.record import Floats
 from reduction.settings import CycleSettings
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import error_field
-from reduction.uncertainty.join import merged, stacked
+from reduction.uncertainty.join import merged, renamed, stacked
 from reduction.uncertainty.points import (
     chord_contributions,
     secant_contributions,
@@ -40,6 +41,11 @@ _DYNAMIC = {
 }
 """Means over the last cycles of a step, and the quantity of a cycle that they are of."""
 
+_OF_TREND = ("peak_tension", "apparent_spring_constant")
+_OF_STEP = (
+    "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude", "valley_tension",
+)  # fmt: skip
+
 
 def of_cycles(
     test: ReducedTest,
@@ -52,7 +58,7 @@ def of_cycles(
     """Trends and steps of a programme of one specimen."""
     step = test.rope_step
     if test.loops is not None and test.cycles is not None:
-        of_each = of_loops(test.loops, index, errors, model, test.cycles, cycles)
+        of_each = _of_each(test, index, errors, model, cycles)
         if test.trend is not None:
             yield _of_trend(
                 test.loops, test.trend, index, of_each, errors, cycles.break_in_cycles, area
@@ -113,6 +119,25 @@ def of_slips(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Cont
             )
         )
     return [stacked(own)]
+
+
+def _of_each(
+    test: ReducedTest,
+    index: int,
+    errors: InstrumentErrors,
+    model: StrainModel,
+    settings: CycleSettings,
+) -> Contributions:
+    """Contributions to what trends and steps read of each cycle."""
+    names = _OF_TREND if test.rope_step is None else (*_OF_TREND, *_OF_STEP)
+    blocks = []
+    for block in blocks_of_cycles(0 if test.loops is None else test.loops.frequency.shape[1]):
+        part = cycles_of_test(test, block)
+        if part.loops is not None and part.cycles is not None:
+            of_block = of_loops(part.loops, index, errors, model, part.cycles, settings)
+            blocks.append(renamed(of_block, dict(zip(names, names, strict=True))))
+    rows = {name: np.concatenate([one.values[name] for one in blocks], axis=-1) for name in names}
+    return Contributions(blocks[0].component, rows)
 
 
 def _of_series(loops: Loops, index: int, of_each: Contributions, name: str) -> Floats:
