@@ -22,9 +22,9 @@ __all__ = ["read_log"]
 
 _IN_PARTS: dict[Format, Callable[..., RawLog]] = {
     "delimited": read_delimited,
+    "blocks": read_blocks,
 }
 _WHOLE: dict[Format, Callable[..., RawLog]] = {
-    "blocks": read_blocks,
     "tdms": read_tdms,
     "hdf5": read_hdf5,
     "parquet": read_parquet,
