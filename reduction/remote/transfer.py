@@ -254,7 +254,10 @@ def _put_and_name(source: Path, place: Place) -> None:
 
 def _state(place: Place) -> State:
     place.system.invalidate_cache()
-    return _state_from(place.system.info(place.path))
+    about = place.system.info(place.path)
+    if about.get("type") == "directory":
+        raise IsADirectoryError
+    return _state_from(about)
 
 
 def _state_from(about: dict[str, Any]) -> State:
