@@ -23,11 +23,11 @@ __all__ = ["read_log"]
 _IN_PARTS: dict[Format, Callable[..., RawLog]] = {
     "delimited": read_delimited,
     "blocks": read_blocks,
-}
-_WHOLE: dict[Format, Callable[..., RawLog]] = {
     "tdms": read_tdms,
     "hdf5": read_hdf5,
     "parquet": read_parquet,
+}
+_WHOLE: dict[Format, Callable[..., RawLog]] = {
     "spreadsheet": read_spreadsheet,
     "matlab": read_matlab,
     "json": read_json,
