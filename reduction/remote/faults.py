@@ -79,6 +79,8 @@ def said_of(
     if any(_is_cut_off(one) for one in chain):
         return fault(place, "its host cannot be reached", found=found)
     if status == 404 or (status is None and isinstance(error, FileNotFoundError)):
+        if doing == "written":
+            return fault(place, "there is no such bucket or folder", needed="one that is there")
         return fault(place, "there is no such file", needed="the address of a file")
     return fault(place, f"it cannot be {doing}", found=found)
 

@@ -371,8 +371,8 @@ def test_logs_that_have_no_room_are_not_begun(bucket, monkeypatch):
 def test_each_file_is_announced_and_fetched_once(bucket, monkeypatch):
     fetched = []
     monkeypatch.setattr(
-        staged, "fetch", lambda address, target, fetch=staged.fetch: (
-            fetched.append(address), fetch(address, target),
+        staged, "fetch", lambda address, target, before=None, fetch=staged.fetch: (
+            fetched.append(address), fetch(address, target, before=before),
         ),
     )  # fmt: skip
     said = []
@@ -385,8 +385,9 @@ def test_each_file_is_announced_and_fetched_once(bucket, monkeypatch):
         assert campaign.shown("logs/A.csv") == "s3://bucket/raw/logs/A.csv"
         assert campaign.addresses == {}
     names = ["campaign.toml", "tests.csv", "marks.csv", "logs/A.csv", "logs/B.csv"]
-    assert said == [("fetch", name) for name in names]
-    assert fetched == [f"s3://bucket/raw/{name}" for name in names]
+    # logs are fetched side by side
+    assert sorted(said) == sorted(("fetch", name) for name in names)
+    assert sorted(fetched) == sorted(f"s3://bucket/raw/{name}" for name in names)
 
 
 def test_products_that_were_finished_before_an_interruption_are_kept(
@@ -421,6 +422,18 @@ def test_two_runs_do_not_mix(processed, here, tmp_path):
     with pytest.raises(ArchiveError, match=message):
         run.__exit__(None, None, None)
     assert processed.written == []
+
+
+def test_products_in_a_store_whose_listing_marks_files_in_its_own_way(tmp_path):
+    with stores.memory_store() as memory:
+        memory.pipe("/p/small/A.nc", b"1")
+        listed, looked_at = memory.find("/p", detail=True), memory.info("/p/small/A.nc")
+        assert listed["/p/small/A.nc"]["created"] != looked_at["created"]
+        with mirrored("memory://p/small", tmp_path / "small"):
+            (tmp_path / "small" / "B.nc").write_bytes(b"2")
+        assert {name: memory.cat(name) for name in memory.find("/p")} == {
+            "/p/small/A.nc": b"1", "/p/small/B.nc": b"2",
+        }  # fmt: skip
 
 
 def test_a_product_that_a_run_takes_away_is_gone_and_others_are_left_alone(processed, tmp_path):
