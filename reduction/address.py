@@ -12,6 +12,7 @@ __all__ = ["is_address", "secrets_of", "shown_address", "without_secrets"]
 
 _SCHEME = r"[A-Za-z][A-Za-z0-9+.\-]*://"
 _IN_TEXT = re.compile(rf"{_SCHEME}[^\s'\"<>]*")
+_STOPS = ".,:;)"
 _PORT = re.compile(r":\d*")
 _SHORTEST = 4  # characters of a secret: a shorter one stands in every other word
 
@@ -92,7 +93,13 @@ def without_secrets(text: str) -> str:
     """
     if "://" not in text:
         return text
-    return _IN_TEXT.sub(lambda found: shown_address(found[0]), text)
+    return _IN_TEXT.sub(_shown, text)
+
+
+def _shown(found: re.Match[str]) -> str:
+    """What may be shown of an address; a stop behind it is of the sentence."""
+    address = found[0].rstrip(_STOPS)
+    return shown_address(address) + found[0][len(address) :]
 
 
 def secrets_of(address: str) -> tuple[str, ...]:

@@ -449,7 +449,8 @@ class ColumnWriter:
         self._folder = folder
         self._dtype = np.dtype(dtype)
         self._parts: list[NDArray[Any]] = []
-        self._file: IO[bytes] | None = None if folder is None else _scratch_file(folder)
+        self._file: IO[bytes] | None = None
+        self._file = None if folder is None else _scratch_file(folder)
         self.size = 0
 
     def append(self, values: NDArray[Any]) -> None:
@@ -479,9 +480,14 @@ class ColumnWriter:
                 except OSError as error:
                     raise _no_space(self._folder, self.size, error) from error
                 return _mapped(file, self.size * self._dtype.itemsize, self._folder, self._dtype)
-        if len(self._parts) == 1:
+        if len(self._parts) == 1 and self._parts[0].flags.writeable:
             return self._parts[0]
         return np.concatenate([np.empty(0, dtype=self._dtype), *self._parts])
+
+    def __del__(self) -> None:
+        """Close the file of a column that was given up."""
+        if self._file is not None:
+            self._file.close()
 
 
 def join_columns(parts: Sequence[NDArray[Any]]) -> NDArray[Any]:

@@ -112,15 +112,16 @@ def _attributes(row: Variable, present: Values) -> dict[str, Any]:
 
 
 def _encoding(array: NDArray[Any], row: Variable, auxiliary: str) -> dict[str, Any]:
+    # labels are not listed: they have the names of their dimensions, by which a reader finds
+    # them, and CF advises against listing an array that shares the name of its dimension
+    is_beside = auxiliary and auxiliary in row.dims and row.name != "time"
+    listed = {"coordinates": "time"} if is_beside else {}
     if row.is_text:
-        return {"dtype": "S1", "char_dim_name": f"{row.name}_strlen"}
+        return {"dtype": "S1", "char_dim_name": f"{row.name}_strlen"} | listed
     is_coordinate = row.is_bounds or row.name == "time" or row.dims == (row.name,)
     has_gaps = row.dtype == "f8" and not is_coordinate
     encoding: dict[str, Any] = {"dtype": row.dtype, "_FillValue": np.nan if has_gaps else None}
-    # labels are not listed: they have the names of their dimensions, by which a reader finds
-    # them, and CF advises against listing an array that shares the name of its dimension
-    if auxiliary and auxiliary in row.dims and row.name != "time":
-        encoding["coordinates"] = "time"
+    encoding |= listed
     if array.size >= _COMPRESSED_FROM:
         encoding |= {
             "zlib": True,

@@ -202,13 +202,12 @@ def _common_length(lengths: Integers, most: int) -> int:
 def _thinned(start: int, stop: int, length: int, *, has_ends: bool) -> Integers:
     if stop - start <= length:
         return np.arange(start, stop)
-    end = length // 4 if has_ends else 1
-    inner = stop - start - 2 * end
-    step = ceil(inner / (length - 2 * end))
+    begin, end = (length // 4, length // 4) if has_ends else (0, 1)
+    step = ceil((stop - start - begin - end) / (length - begin - end))
     return np.concatenate(
         [
-            np.arange(start, start + end),
-            np.arange(start + end, stop - end, step),
+            np.arange(start, start + begin),
+            np.arange(start + begin, stop - end, step),
             np.arange(stop - end, stop),
         ]
     )

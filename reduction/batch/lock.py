@@ -14,6 +14,7 @@ from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from reduction.address import without_secrets
 from reduction.errors import ArchiveError
 
 __all__ = ["LOCK_NAME", "RunLock", "run_lock"]
@@ -187,7 +188,7 @@ def _own() -> _Holder:
         pid=os.getpid(),
         process_start=_process_start(os.getpid()) or "",
         started=datetime.now(UTC).isoformat(sep=" ", timespec="seconds"),
-        command=shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
+        command=without_secrets(shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])),
         token=uuid.uuid4().hex,
     )
 

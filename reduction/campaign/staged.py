@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import shutil
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
@@ -21,7 +21,8 @@ from reduction.campaign.plan import Campaign
 from reduction.errors import LogError
 from reduction.remote.place import allowed, base_name, below, folder_of
 from reduction.remote.scratch import renamed, scratch_folder
-from reduction.remote.transfer import fetch, state_of
+from reduction.remote.transfer import State, fetch, state_of
+from reduction.workers import run_blocks
 
 __all__ = ["staged_campaign"]
 
@@ -114,20 +115,28 @@ def _with_logs(
         elif base:
             wanted[name] = (below(base, name), campaign.folder / name)
     unread: dict[str, LogError] = {}
-    sizes: dict[str, int] = {}
-    for name, (address, _) in wanted.items():
+
+    def look(name: str) -> State | None:
         try:
-            sizes[name] = state_of(address).size or 0
+            return state_of(wanted[name][0])
         except LogError as error:
             unread[name] = error
-    _refuse_too_much(campaign, folder.parent, sum(sizes.values()))
-    for name in sizes:
-        address, copy = wanted[name]
+            return None
+
+    states = dict(zip(wanted, run_blocks(look, wanted), strict=True))
+    _refuse_too_much(campaign, folder.parent, [one for one in states.values() if one is not None])
+
+    def bring(name: str) -> None:
+        before = states[name]
+        if before is None:
+            return
         progress("fetch", name)
         try:
-            fetch(address, copy)
+            fetch(*wanted[name], before=before)
         except LogError as error:
             unread[name] = error
+
+    run_blocks(bring, wanted)  # several at once: most of the time is waiting
     return replace(
         campaign,
         addresses={},
@@ -137,7 +146,8 @@ def _with_logs(
     )
 
 
-def _refuse_too_much(campaign: Campaign, scratch: Path, size: int) -> None:
+def _refuse_too_much(campaign: Campaign, scratch: Path, states: Sequence[State]) -> None:
+    size = sum(one.size or 0 for one in states)
     room = shutil.disk_usage(scratch).free
     if size > room:
         raise LogError(

@@ -15,6 +15,7 @@ from reduction.archive.products import OF_CAMPAIGN
 from reduction.campaign.plan import Campaign
 from reduction.campaign.staged import staged_campaign
 from reduction.cli.commandoutput import CommandOutput
+from reduction.cli.progress import campaign_progress
 from reduction.remote.mirror import copied, mirrored, put_at_end
 from reduction.remote.place import allowed, base_name, below
 from reduction.remote.scratch import renamed, scratch_folder
@@ -40,7 +41,15 @@ def campaign_at(address: str, *, allow_remote: bool, output: CommandOutput) -> I
     campaign : Campaign
         Copies of its files are gone when the block ends.
     """
-    with staged_campaign(address, allow_remote=allow_remote) as campaign:
+    with ExitStack() as opened:
+        with campaign_progress(output) as bar:
+            campaign = opened.enter_context(
+                staged_campaign(
+                    address,
+                    allow_remote=allow_remote,
+                    progress=lambda stage, name: bar.stage(f"{stage} {name}", 0),
+                )
+            )
         output.names |= campaign.names
         yield campaign
 

@@ -1,28 +1,31 @@
-"""Text in repeated blocks, as MTS MPT/793 writes it: the lines are sorted, then parsed once.
+"""Text in repeated blocks, as MTS MPT/793 writes it: lines are sorted, then parsed at once.
 
 A block is a line that begins with the layout's ``block_marker``, a name row, a unit row
 where the layout has one, and rows of fields down to the next block.  Blocks may differ
-in length.  Every other line is metadata.
+in length, and a part of the file may end within one.  Every other line is metadata.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from reduction.errors import LogError
+from reduction.ingest.blocklines import BlockLines, block_lines, header_length
 from reduction.ingest.columns import Wanted, check_lengths, find_column, wanted_columns
-from reduction.ingest.encoding import decode
 from reduction.ingest.fields import read_fields
 from reduction.ingest.growing import GrowingLog
 from reduction.ingest.layout import Layout
+from reduction.ingest.parts import Parts
 from reduction.ingest.preamble import check_units, keep_line
 from reduction.ingest.rawlog import RawLog
-from reduction.ingest.source import read_bytes, source_of
-from reduction.ingest.textrows import TextRows, line_starts, split_line
-from reduction.record import Bools, Integers
+from reduction.ingest.source import unchanged
+from reduction.ingest.textparts import TextFile, open_text
+from reduction.ingest.textrows import TextRows, split_line
+from reduction.record import Bools
 
 __all__ = ["read_blocks"]
 
@@ -31,20 +34,17 @@ _DECIMAL_FIELD = 5
 _KEPT_LINES = 200
 
 
-@dataclass(frozen=True)
-class _Lines:
-    """Lines of a file, as places in its bytes; all arrays have shape (n_lines,)."""
+@dataclass
+class _Kind:
+    """Blocks with one header."""
 
-    path: Path
-    data: bytes
-    starts: Integers
-    stops: Integers
-
-    def text(self, line: int) -> str:
-        return self.data[self.starts[line] : self.stops[line]].decode("utf-8").rstrip("\r\n")
+    n_fields: int
+    first_row: int
+    n_blocks: int = 0
+    n_rows: int = 0
 
 
-def read_blocks(path: Path, layout: Layout, *, name: str) -> RawLog:
+def read_blocks(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
     """Read a log of repeated blocks.
 
     Parameters
@@ -56,6 +56,8 @@ def read_blocks(path: Path, layout: Layout, *, name: str) -> RawLog:
         line states.
     name : str
         File name relative to the campaign folder.
+    parts : Parts, optional
+        How much of it is read at a time.
 
     Returns
     -------
@@ -67,63 +69,144 @@ def read_blocks(path: Path, layout: Layout, *, name: str) -> RawLog:
     ------
     LogError
         If no block has the declared columns, or a row is not what the layout says.
+    DataError
+        If the disk is full.
     """
-    raw = read_bytes(path)
-    data = decode(path, raw, layout.encoding)
-    starts = line_starts(memoryview(data))
-    lines = _Lines(path, data, starts, np.append(starts[1:], len(data)))
-    layout = _with_separators(lines, layout)
-    openers = _openers(lines, layout)
-    header = _header_text(lines, openers, layout)
-    kinds = {text: index for index, text in enumerate(dict.fromkeys(header))}
-    kind = np.array([kinds[text] for text in header])
-    wanted_kind, wanted, names = _choose(lines, openers, kind, layout)
+    with unchanged(path), open_text(path, layout.encoding, parts or Parts()) as file:
+        blocks: _Blocks | None = None
+        for lines in block_lines(file, layout):
+            if blocks is None:
+                blocks = _Blocks(path, _with_separators(path, lines, layout), file.folder)
+            blocks.take(lines)
+        if blocks is None or not blocks.kinds:
+            raise _no_block(path, layout)
+        return blocks.finish(file, name)
 
-    in_block = np.searchsorted(openers, np.arange(starts.size), side="right") - 1
-    offset = np.arange(starts.size) - openers[np.maximum(in_block, 0)]
-    below = (in_block >= 0) & (offset > 1 + layout.has_unit_row)
-    is_row = below & _looks_like_row(lines, len(names), layout)
-    used = is_row & (kind[in_block] == wanted_kind)
-    if not used.any():
-        raise LogError(
-            path, "there are no data rows", found="headers only", needed="rows below a header"
+
+class _Blocks:
+    """What has been read so far."""
+
+    def __init__(self, path: Path, layout: Layout, folder: Path | None) -> None:
+        self.path, self.layout, self.folder = path, layout, folder
+        self.kinds: dict[bytes, _Kind] = {}
+        self.open: _Kind | None = None  # that of the block that goes on
+        self.chosen: _Kind | None = None
+        self.wanted: list[tuple[Wanted, int]] = []
+        self.log: GrowingLog | None = None
+        self.refusal: LogError | None = None
+        self.openers: list[tuple[str, int]] = []
+        self.metadata: dict[str, str] = {}
+        self.n_loose = 0
+
+    def take(self, lines: BlockLines) -> None:
+        """Sort the lines of one more part, and read its rows."""
+        kinds = [self.open, *(self._opened(lines, line) for line in lines.openers.tolist())]
+        self.open = kinds[-1]
+        n_header = header_length(self.layout)
+        number = np.arange(lines.starts.size)
+        block = np.searchsorted(lines.openers, number, side="right")
+        is_below = number - np.append(-n_header - 1, lines.openers)[block] > n_header
+        n_fields = np.array([kind.n_fields if kind else 0 for kind in kinds])[block]
+        is_row = is_below & (n_fields > 0)
+        is_row &= lines.look_like_rows(self.layout.delimiter, n_fields)
+        self._keep_loose(lines, is_below & ~is_row)
+        for kind, n_rows in zip(
+            kinds, np.bincount(block[is_row], minlength=len(kinds)), strict=True
+        ):
+            if kind is not None:
+                kind.n_rows += int(n_rows)
+        used = is_row & np.array([kind is self.chosen for kind in kinds])[block]
+        if self.chosen is None or self.log is None or not used.any():
+            return
+        kept = np.frombuffer(lines.data, np.uint8)[: lines.stops[-1]]
+        kept = kept[np.repeat(used, lines.stops - lines.starts)]
+        row = np.flatnonzero(used) + lines.first_row
+        body = memoryview(kept.tobytes().rstrip(b"\r\n"))
+        is_open = lines.is_open and bool(used[-1])
+        rows = TextRows(self.path, self.layout, body, int(row[0]), row, is_open=is_open)
+        self.log.add(read_fields(rows, self.wanted, self.chosen.n_fields), rows.first_row)
+
+    def finish(self, file: TextFile, name: str) -> RawLog:
+        """The log, when there are no more parts."""
+        if self.log is None:
+            raise self.refusal or _no_block(self.path, self.layout)
+        if not self.log.n_rows:
+            raise LogError(
+                self.path,
+                "there are no data rows",
+                found="headers only",
+                needed="rows below a header",
+            )
+        for line, row in (self.openers[0], self.openers[-1]):
+            keep_line(self.metadata, line, row, self.layout)
+        columns = self.log.finish(self.path, self.layout)
+        return RawLog(
+            source=file.source(name),
+            columns=columns,
+            text=self.log.text,
+            first_row=self.log.first_row,
+            row=self.log.row,
+            n_rows_read=check_lengths(self.path, columns),
+            metadata=self.metadata,
+            notes=tuple(self._notes()),
         )
-    kept = np.frombuffer(data, np.uint8)[np.repeat(used, lines.stops - starts)].tobytes()
-    line_row = np.flatnonzero(used) + 1
-    body = memoryview(kept.rstrip(b"\r\n"))
-    rows = TextRows(path, layout, body, int(line_row[0]), line_row)
-    log = GrowingLog([want for want, _ in wanted], None)
-    log.add(read_fields(rows, wanted, len(names)), rows.first_row)
-    columns = log.finish(path, layout)
 
-    metadata: dict[str, str] = {}
-    loose = np.flatnonzero((in_block < 0) | (below & ~is_row))
-    filled = [line for line in loose.tolist() if lines.text(line).strip()]
-    for line in (*filled[:_KEPT_LINES], int(openers[0]), int(openers[-1])):
-        keep_line(metadata, lines.text(line), line + 1, layout)
-    notes = [f"{int(np.sum(kind == wanted_kind))} blocks of data"]
-    if len(filled) > _KEPT_LINES:
-        notes.append(f"{len(filled) - _KEPT_LINES} more lines between the blocks are not kept")
-    for other in set(kinds.values()) - {wanted_kind}:
-        blocks = kind == other
-        notes.append(
-            f"{int(blocks.sum())} blocks of another kind with "
-            f"{int(np.sum(is_row & (kind[in_block] == other)))} rows are not read, "
-            f"the first at row {openers[blocks][0] + 1}"
-        )
-    return RawLog(
-        source=source_of(raw, name),
-        columns=columns,
-        text=log.text,
-        first_row=log.first_row,
-        row=log.row,
-        n_rows_read=check_lengths(path, columns),
-        metadata=metadata,
-        notes=tuple(notes),
-    )
+    def _opened(self, lines: BlockLines, opener: int) -> _Kind:
+        """Kind of the block that a line opens: that of all blocks with its header."""
+        last = opener + header_length(self.layout)
+        text = lines.data[lines.starts[opener + 1] : lines.stops[last]]
+        header = text.replace(b"\r\n", b"\n").rstrip(b"\n")
+        row = lines.first_row + opener
+        if header not in self.kinds:
+            names = split_line(lines.text(opener + 1), self.layout)
+            self.kinds[header] = _Kind(len(names), row)
+            if self.chosen is None:
+                self._choose(lines, opener, names, self.kinds[header])
+        self.openers = [*self.openers[:1], (lines.text(opener), row)]
+        kind = self.kinds[header]
+        kind.n_blocks += 1
+        return kind
+
+    def _choose(self, lines: BlockLines, opener: int, names: list[str], kind: _Kind) -> None:
+        """Read blocks of this kind if it is the first that has every declared column."""
+        row = lines.first_row + opener
+        try:
+            wanted = [
+                (want, find_column(self.path, want, names, where="the block", row=row + 1))
+                for want in wanted_columns(self.layout)
+            ]
+        except LogError as error:
+            self.refusal = self.refusal or error
+            return
+        has_units = self.layout.has_unit_row
+        units = split_line(lines.text(opener + 2), self.layout) if has_units else []
+        unit_row = row + 2 if has_units else None
+        check_units(self.path, wanted, names=names, units=units, unit_row=unit_row)
+        self.chosen, self.wanted = kind, wanted
+        self.log = GrowingLog([want for want, _ in wanted], self.folder)
+
+    def _keep_loose(self, lines: BlockLines, is_loose: Bools) -> None:
+        """Keep lines between the rows as metadata, the first of them."""
+        for line in np.flatnonzero(is_loose & lines.filled()).tolist():
+            if (text := lines.text(line)).strip():
+                if self.n_loose < _KEPT_LINES:
+                    keep_line(self.metadata, text, lines.first_row + line, self.layout)
+                self.n_loose += 1
+
+    def _notes(self) -> Iterator[str]:
+        chosen = [kind for kind in self.kinds.values() if kind is self.chosen]
+        yield f"{sum(kind.n_blocks for kind in chosen)} blocks of data"
+        if self.n_loose > _KEPT_LINES:
+            yield f"{self.n_loose - _KEPT_LINES} more lines between the blocks are not kept"
+        for kind in self.kinds.values():
+            if kind is not self.chosen:
+                yield (
+                    f"{kind.n_blocks} blocks of another kind with {kind.n_rows} rows are not "
+                    f"read, the first at row {kind.first_row}"
+                )
 
 
-def _with_separators(lines: _Lines, layout: Layout) -> Layout:
+def _with_separators(path: Path, lines: BlockLines, layout: Layout) -> Layout:
     """The layout with the decimal mark of an MTS file's first line."""
     first = lines.text(0)
     if not first.startswith(_MTS):
@@ -132,7 +215,7 @@ def _with_separators(lines: _Lines, layout: Layout) -> Layout:
     mark = fields[_DECIMAL_FIELD] if len(fields) > _DECIMAL_FIELD else ""
     if mark not in (".", ","):
         raise LogError(
-            lines.path,
+            path,
             "the first line does not state a decimal mark",
             row=1,
             found=f"'{first}'",
@@ -140,7 +223,7 @@ def _with_separators(lines: _Lines, layout: Layout) -> Layout:
         )
     if "decimal" in layout.model_fields_set and layout.decimal != mark:
         raise LogError(
-            lines.path,
+            path,
             "the file states another decimal mark than the layout",
             row=1,
             found=f"'{mark}'",
@@ -153,61 +236,11 @@ def _with_separators(lines: _Lines, layout: Layout) -> Layout:
     return layout.model_copy(update=changes)
 
 
-def _openers(lines: _Lines, layout: Layout) -> Integers:
-    """Lines that open a block."""
-    marker = layout.block_marker.encode("utf-8")
-    first = np.frombuffer(lines.data, np.uint8)[np.minimum(lines.starts, len(lines.data) - 1)]
-    candidates = np.flatnonzero(first == marker[0]) if marker else np.empty(0, dtype=np.int64)
-    found = [line for line in candidates if lines.data.startswith(marker, int(lines.starts[line]))]
-    last_header = 1 + layout.has_unit_row
-    found = [line for line in found if line + last_header < lines.starts.size]
-    if not found:
-        raise LogError(
-            lines.path,
-            "there is no block of data",
-            found=f"no line that begins with {layout.block_marker!r}",
-            needed="a line that begins with block_marker",
-            hint="Set block_marker to the words that open a block, such as Data Acquisition.",
-        )
-    return np.array(found, dtype=np.int64)
-
-
-def _header_text(lines: _Lines, openers: Integers, layout: Layout) -> list[bytes]:
-    """Name row and unit row of each block as one text, to tell kinds of blocks apart."""
-    last = openers + 1 + layout.has_unit_row
-    places = zip(lines.starts[openers + 1].tolist(), lines.stops[last].tolist(), strict=True)
-    return [lines.data[start:stop] for start, stop in places]
-
-
-def _choose(
-    lines: _Lines, openers: Integers, kind: Integers, layout: Layout
-) -> tuple[int, list[tuple[Wanted, int]], list[str]]:
-    """First kind of block that has every declared column."""
-    refusals = []
-    for number in range(int(kind.max()) + 1):
-        opener = int(openers[kind == number][0])
-        names = split_line(lines.text(opener + 1), layout)
-        try:
-            wanted = [
-                (want, find_column(lines.path, want, names, where="the block", row=opener + 2))
-                for want in wanted_columns(layout)
-            ]
-        except LogError as error:
-            refusals.append(error)
-            continue
-        units = split_line(lines.text(opener + 2), layout) if layout.has_unit_row else []
-        unit_row = opener + 3 if layout.has_unit_row else None
-        check_units(lines.path, wanted, names=names, units=units, unit_row=unit_row)
-        return number, wanted, names
-    raise refusals[0]
-
-
-def _looks_like_row(lines: _Lines, n_fields: int, layout: Layout) -> Bools:
-    """Lines that have a row's number of fields, or begin as a number does."""
-    bytes_ = np.frombuffer(lines.data, np.uint8)
-    parts = np.flatnonzero(bytes_ == ord(layout.delimiter))
-    n_parts = np.searchsorted(parts, lines.stops) - np.searchsorted(parts, lines.starts)
-    first = bytes_[np.minimum(lines.starts, bytes_.size - 1)]
-    is_number = np.isin(first, np.frombuffer(b"0123456789+-.,", np.uint8))
-    looks: Bools = (n_parts == n_fields - 1) | (is_number & (lines.stops > lines.starts))
-    return looks
+def _no_block(path: Path, layout: Layout) -> LogError:
+    return LogError(
+        path,
+        "there is no block of data",
+        found=f"no line that begins with {layout.block_marker!r}",
+        needed="a line that begins with block_marker",
+        hint="Set block_marker to the words that open a block, such as Data Acquisition.",
+    )

@@ -53,7 +53,7 @@ class TextEncoding:
             return False
 
     def to_utf8(self, data: bytes | bytearray | memoryview, *, is_first: bool) -> memoryview:
-        """Whole lines below the byte-order mark as UTF-8; `UnicodeDecodeError` where they are none."""
+        """Whole lines below the mark as UTF-8; `UnicodeDecodeError` where they are none."""
         text = str(data, self.codec)
         if self.codec in _UTF8_FAMILY:
             return memoryview(data)

@@ -7,8 +7,10 @@ values from elsewhere, are refused.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +20,10 @@ from numpy.typing import NDArray
 
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
+from reduction.ingest.parts import Parts
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
-from reduction.ingest.table import ColumnTable, matrix_table, read_columns
+from reduction.ingest.table import ColumnTable, matrix_table, read_columns, row_parts
 
 __all__ = [
     "find_member",
@@ -96,6 +99,11 @@ def unit_attribute(dataset: h5py.Dataset) -> str:
 
 def read_data_set(path: Path, dataset: h5py.Group | h5py.Dataset) -> NDArray[Any]:
     """All values of a data set that stands in this file as it is meant to be read."""
+    return _values(path, _plain(path, dataset), ())
+
+
+def _plain(path: Path, dataset: h5py.Group | h5py.Dataset) -> h5py.Dataset:
+    """The data set, where it is one whose values can be read as they are."""
     problem = None
     if not isinstance(dataset, h5py.Dataset):
         problem, found = "is a group, not a data set", "a group"
@@ -112,8 +120,12 @@ def read_data_set(path: Path, dataset: h5py.Group | h5py.Dataset) -> NDArray[Any
             found=found,
             needed="a data set with the plain values in this file",
         )
+    return dataset
+
+
+def _values(path: Path, dataset: h5py.Dataset, selection: Any) -> NDArray[Any]:
     try:
-        return np.asarray(dataset[()])
+        return np.asarray(dataset[selection])
     except (OSError, ValueError, TypeError) as error:
         raise LogError(
             path, f"'{dataset.name}' cannot be read", found=str(error)[:200],
@@ -123,16 +135,50 @@ def read_data_set(path: Path, dataset: h5py.Group | h5py.Dataset) -> NDArray[Any
 
 def read_series(path: Path, dataset: h5py.Group | h5py.Dataset) -> NDArray[Any]:
     """Values of a data set of one dimension, shape (n_rows,); a single row or column counts."""
-    values = read_data_set(path, dataset)
-    if sum(size != 1 for size in values.shape) > 1:
+    return np.concatenate(list(_series_parts(path, dataset, sys.maxsize)))
+
+
+def _series_parts(
+    path: Path, dataset: h5py.Group | h5py.Dataset, n_rows: int
+) -> Iterator[NDArray[Any]]:
+    """Values of such a data set in parts, each of whole chunks of the file."""
+    dataset = _plain(path, dataset)
+    if sum(size != 1 for size in dataset.shape) > 1:
         raise LogError(
             path,
             f"'{dataset.name}' is not one column",
-            found=f"shape {values.shape}",
+            found=f"shape {dataset.shape}",
             needed="one dimension",
             hint="Name it as the matrix of the layout where it holds many columns.",
         )
-    return values.ravel()
+    axis = int(np.argmax(dataset.shape))
+    for part in row_parts(dataset.shape[axis], n_rows, _chunk_length(dataset, axis)):
+        yield _values(path, dataset, (slice(None),) * axis + (part,)).ravel()
+
+
+def _chunk_length(dataset: h5py.Dataset, axis: int) -> int:
+    """Rows that the file keeps together."""
+    return int(dataset.chunks[axis]) if dataset.chunks else 1
+
+
+@dataclass(frozen=True)
+class _DataSet:
+    """A data set whose rows are read when they are asked for."""
+
+    path: Path
+    dataset: h5py.Dataset
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return tuple(self.dataset.shape)
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        found: np.dtype[Any] = self.dataset.dtype
+        return found
+
+    def __getitem__(self, rows: slice, /) -> NDArray[Any]:
+        return _values(self.path, self.dataset, rows)
 
 
 def read_texts(path: Path, dataset: h5py.Group | h5py.Dataset) -> tuple[str, ...]:
@@ -159,8 +205,15 @@ def hdf5_table(path: Path, file: h5py.File, layout: Layout) -> ColumnTable:
             read_texts(path, find_member(path, group, entry)) if entry else None
             for entry in (layout.matrix_names, layout.matrix_units)
         )
-        matrix = read_data_set(path, find_member(path, group, layout.matrix))
-        return matrix_table(path, matrix, where=f"'{layout.matrix}'", names=names, units=units)
+        dataset = _plain(path, find_member(path, group, layout.matrix))
+        return matrix_table(
+            path,
+            _DataSet(path, dataset),
+            where=f"'{layout.matrix}'",
+            names=names,
+            units=units,
+            n_together=_chunk_length(dataset, 0),
+        )
     if not isinstance(group, h5py.Group):
         raise LogError(
             path, f"'{layout.group}' is not a group", found="a data set",
@@ -170,7 +223,8 @@ def hdf5_table(path: Path, file: h5py.File, layout: Layout) -> ColumnTable:
     return ColumnTable(
         names=tuple(members),
         units=tuple(unit_attribute(group[name]) for name in members),
-        load=lambda place: read_series(path, group[members[place]]),
+        load=lambda place, n_rows: _series_parts(path, group[members[place]], n_rows),
+        n_rows=max((group[name].size or 0 for name in members), default=0),
         where=f"group '{group.name}'",
         in_order=False,
     )
@@ -185,7 +239,7 @@ def _attributes(group: h5py.Group | h5py.Dataset) -> dict[str, str]:
     return texts
 
 
-def read_hdf5(path: Path, layout: Layout, *, name: str) -> RawLog:
+def read_hdf5(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
     """Read the declared columns of one group, or of one matrix.
 
     Parameters
@@ -197,6 +251,8 @@ def read_hdf5(path: Path, layout: Layout, *, name: str) -> RawLog:
         group), ``missing`` and the channels.
     name : str
         Name of the file for the product.
+    parts : Parts, optional
+        How much of it is read at a time.
 
     Returns
     -------
@@ -207,10 +263,12 @@ def read_hdf5(path: Path, layout: Layout, *, name: str) -> RawLog:
     ------
     LogError
         If the file, a data set or a column cannot be used.
+    DataError
+        If the disk is full.
     """
     source = hash_source(path, name)
     with open_hdf5(path) as file:
-        columns, n_rows = read_columns(path, layout, hdf5_table(path, file, layout))
+        columns, n_rows = read_columns(path, layout, hdf5_table(path, file, layout), parts=parts)
         metadata = _attributes(file) | _attributes(find_member(path, file, layout.group))
     return RawLog(
         source=source, columns=columns, first_row=0, n_rows_read=n_rows, metadata=metadata

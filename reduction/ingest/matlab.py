@@ -220,7 +220,7 @@ def matlab_table(path: Path, scope: Mapping[str, Any], layout: Layout) -> Column
     return ColumnTable(
         names=names_here,
         units=("",) * len(names_here),
-        load=lambda place: _series(path, names_here[place], scope[names_here[place]]),
+        load=lambda place, _: iter([_series(path, names_here[place], scope[names_here[place]])]),
         where=f"struct '{layout.group}'" if layout.group else "the file",
         in_order=bool(layout.group),
     )

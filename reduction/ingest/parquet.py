@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
+from reduction.ingest.parts import Parts
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, read_columns
@@ -40,25 +42,40 @@ def parquet_table(path: Path, file: pyarrow.parquet.ParquetFile) -> ColumnTable:
         metadata = schema.field(place).metadata or {}
         return next((metadata[key].decode() for key in _UNIT_KEYS if key in metadata), "")
 
-    def load(place: int) -> NDArray[Any]:
+    def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
         name = schema.names[place]
+        before = schema.names[:place].count(name)  # a name that stands twice is read twice
         try:
-            # a name that stands twice reads as many columns
-            column = file.read(columns=[name]).column(schema.names[:place].count(name))
-            if pyarrow.types.is_integer(column.type) and column.null_count:
-                column = column.cast(pyarrow.float64())  # refuses what float64 cannot hold
+            if not file.metadata.num_rows:
+                yield _values(pyarrow.array([], schema.types[place]))
+            for batch in file.iter_batches(batch_size=n_rows, columns=[name]):
+                yield _values(batch.column(before))
         except (pyarrow.ArrowException, OSError) as error:
             raise LogError(
                 path, "a column cannot be read", channel=name, found=str(error)[:200]
             ) from error
-        return np.asarray(column.to_numpy())
 
     return ColumnTable(
-        tuple(schema.names), tuple(unit(place) for place in range(len(schema))), load
+        tuple(schema.names),
+        tuple(unit(place) for place in range(len(schema))),
+        load,
+        n_rows=file.metadata.num_rows,
     )
 
 
-def read_parquet(path: Path, layout: Layout, *, name: str) -> RawLog:
+def _values(column: pyarrow.Array) -> NDArray[Any]:
+    """Values of a column with NaN for null."""
+    if column.null_count and pyarrow.types.is_boolean(column.type):
+        column = column.fill_null(False)
+    if column.null_count and pyarrow.types.is_integer(column.type):
+        try:
+            column = column.cast(pyarrow.float64())
+        except pyarrow.ArrowInvalid:  # a number that float64 cannot hold, which is told
+            column = column.fill_null(0)
+    return np.asarray(column.to_numpy(zero_copy_only=False))
+
+
+def read_parquet(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
     """Read the declared columns; a field's ``unit`` or ``units`` is checked.
 
     Parameters
@@ -69,6 +86,8 @@ def read_parquet(path: Path, layout: Layout, *, name: str) -> RawLog:
         ``missing`` and the channels.
     name : str
         Name of the file for the product.
+    parts : Parts, optional
+        How much of it is read at a time.
 
     Returns
     -------
@@ -79,10 +98,12 @@ def read_parquet(path: Path, layout: Layout, *, name: str) -> RawLog:
     ------
     LogError
         If the file or a column cannot be used.
+    DataError
+        If the disk is full.
     """
     source = hash_source(path, name)
     with open_parquet(path) as file:
-        columns, n_rows = read_columns(path, layout, parquet_table(path, file))
+        columns, n_rows = read_columns(path, layout, parquet_table(path, file), parts=parts)
         properties = file.metadata.metadata or {}
     return RawLog(
         source=source,

@@ -22,12 +22,12 @@ __all__ = ["read_log"]
 
 _IN_PARTS: dict[Format, Callable[..., RawLog]] = {
     "delimited": read_delimited,
-}
-_WHOLE: dict[Format, Callable[..., RawLog]] = {
     "blocks": read_blocks,
     "tdms": read_tdms,
     "hdf5": read_hdf5,
     "parquet": read_parquet,
+}
+_WHOLE: dict[Format, Callable[..., RawLog]] = {
     "spreadsheet": read_spreadsheet,
     "matlab": read_matlab,
     "json": read_json,

@@ -28,6 +28,7 @@ from reduction.ingest.tdms import WAVEFORM_COLUMN, open_tdms, tdms_table
 __all__ = ["SeenTable", "look_at_binary", "look_at_json", "look_at_sheet", "table_sheets"]
 
 _ROWS = 400
+_PART = 1 << 20  # rows that are loaded at a time
 Candidate = tuple[dict[str, object], ColumnTable]
 """Layout settings and the table that they read."""
 
@@ -83,13 +84,15 @@ def _seen(table: ColumnTable) -> list[SeenColumn]:
     columns, sizes = [], []
     for place, (name, unit) in enumerate(zip(table.names, table.units, strict=True)):
         try:
-            values = table.load(place)
+            parts = table.load(place, _PART)
+            values = next(parts)
+            size = values.size + sum(part.size for part in parts)
         except LogError:  # not a series: no column
             continue
-        if values.ndim == 1 and values.size > 1 and values.dtype.kind in "fiu":
+        if values.ndim == 1 and size > 1 and values.dtype.kind in "fiu":
             first = values[:_ROWS].astype(np.float64)
             columns.append(SeenColumn(place + 1, name, unit, first, is_named=bool(name)))
-            sizes.append(values.size)
+            sizes.append(size)
     if not sizes:
         return []
     length = Counter(sizes).most_common(1)[0][0]

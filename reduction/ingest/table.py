@@ -1,42 +1,31 @@
-"""The columns of a binary file: what it says of them, and their values as float64."""
+"""The columns of a binary file: what it says of them, and their values part by part."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reduction.errors import LogError
+from reduction.ingest.checked import CheckedColumn
 from reduction.ingest.columns import (
     Wanted,
     check_lengths,
     check_unit,
     find_column,
     wanted_columns,
-    without_marks,
 )
-from reduction.ingest.layout import CLOCK, Layout
+from reduction.ingest.layout import Layout
+from reduction.ingest.parts import Parts
 from reduction.ingest.preamble import check_units
-from reduction.record import Bools, Floats
+from reduction.record import Floats
+from reduction.samples import ColumnWriter
 
-__all__ = ["ColumnTable", "matrix_table", "read_columns", "to_floats"]
-
-_EXACT = 2**53  # whole numbers beyond this have no float64 of their own
-_KINDS = {
-    "b": "true or false",
-    "c": "complex numbers",
-    "M": "dates",
-    "m": "durations",
-    "S": "text",
-    "U": "text",
-    "T": "text",
-    "O": "text or objects",
-    "V": "records",
-}
+__all__ = ["ColumnTable", "Matrix", "matrix_table", "read_columns", "row_parts"]
 
 
 @dataclass(frozen=True)
@@ -48,7 +37,10 @@ class ColumnTable:
     names, units : tuple of str
         As the file has them; empty text where it says nothing.
     load : callable
-        Values of one column by its place from 0, shape (n_rows,).
+        Values of one column by its place from 0, in parts of so many rows where the file
+        can be read so; one part at least.
+    n_rows : int
+        Of the longest column that is read in parts; 0 where the columns are read whole.
     where : str
         What holds the columns, for messages: ``group 'log'``.
     in_order : bool
@@ -57,75 +49,55 @@ class ColumnTable:
 
     names: tuple[str, ...]
     units: tuple[str, ...]
-    load: Callable[[int], NDArray[Any]]
+    load: Callable[[int, int], Iterator[NDArray[Any]]]
+    n_rows: int = 0
     where: str = "the file"
     in_order: bool = True
 
 
-def _refuse(
-    path: Path, wanted: Wanted, values: Floats, bad: Bools, what: str, needed: str, hint: str | None
-) -> None:
-    first = int(np.flatnonzero(bad)[0])
-    raise LogError(
-        path,
-        f"{int(bad.sum())} of {values.size} values are {what}, first value {first + 1}",
-        channel=str(wanted.column),
-        found=f"{values[first]:.17g}",
-        needed=needed,
-        hint=hint,
-    )
+class Matrix(Protocol):
+    """An array, or a data set that is read when it is asked for rows."""
 
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Rows and columns."""
 
-def to_floats(path: Path, wanted: Wanted, values: NDArray[Any], layout: Layout) -> Floats:
-    """A column of a binary file as float64, shape (n_rows,); declared missing marks are NaN.
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """With fields where the columns have names."""
 
-    Raises
-    ------
-    LogError
-        If the values are not real numbers, cannot be held exactly, are infinite, or are NaN
-        where the layout does not declare ``NaN`` a missing mark.
-    """
-    kind = values.dtype.kind
-    if wanted.unit == CLOCK or kind not in "fiu":
-        raise LogError(
-            path,
-            "a column does not hold numbers",
-            channel=str(wanted.column),
-            found=f"{_KINDS.get(kind, 'something else')} ({values.dtype})",
-            needed="elapsed time: a clock is read from text alone"
-            if wanted.unit == CLOCK
-            else f"real numbers in {wanted.unit}",
-        )
-    array = values.astype(np.float64)
-    if kind in "iu":
-        large = np.abs(array) > _EXACT
-        if large.any():
-            _refuse(
-                path, wanted, array, large, "whole numbers too large to be held exactly",
-                "numbers below 2**53",
-                "Write time as elapsed time.",
-            )  # fmt: skip
-    missing = np.isnan(array)
-    if missing.any() and not any(mark.lower() == "nan" for mark in layout.missing):
-        _refuse(
-            path, wanted, array, missing, "NaN", "a number",
-            'Add "NaN" to the missing marks of the layout where it means missing.',
-        )  # fmt: skip
-    infinite = np.isinf(array)
-    if infinite.any():
-        _refuse(path, wanted, array, infinite, "infinite", "finite numbers", None)
-    return without_marks(values, layout)
+    def __getitem__(self, rows: slice, /) -> NDArray[Any]:
+        """Some rows."""
 
 
 def matrix_table(
     path: Path,
-    matrix: NDArray[Any],
+    matrix: Matrix,
     *,
     where: str,
     names: tuple[str, ...] | None = None,
     units: tuple[str, ...] | None = None,
+    n_together: int = 1,
 ) -> ColumnTable:
     """Columns of a matrix, shape (n_rows, n_columns), or of a table with named fields.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        For messages.
+    matrix : Matrix
+        The values.
+    where : str
+        What holds them, for messages.
+    names, units : tuple of str, optional
+        Of the columns.
+    n_together : int
+        Rows that the file keeps in one piece.
+
+    Returns
+    -------
+    table : ColumnTable
+        Parts of its columns come from the same rows, which are read once.
 
     Raises
     ------
@@ -134,8 +106,10 @@ def matrix_table(
     """
     fields = matrix.dtype.names
     if fields is not None:
-        matrix, n_columns = matrix.ravel(), len(fields)
-    elif matrix.ndim == 2:
+        if len(matrix.shape) != 1:
+            matrix = matrix[:].ravel()
+        n_columns = len(fields)
+    elif len(matrix.shape) == 2:
         n_columns = matrix.shape[1]
     else:
         raise LogError(
@@ -149,36 +123,95 @@ def matrix_table(
                 found=f"{n_columns} columns, {what} {', '.join(texts)}",
                 needed=f"{n_columns} {what}",
             )  # fmt: skip
+    total = matrix.shape[0]
+    held: list[tuple[slice, NDArray[Any]]] = []  # rows that the columns before have read
+
+    def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
+        for part in row_parts(total, n_rows, n_together):
+            if not held or held[0][0] != part:
+                held[:] = [(part, matrix[part])]
+            rows = held[0][1]
+            yield rows[fields[place]] if fields else rows[:, place]
+
     return ColumnTable(
         names=names or fields or ("",) * n_columns,
         units=units or ("",) * n_columns,
-        load=lambda place: matrix[fields[place]] if fields else matrix[:, place],
+        load=load,
+        n_rows=total,
         where=where,
     )
 
 
+def row_parts(total: int, n_rows: int, n_together: int = 1) -> Iterator[slice]:
+    """Slices of so many rows, of whole pieces where the file keeps rows together; one at least.
+
+    Examples
+    --------
+    >>> [(part.start, part.stop) for part in row_parts(10, 5, n_together=4)]
+    [(0, 4), (4, 8), (8, 10)]
+    """
+    step = max(n_rows // n_together, 1) * n_together
+    for start in range(0, max(total, 1), step):
+        yield slice(start, min(start + step, total))
+
+
 def read_columns(
-    path: Path, layout: Layout, table: ColumnTable, made: Mapping[str, Floats] | None = None
+    path: Path,
+    layout: Layout,
+    table: ColumnTable,
+    made: Mapping[str, Callable[[int], Iterator[Floats]]] | None = None,
+    *,
+    parts: Parts | None = None,
 ) -> tuple[dict[str, Floats], int]:
     """Declared columns of a binary file by channel key, and how many rows they have.
 
-    ``made`` holds those that the reader makes from properties of the file.
+    ``made`` holds those that the reader makes from properties of the file, in parts of so many
+    rows.
 
     Raises
     ------
     LogError
         If a column is missing, stands in another unit, holds no numbers, or has another
         length than the rest.
+    DataError
+        If the disk is full.
     """
-    columns = {}
-    for wanted in wanted_columns(layout):
-        if made is not None and wanted.key in made:
-            columns[wanted.key] = made[wanted.key]
-            continue
-        place = find_column(path, wanted, table.names, where=table.where, in_order=table.in_order)
-        if table.units[place]:
-            check_unit(path, wanted, table.units[place])
-        else:  # a name such as "Force (kN)" may state it
-            check_units(path, [(wanted, place)], names=table.names, units=(), unit_row=None)
-        columns[wanted.key] = to_floats(path, wanted, table.load(place), layout)
+    made, parts = made or {}, parts or Parts()
+    wanted = wanted_columns(layout)
+    places = {}
+    for want in wanted:
+        if want.key not in made:
+            places[want.key] = _place(path, want, table)
+    n_bytes = 8 * table.n_rows * len(wanted)
+    folder = parts.folder_of(n_bytes)
+    n_rows = max(parts.length_of(n_bytes) // (8 * max(len(wanted), 1)), 1)
+    checked = {
+        want.key: CheckedColumn(path, want, layout, folder) for want in wanted if want.key in places
+    }
+    writers = {key: ColumnWriter(folder) for key in made}
+    coming = [
+        *((column.add, table.load(places[key], n_rows)) for key, column in checked.items()),
+        *((writer.append, made[key](n_rows)) for key, writer in writers.items()),
+    ]
+    while coming:  # side by side: columns of a matrix come from the same rows
+        going = []
+        for add, values in coming:
+            if (part := next(values, None)) is not None:
+                add(part)
+                going.append((add, values))
+        coming = going
+    columns = {
+        want.key: (checked[want.key] if want.key in checked else writers[want.key]).finish()
+        for want in wanted
+    }
     return columns, check_lengths(path, columns)
+
+
+def _place(path: Path, wanted: Wanted, table: ColumnTable) -> int:
+    """Place of a declared column, whose unit is the declared one."""
+    place = find_column(path, wanted, table.names, where=table.where, in_order=table.in_order)
+    if table.units[place]:
+        check_unit(path, wanted, table.units[place])
+    else:  # a name such as "Force (kN)" may state it
+        check_units(path, [(wanted, place)], names=table.names, units=(), unit_row=None)
+    return place

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import logging
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +24,10 @@ from numpy.typing import NDArray
 from reduction.errors import LogError
 from reduction.ingest.columns import Wanted, check_unit, find_column, wanted_columns
 from reduction.ingest.layout import Layout
+from reduction.ingest.parts import Parts
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
-from reduction.ingest.table import ColumnTable, read_columns
+from reduction.ingest.table import ColumnTable, read_columns, row_parts
 from reduction.record import Floats
 
 __all__ = ["WAVEFORM_COLUMN", "open_tdms", "read_tdms", "tdms_group", "tdms_table"]
@@ -75,12 +77,14 @@ def tdms_table(path: Path, group: nptdms.TdmsGroup) -> ColumnTable:
     """Channels of a group as columns."""
     channels = group.channels()
 
-    def load(place: int) -> NDArray[Any]:
+    def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
+        channel = channels[place]
         try:
-            return np.asarray(channels[place][:])
+            for part in row_parts(len(channel), n_rows):
+                yield np.asarray(channel[part])
         except _NOT_TDMS as error:
             raise LogError(
-                path, "a channel cannot be read", channel=channels[place].name,
+                path, "a channel cannot be read", channel=channel.name,
                 found=str(error)[:200], needed="an intact .tdms file",
             ) from error  # fmt: skip
 
@@ -88,6 +92,7 @@ def tdms_table(path: Path, group: nptdms.TdmsGroup) -> ColumnTable:
         names=tuple(channel.name for channel in channels),
         units=tuple(str(channel.properties.get("unit_string", "")) for channel in channels),
         load=load,
+        n_rows=max((len(channel) for channel in channels), default=0),
         where=f"group '{group.name}'",
     )
 
@@ -110,8 +115,8 @@ def _waveform(path: Path, wanted: Wanted, channel: nptdms.TdmsChannel) -> tuple[
 
 def _waveform_times(
     path: Path, layout: Layout, group: nptdms.TdmsGroup, table: ColumnTable
-) -> dict[str, Floats]:
-    """Times that the layout takes from waveform properties, by channel key.
+) -> dict[str, Callable[[int], Iterator[Floats]]]:
+    """Times that the layout takes from waveform properties, by channel key, in parts.
 
     ``time`` is that of the channels without own time stamps, which must agree; a channel
     with ``time_column = "wf_increment"`` has its own, on the same zero where both state
@@ -126,7 +131,7 @@ def _waveform_times(
         place = find_column(path, wanted[key], table.names, where=table.where)
         return _waveform(path, clock, channels[place]), len(channels[place])
 
-    times: dict[str, Floats] = {}
+    times: dict[str, Callable[[int], Iterator[Floats]]] = {}
     zero = None
     clock = wanted.get("time")
     if clock is not None and clock.column == WAVEFORM_COLUMN:
@@ -149,17 +154,23 @@ def _waveform_times(
                 hint=f'Give a channel of another rate time_column = "{WAVEFORM_COLUMN}".',
             )
         (zero, offset, increment), size = found[shared[0]]
-        times["time"] = offset + increment * np.arange(size, dtype=np.float64)
+        times["time"] = partial(_regular, offset, increment, size)
     for key, channel in layout.channels.items():
         if channel.time_column == WAVEFORM_COLUMN:
             (start, offset, increment), size = waveform(key, wanted[f"{key}.time"])
             if zero is not None and start is not None:
                 offset += float((start - zero) / np.timedelta64(1, "s"))
-            times[f"{key}.time"] = offset + increment * np.arange(size, dtype=np.float64)
+            times[f"{key}.time"] = partial(_regular, offset, increment, size)
     return times
 
 
-def read_tdms(path: Path, layout: Layout, *, name: str) -> RawLog:
+def _regular(offset: float, increment: float, size: int, n_rows: int) -> Iterator[Floats]:
+    """Times of a waveform, in parts of so many."""
+    for part in row_parts(size, n_rows):
+        yield offset + increment * np.arange(part.start, part.stop, dtype=np.float64)
+
+
+def read_tdms(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
     """Read the declared channels of one group; channel scaling in the file is applied.
 
     Parameters
@@ -170,6 +181,8 @@ def read_tdms(path: Path, layout: Layout, *, name: str) -> RawLog:
         ``group`` (may be left out where there is one), ``missing`` and the channels.
     name : str
         Name of the file for the product.
+    parts : Parts, optional
+        How much of it is read at a time.
 
     Returns
     -------
@@ -180,13 +193,15 @@ def read_tdms(path: Path, layout: Layout, *, name: str) -> RawLog:
     ------
     LogError
         If the file, the group or a channel cannot be used.
+    DataError
+        If the disk is full.
     """
     source = hash_source(path, name)
     with open_tdms(path) as file:
         group = tdms_group(path, file, layout.group)
         table = tdms_table(path, group)
         made = _waveform_times(path, layout, group, table)
-        columns, n_rows = read_columns(path, layout, table, made)
+        columns, n_rows = read_columns(path, layout, table, made, parts=parts)
         properties = {**file.properties, **group.properties}
         cut = file.file_status.incomplete_final_segment
     return RawLog(

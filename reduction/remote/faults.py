@@ -54,7 +54,11 @@ def said_of(
     """
     place = shown_address(address)
     chain = list(_chain(error))
-    found = f"{type(error).__name__}: {_text_of(error, address)}".rstrip(": ")
+    # a package may call every answer but the right one a file that is not there
+    status, speaker = next(
+        ((_status(one), one) for one in chain if _status(one) is not None), (None, error)
+    )
+    found = f"{type(speaker).__name__}: {_text_of(speaker, address)}".rstrip(": ")
     if any(isinstance(one, OSError) and one.errno in _FULL for one in chain):
         return fault(
             place, "there is no room on this machine for a copy", found=found,
@@ -65,14 +69,18 @@ def said_of(
             place, f"there is no permission: it cannot be {doing}", found=found,
             needed="credentials as the package of this kind of address takes them",
         )  # fmt: skip
-    if begun and not any(isinstance(one, FileNotFoundError) for one in chain):
+    if isinstance(error, IsADirectoryError):
+        return fault(place, "it is a folder", needed="the address of a file")
+    if begun and not isinstance(error, FileNotFoundError):
         return fault(
             place, "the transfer broke off", found=f"{begun}; {found}", needed="all of it",
             hint="Run again.",
         )  # fmt: skip
     if any(_is_cut_off(one) for one in chain):
         return fault(place, "its host cannot be reached", found=found)
-    if any(isinstance(one, FileNotFoundError) or _status(one) == 404 for one in chain):
+    if status == 404 or (status is None and isinstance(error, FileNotFoundError)):
+        if doing == "written":
+            return fault(place, "there is no such bucket or folder", needed="one that is there")
         return fault(place, "there is no such file", needed="the address of a file")
     return fault(place, f"it cannot be {doing}", found=found)
 
@@ -112,7 +120,7 @@ def _is_cut_off(error: BaseException) -> bool:
     )
 
 
-def _text_of(error: Exception, address: str) -> str:
+def _text_of(error: BaseException, address: str) -> str:
     """First line of what a package said, without any part of the address that is secret."""
     text = without_secrets(" ".join(str(error).split()))
     for secret in secrets_of(address):

@@ -50,6 +50,7 @@ def mirrored(address: str, folder: Path) -> Iterator[None]:
     folder.mkdir(parents=True, exist_ok=True)
     before = _products(address)
     for name in before:
+        # a listing and a look at one file may mark the same state differently
         fetch(below(address, name), folder / name, fault=product_fault)
     sums = _sums(folder)
     try:

@@ -73,7 +73,9 @@ def state_of(address: str, *, fault: Fault = LogError) -> State:
         raise said_of(error, address, fault, doing="read") from None
 
 
-def fetch(address: str, target: Path, *, fault: Fault = LogError) -> State:
+def fetch(
+    address: str, target: Path, *, before: State | None = None, fault: Fault = LogError
+) -> State:
     """Copy a file from the net, in blocks.
 
     Parameters
@@ -82,6 +84,8 @@ def fetch(address: str, target: Path, *, fault: Fault = LogError) -> State:
         Of the file.
     target : pathlib.Path
         The copy; its folder is made. Nothing stands there where the copy is not whole.
+    before : State, optional
+        As the file was when it was chosen; looked at now where left out.
     fault : callable
         Makes the error.
 
@@ -97,7 +101,7 @@ def fetch(address: str, target: Path, *, fault: Fault = LogError) -> State:
     SettingsError
         If no package speaks to such an address.
     """
-    before = state_of(address, fault=fault)
+    before = before or state_of(address, fault=fault)
     place = connect(address)
     target.parent.mkdir(parents=True, exist_ok=True)
     try:
@@ -254,7 +258,10 @@ def _put_and_name(source: Path, place: Place) -> None:
 
 def _state(place: Place) -> State:
     place.system.invalidate_cache()
-    return _state_from(place.system.info(place.path))
+    about = place.system.info(place.path)
+    if about.get("type") == "directory":
+        raise IsADirectoryError
+    return _state_from(about)
 
 
 def _state_from(about: dict[str, Any]) -> State:

@@ -240,6 +240,29 @@ def test_the_uncertainty_of_the_length_scales_every_strain_of_a_comparison(run):
     np.testing.assert_allclose(np.abs(error), 0.05 / 96 * measured.strain, rtol=1e-6, atol=1e-12)
 
 
+def test_an_archive_of_some_cycles_is_compared_by_these_and_says_so(run, tmp_path):
+    plan = load_campaign(RAW / "campaign.toml")
+    whole = compare_archive(
+        run.processed / "D-64.nc", plan.hoses["H64"], plan.comparisons["H64-dynamic"]
+    )
+    with open_archive(run.processed / "D-64.nc") as archive:
+        data = archive.load()
+    kept = np.flatnonzero(np.isin(data["cycle_number"], [0, 1, 2, 3, 11, 12]))
+    part = data.isel(sample=kept).assign(sample_index=("sample", kept))
+    part.assign_attrs(stored_samples="some of many").to_netcdf(tmp_path / "D-64.nc")
+    found = compare_archive(
+        tmp_path / "D-64.nc", plan.hoses["H64"], plan.comparisons["H64-dynamic"]
+    )
+    note = "from the samples that are stored of a long record: some of many"
+    assert note in found.comparison.notes and note not in whole.comparison.notes
+    cycles, of_whole = found.comparison.cycles, whole.comparison.cycles
+    assert cycles.cycle_number.tolist() == [1, 2, 3, 11, 12]
+    assert of_whole.cycle_number.tolist() == list(range(1, 13))
+    # noise of 5 lbf is in neither mean
+    bias = [one.comparison.differences[one.comparison.judged].bias for one in (found, whole)]
+    assert bias[0] == pytest.approx(bias[1], abs=2.0)
+
+
 def copied(tmp_path, change=lambda text: text):
     folder = tmp_path / "raw"
     folder.mkdir(exist_ok=True)

@@ -142,7 +142,8 @@ def test_a_first_rise_of_one_strain_is_none():
     assert found.spacing == 0.01
 
 
-def test_the_first_rise_ends_where_the_first_cycle_turns():
+@pytest.mark.parametrize("is_part", [False, True])
+def test_the_first_rise_ends_where_the_first_cycle_turns(is_part):
     # the peaks of later cycles go further at the same tension: they are no part of the rise
     dims = ("specimen", "branch_name", "first_loading_strain_bin")
     load = np.full((2, 2, 4), np.nan)
@@ -152,7 +153,9 @@ def test_the_first_rise_ends_where_the_first_cycle_turns():
             first_loading_strain_bin=(dims[2], [0.01, 0.02, 0.03, 0.05]),
             branch_tension_first_loading=(dims, load),
             branch_tension_first_loading_standard_uncertainty=(dims, 0 * load),
-            cycle_last_sample=("cycle", [2, 4]),
+            # of a record that is stored in part places are still those of the record
+            cycle_last_sample=("cycle", [900, 4000] if is_part else [2, 4]),
+            **({"sample_index": ("sample", [0, 500, 900, 901, 4000])} if is_part else {}),
             strain=(("specimen", "sample"), [[0.0, 0.032, 0.01, 0.055, 0.02], [0.0] * 5]),
         ),
         "R-1",

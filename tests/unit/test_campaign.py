@@ -471,7 +471,7 @@ def test_the_campaigns_of_the_project_load(name):
 def test_a_file_on_the_net_is_refused_in_words(folder):
     words = (
         "the log of test 'T' is an address on the net, and none is fetched unasked; found "
-        "'https://example.org/T.csv'; needed --allow-remote it"
+        "'https://example.org/T.csv'; needed --allow-remote"
     )
     with pytest.raises(SettingsError, match=words):
         load(folder, BASE + TEST.replace("T.csv", "https://example.org/T.csv"))

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from reduction.errors import LogError
+from reduction.ingest.checked import CheckedColumn
 from reduction.ingest.columns import Wanted
 from reduction.ingest.layout import Layout
-from reduction.ingest.table import ColumnTable, matrix_table, read_columns, to_floats
+from reduction.ingest.parts import Parts
+from reduction.ingest.table import ColumnTable, matrix_table, read_columns, row_parts
 
 PATH = Path("log.h5")
 TIME = Wanted("time", "t", "s", "time")
@@ -20,9 +22,26 @@ def layout(**settings):
     return Layout.model_validate({"format": "hdf5", "channels": channels, **settings})
 
 
+def in_parts(values):
+    """A loader of columns that are all of the same length or shorter."""
+
+    def load(place, n_rows):
+        return (values[place][part] for part in row_parts(len(values[place]), n_rows))
+
+    return load
+
+
 def table(**columns):
-    values = list(columns.values())
-    return ColumnTable(tuple(columns), ("",) * len(columns), lambda place: values[place])
+    values = [np.asarray(column) for column in columns.values()]
+    n_rows = max(column.size for column in values)
+    return ColumnTable(tuple(columns), ("",) * len(columns), in_parts(values), n_rows)
+
+
+def to_floats(path, wanted, values, layout):
+    """A column of one part."""
+    column = CheckedColumn(path, wanted, layout, None)
+    column.add(values)
+    return column.finish()
 
 
 @pytest.mark.parametrize("kind", ["f2", "f4", "f8", "i1", "u2", "i4", "i8", ">f8", ">i4"])
@@ -80,12 +99,13 @@ def test_declared_columns_are_read_and_counted():
 
 
 def test_columns_that_the_reader_makes_are_not_looked_up():
-    columns, _ = read_columns(PATH, layout(), table(F=np.ones(2)), {"time": np.arange(2.0)})
+    made = {"time": lambda n_rows: iter([np.arange(2.0)])}
+    columns, _ = read_columns(PATH, layout(), table(F=np.ones(2)), made)
     assert columns["time"].tolist() == [0, 1]
 
 
 def test_stated_units_are_checked():
-    stated = ColumnTable(("t", "F"), ("s", "N"), lambda _: np.ones(2))
+    stated = ColumnTable(("t", "F"), ("s", "N"), in_parts([np.ones(2)] * 2))
     with pytest.raises(LogError, match=r"\[F\]: the unit in the file is not the declared one"):
         read_columns(PATH, layout(), stated)
 
@@ -94,7 +114,7 @@ def test_a_matrix_has_numbered_columns_or_named_ones():
     matrix = np.arange(6.0).reshape(3, 2)
     plain = matrix_table(PATH, matrix, where="'M'")
     assert plain.names == ("", "")
-    assert plain.load(1).tolist() == [1, 3, 5]
+    assert [part.tolist() for part in plain.load(1, 2)] == [[1, 3], [5]]
     assert matrix_table(PATH, matrix, where="'M'", names=("t", "F")).names == ("t", "F")
 
 
@@ -103,7 +123,7 @@ def test_a_table_of_records_has_the_names_of_its_fields():
     records["F"] = [1, 2, 3]
     made = matrix_table(PATH, records, where="'M'")
     assert made.names == ("t", "F")
-    assert made.load(1).tolist() == [1, 2, 3]
+    assert [part.tolist() for part in made.load(1, 3)] == [[1, 2, 3]]
 
 
 @pytest.mark.parametrize("what", ["names", "units"])
@@ -116,3 +136,32 @@ def test_a_matrix_with_another_number_of_names_or_units_is_refused(what):
 def test_what_has_no_rows_and_columns_is_no_matrix(shape):
     with pytest.raises(LogError, match="'M' is not a matrix"):
         matrix_table(PATH, np.zeros(shape), where="'M'")
+
+
+def test_rows_that_the_file_keeps_together_are_read_once_for_all_columns():
+    asked = []
+
+    class Rows:
+        shape, dtype = (10, 2), np.dtype(float)
+
+        def __getitem__(self, rows):
+            asked.append((rows.start, rows.stop))
+            return np.arange(20.0).reshape(10, 2)[rows]
+
+    made = matrix_table(PATH, Rows(), where="'M'", names=("t", "F"), n_together=4)
+    parts = Parts(in_memory=0, n_bytes=80)
+    columns, _ = read_columns(PATH, layout(), made, parts=parts)
+    assert asked == [(0, 4), (4, 8), (8, 10)]
+    assert columns["tension.1"].tolist() == list(range(1, 20, 2))
+
+
+@pytest.mark.parametrize("n_bytes", [1, 16, 40, 1000])
+def test_a_fault_is_told_alike_in_parts_of_any_length(n_bytes):
+    values = np.array([0.0, np.inf, 2.0, np.nan, np.nan, 5.0])
+    with pytest.raises(LogError, match=r"\[F\]: 2 of 6 values are NaN, first value 4; found nan"):
+        read_columns(
+            PATH,
+            layout(missing=[""]),
+            table(t=np.arange(6), F=values),
+            parts=Parts(in_memory=0, n_bytes=n_bytes),
+        )

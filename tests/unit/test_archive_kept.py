@@ -1,0 +1,197 @@
+"""Of a long record an archive holds selected cycles and what is in no cycle, and says so."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from long_records import AFTER, BEFORE, PER_CYCLE, cycles_of, long_test
+
+from reduction.archive.check import check_archive
+from reduction.archive.dataset import to_dataset
+from reduction.archive.kept import kept_samples, select_places
+from reduction.archive.open import open_archive
+from reduction.archive.write import write_archive
+from reduction.moduli.groups import select_cycles
+from reduction.notes import severity_of
+from reduction.record import Quality
+from reduction.settings import ArchiveSettings, ModulusSettings, ReductionSettings
+
+
+def wanted(samples=None, longest=4000, selected=8):
+    return ReductionSettings(
+        archive=ArchiveSettings(samples, longest), modulus=ModulusSettings(selected_cycles=selected)
+    )
+
+
+def built(test, kept):
+    return to_dataset(test, version="1.2.3", command="reduction run", kept=kept)
+
+
+def test_a_short_record_a_whole_one_and_a_test_without_a_log_are_stored_as_they_are(stepwise_test):
+    test = long_test()
+    assert kept_samples(test, wanted(longest=test.record.n_samples)) is None
+    assert kept_samples(test, wanted("all", longest=1000)) is None
+    assert kept_samples(stepwise_test, wanted("selected", longest=1000)) is None
+    assert kept_samples(test, wanted(longest=test.record.n_samples - 1)) is not None
+
+
+def test_a_record_of_which_everything_is_selected_is_stored_whole():
+    assert kept_samples(long_test(n_cycles=8), wanted("selected", longest=10**6)) is None
+
+
+def test_selected_cycles_and_all_that_is_in_no_cycle_stay():
+    test = long_test()
+    found = kept_samples(test, wanted("selected", longest=10**6)).index
+    number = test.cycles.cycle_number
+    # first three, last three, and by equal ratio between them: the rule of the modulus curves
+    expected = np.isin(number, [0, 1, 2, 3, 10, 32, 98, 99, 100])
+    np.testing.assert_array_equal(found, np.flatnonzero(expected))
+
+
+def test_cycles_whose_curves_are_pooled_are_there_by_their_first():
+    test = long_test()
+    curves = type("Curves", (), {"selected_cycle": np.array([1, 41])})()
+    found = kept_samples(replace(test, curves=curves), wanted("selected", longest=10**6))
+    assert set(test.cycles.cycle_number[found.index]) == {0, 1, 2, 3, 10, 32, 41, 98, 99, 100}
+
+
+def test_what_is_too_long_is_thinned_and_keeps_its_ends_and_its_extremes():
+    test = long_test(n_samples=100_000)
+    tension = test.record.tension.copy()
+    tension[0, 40_001], tension[0, 40_003] = 1e6, -1e6
+    flags = test.record.quality_flag.copy()
+    flags[0, 40_005] = Quality.SPIKE
+    tension[0, 40_005] = 2e6
+    test = replace(test, record=replace(test.record, tension=tension, quality_flag=flags))
+    kept = kept_samples(test, wanted(longest=4000))
+    quarter = 250  # of a thousand, a quarter of 4000
+    assert set(range(quarter)) <= set(kept.index)
+    assert set(range(100_000 - quarter, 100_000)) <= set(kept.index)
+    inner = kept.index[(kept.index >= quarter) & (kept.index < 100_000 - quarter)]
+    places, counts = np.unique(np.diff(inner), return_counts=True)
+    assert places[np.argmax(counts)] == 199  # 99500 samples by 500, rounded up
+    assert {40_001, 40_003} <= set(kept.index)
+    assert 40_005 not in kept.index  # a spike is no extreme
+    for row in test.strain:
+        assert {int(row.argmin()), int(row.argmax())} <= set(kept.index)
+    assert kept.index.size <= 1000 + 10
+    assert "1 of the longest cycles and stretches in no cycle are thinned" in kept.words
+
+
+def test_slow_cycles_are_thinned_evenly():
+    cycles = cycles_of(4, before=10, per_cycle=1000, after=10)
+    places = select_places(4020, cycles, np.array([1, 4]), most=420)
+    own = places.index[(places.index >= 10) & (places.index < 1010)]
+    assert own[0] == 10 and own[-1] == 1009
+    assert np.unique(np.diff(own)[:-1]).tolist() == [6]  # 999 samples by 199, rounded up
+    assert places.thinned.tolist() == [[10, 1010], [3010, 4010]]
+
+
+def test_of_very_many_rests_the_longest_and_those_beside_a_kept_cycle_stay():
+    cycles = cycles_of(3000, per_cycle=10, rest=2, before=5, after=5)
+    places = select_places(cycles.cycle_number.size, cycles, np.array([1, 2900]), most=10**6)
+    start = cycles.first[2899]
+    assert {start - 2, start - 1, start + 10, start + 11} <= set(places.index)
+    number = cycles.cycle_number
+    is_rest = number[places.index] == 0
+    # a thousand of equal length, and both beside cycle 2900
+    assert is_rest.sum() == 5 + 5 + 2 * (998 + 2)
+    assert places.n_left_out == 3001 - 1002
+    words = kept_samples(
+        long_test(cycles=cycles), wanted("selected", longest=10**7, selected=6)
+    ).words
+    assert "of the shorter stretches between cycles are left out" in words
+
+
+@settings(deadline=None)
+@given(
+    n_cycles=st.integers(1, 60),
+    per_cycle=st.integers(2, 40).map(lambda half: 2 * half),
+    rest=st.integers(0, 30),
+    before=st.integers(0, 200),
+    after=st.integers(0, 200),
+    longest=st.integers(2, 20),
+    most=st.integers(600, 4000),
+)
+def test_places_rise_stay_in_the_record_and_hold_the_ends_of_every_kept_cycle(
+    n_cycles, per_cycle, rest, before, after, longest, most
+):
+    cycles = cycles_of(n_cycles, before=before, per_cycle=per_cycle, after=after, rest=rest)
+    n_samples = cycles.cycle_number.size
+    numbers = select_cycles(n_cycles, longest=longest)
+    places = select_places(n_samples, cycles, numbers, most=most)
+    index = places.index
+    assert (np.diff(index) > 0).all()
+    assert index[0] == 0 and index[-1] == n_samples - 1
+    assert index.size <= max(most, 8 * (n_cycles + 1 + numbers.size))
+    assert set(cycles.first[numbers - 1]) | set(cycles.last[numbers - 1]) <= set(index)
+    left = np.setdiff1d(np.arange(1, n_cycles + 1), numbers)
+    assert not np.isin(cycles.cycle_number[index], left).any()
+    if not places.thinned.size:
+        whole = ~np.isin(cycles.cycle_number, left)
+        np.testing.assert_array_equal(index, np.flatnonzero(whole))
+
+
+def test_the_archive_says_what_it_holds_and_counts_over_the_whole_record(tmp_path):
+    test = long_test()
+    kept = kept_samples(test, wanted("selected"))
+    write_archive(built(test, kept), tmp_path / "L-1.nc")
+    with open_archive(tmp_path / "L-1.nc") as archive:
+        index = archive["sample_index"].values
+        np.testing.assert_array_equal(index, kept.index)
+        np.testing.assert_array_equal(archive["time"], test.record.time[index])
+        for name, whole in (
+            ("crosshead_position", test.record.crosshead_position),
+            ("tension", test.record.tension),
+            ("quality_flag", test.record.quality_flag),
+            ("machine_cycle_number", test.record.cycle_counter),
+            ("strain", test.strain),
+            ("phase", test.phase),
+            ("cycle_number", test.cycles.cycle_number),
+            ("branch", test.cycles.branch),
+        ):
+            np.testing.assert_array_equal(archive[name], whole[..., index])
+        area = np.pi / 4 * np.array([[0.02], [0.01]]) ** 2
+        np.testing.assert_allclose(
+            archive["nominal_stress"], test.record.tension[:, index] / area, rtol=1e-14
+        )
+        n_samples = BEFORE + 100 * PER_CYCLE + AFTER
+        assert [int(archive[f"n_rows_{name}"]) for name in ("read", "kept", "stored")] == [
+            n_samples + 2, n_samples, index.size,
+        ]  # fmt: skip
+        resampled = archive["quality_mask"].values.tolist().index("resampled")
+        assert archive["n_flagged"].values[:, resampled].tolist() == [
+            0,
+            0,
+            len(range(0, n_samples, 7)),
+        ]
+        # places in the record, whatever is stored of it
+        np.testing.assert_array_equal(archive["cycle_first_sample"], test.cycles.first)
+        assert archive.attrs["stored_samples"] == kept.words
+    assert kept.words.startswith(
+        f"{index.size} of {n_samples}; 8 of 100 cycles (1, 2, 3, 10, 32, 98, 99, 100) and what"
+    )
+    assert kept.note.startswith(f"samples are stored in part: {index.size} of {n_samples};")
+    assert severity_of("test", kept.note) == "method"
+
+
+def test_an_archive_of_the_whole_record_has_no_index_of_samples(rich_test):
+    dataset = built(rich_test, None)
+    assert "sample_index" not in dataset
+    assert dataset.attrs["stored_samples"] == "all"
+    assert int(dataset["n_rows_stored"]) == int(dataset["n_rows_kept"])
+
+
+def test_an_archive_of_a_part_keeps_every_rule_of_cf(tmp_path):
+    path = tmp_path / "L-1.nc"
+    write_archive(built(long_test(), kept_samples(long_test(), wanted("selected"))), path)
+    assert check_archive(path) == []
+    checker = Path(__file__).parents[1] / "compliance.py"
+    done = subprocess.run(
+        [sys.executable, checker, path], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout
