@@ -7,10 +7,12 @@ over samples by `sample_blocks` and makes what is as long as a record by `empty_
 
 from __future__ import annotations
 
+import ctypes
 import mmap
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import IO, Any
 
@@ -29,6 +31,7 @@ __all__ = [
     "finite_extremes",
     "first_sample",
     "full_like",
+    "give_back",
     "interval_labels",
     "is_on_disk",
     "join_columns",
@@ -48,8 +51,11 @@ BLOCK = 1 << 16
 
 Where = Callable[[slice], NDArray[np.bool_]]
 
+# of the GNU C library; other systems give back by themselves
+_MALLOC_TRIM = getattr(ctypes.CDLL(None), "malloc_trim", None) if os.name == "posix" else None
+
 _ON_DISK_FROM = 1 << 20  # bytes; less is not worth a file
-_TAKEN = 1 << 7  # each sample that is touched brings 64 KB of its file into memory
+_SPAN = 1 << 20  # samples of a stretch; each one touched may bring 2 MB of its file into memory
 
 
 class _ScratchMap(mmap.mmap):
@@ -77,6 +83,16 @@ def let_go(*arrays: NDArray[Any]) -> None:
         found = _map_of(array)
         if found is not None and hasattr(mmap, "MADV_DONTNEED"):
             found.madvise(mmap.MADV_DONTNEED)
+
+
+def give_back(*arrays: NDArray[Any]) -> None:
+    """Give what earlier work has freed back to the system, if any of the arrays is on disk.
+
+    The C library keeps what is freed, in pieces between what is not: half of the memory of a
+    long log after a few stages.
+    """
+    if _MALLOC_TRIM is not None and any(is_on_disk(array) for array in arrays):
+        _MALLOC_TRIM(0)
 
 
 def sample_blocks(
@@ -144,8 +160,15 @@ def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArr
         return np.asarray(series[..., index])
     flat = index.reshape(-1)
     taken = np.empty((*series.shape[:-1], flat.size), dtype=series.dtype)
-    for part in sample_blocks(flat.size, series, size=_TAKEN):
-        taken[..., part] = series[..., flat[part]]
+    edges = np.flatnonzero(np.diff(flat // _SPAN)) + 1
+    is_to_and_fro = edges.size > series.shape[-1] // _SPAN and bool((np.diff(flat) < 0).any())
+    if is_to_and_fro:  # once over all instead
+        order = np.argsort(flat, kind="stable")
+        taken[..., order] = take_samples(series, flat[order])
+    else:
+        for start, stop in pairwise([0, *edges.tolist(), flat.size]):
+            taken[..., start:stop] = series[..., flat[start:stop]]
+            let_go(series)
     return taken.reshape(*series.shape[:-1], *index.shape)
 
 

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from numpy.typing import NDArray
 
-from reduction.samples import let_go
+from reduction.samples import give_back, let_go
 
 __all__ = ["run_blocks"]
 
@@ -62,9 +62,12 @@ def run_blocks(
 
     n_workers = min(_n_processors(), len(todo))
     if n_workers < 2:
-        return [run(item) for item in todo]
-    with ThreadPoolExecutor(n_workers) as workers:
-        return list(workers.map(run, todo))
+        results = [run(item) for item in todo]
+    else:
+        with ThreadPoolExecutor(n_workers) as workers:
+            results = list(workers.map(run, todo))
+    give_back(*samples)
+    return results
 
 
 def _n_processors() -> int:

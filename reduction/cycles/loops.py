@@ -188,7 +188,8 @@ def close_loops(
         for name, column in values.items():
             tables[name][index] = column
             uncertainty[name][index] = errors[name]
-        let_go(measured, *tables.values(), *uncertainty.values())
+            let_go(tables[name], uncertainty[name])
+        let_go(measured)
     tables["cycle_start_time"][:] = begin
     tables["frequency"][:] = 1 / duration
     # a turn is known to one sample at each end of the cycle, evenly spread

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.samples import give_back, let_go
 
 __all__ = ["Cycles", "Loops"]
 
@@ -101,3 +102,9 @@ class Loops:
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze_arrays(self)
+
+    def let_go(self) -> None:
+        """Take the tables of a long test, which lie on disk, off the memory of the process."""
+        own = (getattr(self, item.name) for item in fields(self))
+        let_go(*(one for one in own if isinstance(one, np.ndarray)), *self.uncertainty.values())
+        give_back(self.frequency)

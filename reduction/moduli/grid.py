@@ -123,8 +123,8 @@ def _sample_spacing(strain: Floats, cycles: Cycles, stroke: float) -> float:
         if kept.size < 2:  # nothing at constant rate: the untrimmed curve alone can be had
             kept = np.array([first, last])
         if last > first:
-            travel = np.abs(strain[:, kept[-1]] - strain[:, kept[0]])
-            spacings.append(travel / (kept[-1] - kept[0]))
+            begin, end = take_samples(strain, kept[[0, -1]]).T
+            spacings.append(np.abs(end - begin) / (kept[-1] - kept[0]))
     known = np.asarray(spacings)
     known = known[np.isfinite(known)]
     return float(np.median(known)) if known.size else stroke

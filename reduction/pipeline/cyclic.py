@@ -45,6 +45,7 @@ def parts_of_cycles(
     break_in = settings.cycles.break_in_cycles
     loops = close_loops(record.time, tension, strain, cycles, waveform=settings.cycles.waveform)
     amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in)
+    loops.let_go()
     if np.isnan(area).any():
         # a rope without a diameter has spring constants alone
         return {"loops": loops, "amplitude": amplitude}
@@ -63,6 +64,7 @@ def parts_of_cycles(
         "amplitude": amplitude,
         "trend": fit_peak_trend(loops, area=area, break_in_cycles=break_in),
     }
+    loops.let_go()
     ratios = compare_specimens(curves, specimens, history)
     if cycles.n_cycles >= settings.slip.minimum_cycles:
         level, slope = cycle_tension_level(
@@ -88,4 +90,5 @@ def parts_of_cycles(
                 )
             )
     parts["ratios"] = tuple(ratios)
+    loops.let_go()
     return parts

@@ -133,7 +133,7 @@ def test_imports_below_the_edge_are_numpy_and_scipy(path):
     if room(path) == "workers":  # threads start in one place
         standard |= {"os", "concurrent"}
     if room(path) == "samples":  # and scratch files are made in one
-        standard |= {"os", "mmap", "tempfile"}
+        standard |= {"ctypes", "os", "mmap", "tempfile"}
     for parts, line in imports(path):
         assert parts[0] in standard | BELOW_THE_EDGE, f"{path}:{line}: {parts[0]}"
 

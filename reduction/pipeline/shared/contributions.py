@@ -127,6 +127,7 @@ def shared_uncertainty_of_cycles(
                     )  # fmt: skip
                 shared[name][index, block] = spread
         let_go(*shared.values())
+        test.loops.let_go()
     return shared
 
 

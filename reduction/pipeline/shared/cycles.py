@@ -20,10 +20,11 @@ from reduction.pipeline.shared.blocks import blocks_of_cycles, cycles_of_test
 from reduction.pipeline.shared.loops import of_loops
 from reduction.product import ReducedTest
 from reduction.record import Floats
+from reduction.samples import empty_like
 from reduction.settings import CycleSettings
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import error_field
-from reduction.uncertainty.join import merged, renamed, stacked
+from reduction.uncertainty.join import merged, stacked
 from reduction.uncertainty.points import (
     chord_contributions,
     secant_contributions,
@@ -130,14 +131,22 @@ def _of_each(
 ) -> Contributions:
     """Contributions to what trends and steps read of each cycle."""
     names = _OF_TREND if test.rope_step is None else (*_OF_TREND, *_OF_STEP)
-    blocks = []
-    for block in blocks_of_cycles(0 if test.loops is None else test.loops.frequency.shape[1]):
+    component: tuple[Component, ...] = ()
+    rows: dict[str, Floats] = {}
+    if test.loops is None or test.cycles is None:
+        return Contributions(component)
+    for block in blocks_of_cycles(test.cycles.n_cycles):
         part = cycles_of_test(test, block)
-        if part.loops is not None and part.cycles is not None:
-            of_block = of_loops(part.loops, index, errors, model, part.cycles, settings)
-            blocks.append(renamed(of_block, dict(zip(names, names, strict=True))))
-    rows = {name: np.concatenate([one.values[name] for one in blocks], axis=-1) for name in names}
-    return Contributions(blocks[0].component, rows)
+        if part.loops is None or part.cycles is None:
+            continue
+        of_block = of_loops(part.loops, index, errors, model, part.cycles, settings)
+        component = of_block.component
+        for name in names:
+            if name not in rows:
+                shape = (len(component), test.cycles.n_cycles)
+                rows[name] = empty_like(test.loops.frequency, shape=shape)
+            rows[name][:, block] = of_block.values[name]
+    return Contributions(component, rows)
 
 
 def _of_series(loops: Loops, index: int, of_each: Contributions, name: str) -> Floats:
