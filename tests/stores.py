@@ -141,13 +141,18 @@ def memory_store():
 
 
 class Server(ThreadingHTTPServer):
-    """Files by their paths; ``user`` has to be named, ``statuses`` refuse, ``cut`` breaks off."""
+    """Files by their paths; ``user`` has to be named, ``statuses`` refuse, ``cut`` breaks off.
+
+    Of one that is ``stopped`` half is sent, and then nothing.
+    """
 
     def __init__(self):
         super().__init__(("127.0.0.1", 0), _Handler)
         self.files = {}
         self.statuses = {}
         self.cut = {}
+        self.stopped = set()
+        self.has_stopped = threading.Event()
         self.user = ""
         self.asked = []
 
@@ -179,7 +184,12 @@ class _Handler(BaseHTTPRequestHandler):
         if status == 200:
             self.send_header("ETag", f'"{sha256(data).hexdigest()}"')
         self.end_headers()
-        if with_body:
+        if with_body and name in self.server.stopped:
+            self.wfile.write(data[: len(data) // 2])
+            self.wfile.flush()
+            self.server.has_stopped.set()
+            self.connection.recv(1)  # until the other side is gone
+        elif with_body:
             self.wfile.write(data[: self.server.cut.get(name, len(data))])
 
 

@@ -2,8 +2,11 @@
 
 import csv
 import json
+import os
 import re
 import shutil
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -17,7 +20,8 @@ from reduction.campaign import staged
 from reduction.errors import ArchiveError, LogError, SettingsError
 from reduction.remote.mirror import mirrored
 
-RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
+ROOT = Path(__file__).parents[2]
+RAW = ROOT / "raw" / "tmt-synthetic"
 CAMPAIGN = """
 tests = "tests.csv"
 [campaign]
@@ -279,6 +283,7 @@ def test_check_reads_a_remote_campaign_and_writes_nothing(bucket, command, tmp_p
 
 def test_a_log_that_is_not_there_is_the_error_of_its_test(bucket, command, tmp_path, scratch):
     del bucket.objects["bucket/raw/logs/B.csv"]
+    bucket.objects["bucket/processed/small/Z.nc"] = b"no archive"
     done = command(*RUN, cwd=tmp_path)
     assert done.returncode == 3
     message = "s3://bucket/raw/logs/B.csv: there is no such file; needed the address of a file"
@@ -289,6 +294,8 @@ def test_a_log_that_is_not_there_is_the_error_of_its_test(bucket, command, tmp_p
     assert "bucket/processed/small/B.nc" not in bucket.objects
     page = bucket.objects["bucket/reports/small/index.html"].decode()
     assert message in page and str(scratch) not in page
+    assert "s3://bucket/processed/small/Z.nc: belongs to no test of this campaign" in done.stderr
+    assert "Z.nc is not a netCDF file" in page
 
 
 def test_a_fault_in_a_remote_log_is_told_by_its_address_and_row(bucket, command, tmp_path):
@@ -385,9 +392,8 @@ def test_each_file_is_announced_and_fetched_once(bucket, monkeypatch):
         assert campaign.shown("logs/A.csv") == "s3://bucket/raw/logs/A.csv"
         assert campaign.addresses == {}
     names = ["campaign.toml", "tests.csv", "marks.csv", "logs/A.csv", "logs/B.csv"]
-    # logs are fetched side by side
-    assert sorted(said) == sorted(("fetch", name) for name in names)
-    assert sorted(fetched) == sorted(f"s3://bucket/raw/{name}" for name in names)
+    assert said == [("fetch", name) for name in names]
+    assert fetched == [f"s3://bucket/raw/{name}" for name in names]
 
 
 def test_products_that_were_finished_before_an_interruption_are_kept(
@@ -406,6 +412,28 @@ def test_products_that_were_finished_before_an_interruption_are_kept(
     ended = command(*RUN, cwd=tmp_path)
     assert ended.returncode == 130
     assert bucket.written == ["bucket/processed/small/A.nc"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+def test_a_command_that_is_told_to_end_takes_its_copies_away(here, tmp_path):
+    with stores.server() as site:
+        site.files |= {f"raw/{name}": data for name, data in files_below(here / "raw").items()}
+        site.stopped.add("raw/logs/B.csv")
+        scratch = tmp_path / "scratch"
+        scratch.mkdir()
+        words = ("run", site.address("raw/campaign.toml"), "--allow-remote")
+        with subprocess.Popen(
+            [sys.executable, "-m", "reduction", *words],
+            cwd=tmp_path, env=os.environ | {"TMPDIR": str(scratch), "PYTHONPATH": str(ROOT)},
+            stderr=subprocess.PIPE, text=True,
+        ) as process:  # fmt: skip
+            assert site.has_stopped.wait(60)
+            assert (next(scratch.iterdir()) / "campaign" / "logs" / "A.csv").is_file()
+            process.terminate()
+            _, told = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert told == "interrupted; products that were finished are kept\n"
+    assert list(scratch.iterdir()) == []
 
 
 def test_two_runs_do_not_mix(processed, here, tmp_path):
