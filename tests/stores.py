@@ -143,7 +143,8 @@ def memory_store():
 class Server(ThreadingHTTPServer):
     """Files by their paths; ``user`` has to be named, ``statuses`` refuse, ``cut`` breaks off.
 
-    Of one that is ``stopped`` half is sent, and then nothing.
+    Of one that is ``stopped`` half is sent, and then nothing; of one that is ``unsized`` neither
+    size nor mark is announced.
     """
 
     def __init__(self):
@@ -152,6 +153,7 @@ class Server(ThreadingHTTPServer):
         self.statuses = {}
         self.cut = {}
         self.stopped = set()
+        self.unsized = set()
         self.has_stopped = threading.Event()
         self.user = ""
         self.asked = []
@@ -180,8 +182,9 @@ class _Handler(BaseHTTPRequestHandler):
             status = 401
         self.send_response(status)
         data = self.server.files.get(name, b"") if status == 200 else b""
-        self.send_header("Content-Length", str(len(data)))
-        if status == 200:
+        if name not in self.server.unsized:
+            self.send_header("Content-Length", str(len(data)))
+        if status == 200 and name not in self.server.unsized:
             self.send_header("ETag", f'"{sha256(data).hexdigest()}"')
         self.end_headers()
         if with_body and name in self.server.stopped:

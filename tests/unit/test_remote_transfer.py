@@ -50,6 +50,12 @@ def test_a_file_of_a_server_is_copied_whole(site, tmp_path, user, query):
     assert all(path.endswith(query) for path in site.asked)
 
 
+def test_a_file_of_unknown_size_is_copied(site, tmp_path):
+    site.unsized.add("raw/T.csv")
+    assert fetch(site.address("raw/T.csv"), tmp_path / "T.csv").size is None
+    assert (tmp_path / "T.csv").read_bytes() == DATA
+
+
 def fault_of(address, target, match):
     with pytest.raises(LogError, match=match) as caught:
         fetch(address, target)
