@@ -43,11 +43,10 @@ class Ended(Generic[Result]):
 class Executor(Protocol):
     """One that works on the tests, each by itself.
 
-    ``n_workers`` is how many do it side by side, ``begun`` what is called with the id of a test
-    as work on it begins, ``is_elsewhere`` whether it is done in other processes.
+    ``begun`` is called with the id of a test as work on it begins; ``is_elsewhere`` says whether
+    it is done in other processes.
     """
 
-    n_workers: int
     is_elsewhere: bool
     begun: Callable[[str], None]
 
@@ -85,7 +84,6 @@ class _Later(Generic[Result]):
 class Serial:
     """One test after another, in this process and in the order in which they are given."""
 
-    n_workers = 1
     is_elsewhere = False
 
     def __init__(self) -> None:
