@@ -80,6 +80,13 @@ class ObjectStore(fsspec.AbstractFileSystem):
         self.objects[path] = data[:-1] if path in self.short else data
         self.written.append(path)
 
+    def pipe_file(self, path, value, mode="overwrite", **kwargs):
+        path = self._strip_protocol(path)
+        self._check(path)
+        if mode == "create" and path in self.objects:
+            raise FileExistsError
+        self.objects[path] = value
+
     def _rm(self, path):
         self._check(path)
         del self.objects[path]

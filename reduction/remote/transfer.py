@@ -26,8 +26,6 @@ __all__ = [
     "state_of",
 ]
 
-# stores that show a file when all of it is there; elsewhere a file that is written is seen to grow
-_WHOLE = {"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "adl", "oci", "oss", "tos", "hf"}
 _READ_ONLY = {"http", "https"}
 # what tells two states of a file apart, as far as a file system says it; the surest first
 _MARKS = (
@@ -150,7 +148,7 @@ def put(source: Path, address: str) -> None:
     refuse_read_only(address)
     place = connect(address)
     try:
-        if place.protocol in _WHOLE:
+        if place.is_whole:
             place.system.put_file(str(source), place.path)
         else:
             _put_and_name(source, place)

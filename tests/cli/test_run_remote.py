@@ -452,6 +452,32 @@ def test_two_runs_do_not_mix(processed, here, tmp_path):
     assert processed.written == []
 
 
+def test_one_run_at_a_time_puts_its_products(processed, here, tmp_path):
+    address = "s3://bucket/processed/small"
+    run = mirrored(address, tmp_path / "small")
+    run.__enter__()
+    (tmp_path / "small" / "A.nc").write_bytes(b"of this run")
+    processed.objects["bucket/processed/small/put.lock"] = b"of another"
+    message = (
+        "^s3://bucket/processed/small: another run puts its products here; found put.lock; needed "
+        "one run at a time in a folder of products. Nothing of this run was put there. Run again"
+    )
+    with pytest.raises(ArchiveError, match=message):
+        run.__exit__(None, None, None)
+    assert processed.written == []
+    assert processed.objects["bucket/processed/small/put.lock"] == b"of another"
+
+
+def test_a_folder_that_may_not_be_written_to_is_told(processed, tmp_path):
+    run = mirrored("s3://bucket/processed/small", tmp_path / "small")
+    run.__enter__()
+    (tmp_path / "small" / "A.nc").write_bytes(b"of this run")
+    processed.closed.add("bucket/processed/small/put.lock")
+    message = "^s3://bucket/processed/small/put.lock: there is no permission: it cannot be written"
+    with pytest.raises(ArchiveError, match=message):
+        run.__exit__(None, None, None)
+
+
 def test_products_in_a_store_whose_listing_marks_files_in_its_own_way(tmp_path):
     with stores.memory_store() as memory:
         memory.pipe("/p/small/A.nc", b"1")
