@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from reduction.address import shown_address
-from reduction.remote.faults import product_fault, said_of
-from reduction.remote.place import below, connect
+from reduction.remote.faults import attempt, product_fault
+from reduction.remote.place import Place, below, connect
 from reduction.remote.transfer import remove
 
 __all__ = ["CLAIM_NAME", "claimed"]
@@ -34,21 +34,26 @@ def claimed(address: str) -> Iterator[None]:
     """
     name = below(address, CLAIM_NAME)
     place = connect(name)
-    try:
-        parent = place.path.rpartition("/")[0]
-        if not place.is_whole and parent:
-            place.system.makedirs(parent, exist_ok=True)
-        place.system.pipe_file(place.path, b"a run puts its products here\n", mode="create")
-    except FileExistsError:
+    if not attempt(lambda: _is_made(place), name, product_fault, doing="written"):
         raise product_fault(
             shown_address(address), "another run puts its products here",
             found=CLAIM_NAME, needed="one run at a time in a folder of products",
             hint="Nothing of this run was put there. Run again; if no other is at work, that one "
             "was killed: delete the file.",
-        ) from None  # fmt: skip
-    except Exception as error:
-        raise said_of(error, name, product_fault, doing="written") from None
+        )  # fmt: skip
     try:
         yield
     finally:
         remove(name)
+
+
+def _is_made(place: Place) -> bool:
+    """Make a file; False where there is one."""
+    parent = place.path.rpartition("/")[0]
+    if not place.is_whole and parent:
+        place.system.makedirs(parent, exist_ok=True)
+    try:
+        place.system.pipe_file(place.path, b"a run puts its products here\n", mode="create")
+    except FileExistsError:
+        return False
+    return True

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import pickle
 import re
 import shutil
 import subprocess
@@ -350,6 +351,25 @@ def test_a_fault_of_a_remote_campaign_is_told_by_its_address(
     assert message in done.stderr
     assert json.loads(done.stdout)["error"] == done.stderr.strip("\n")
     assert bucket.written == []
+
+
+def test_a_campaign_goes_to_a_worker_with_its_copies_and_without_its_addresses(here, tmp_path):
+    shutil.copytree(here / "raw", tmp_path / "raw")
+    with stores.server() as site:
+        site.files["A.csv"] = (here / "raw" / "logs" / "A.csv").read_bytes()
+        table = "id,file,n_cycles,marks\n"
+        for name in ("A", "B"):
+            address = site.address(f"{name}.csv", user=USER, query=QUERY)
+            table += f"{name},{address},10,marks.csv\n"
+        (tmp_path / "raw" / "tests.csv").write_text(table)
+        with staged.staged_campaign(tmp_path / "raw" / "campaign.toml", allow_remote=True) as one:
+            sent = pickle.dumps(one)
+            there = pickle.loads(sent)  # noqa: S301
+            assert there.file(site.address("A.csv")).read_bytes() == site.files["A.csv"]
+            with pytest.raises(LogError, match=f"^{site.address('B.csv')}: there is no such file"):
+                there.file(site.address("B.csv"))
+    assert not any(secret.encode() in sent for secret in SECRETS)
+    assert not any(secret in repr(there) for secret in SECRETS)
 
 
 def test_a_table_that_may_not_be_read_is_told(bucket):

@@ -1,6 +1,7 @@
 """Files go over the net whole or not at all, and what goes wrong is said in words."""
 
 import errno
+import pickle
 import sys
 
 import pytest
@@ -61,7 +62,9 @@ def fault_of(address, target, match):
         fetch(address, target)
     assert not target.exists()
     assert "secret" not in str(caught.value) and "abcdef" not in str(caught.value)
-    assert caught.value.__cause__ is None  # what a package says may hold a signature
+    # what a package raised may hold a signature, and may not go to another process
+    assert caught.value.__cause__ is None and caught.value.__context__ is None
+    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)  # noqa: S301
     return caught.value
 
 
