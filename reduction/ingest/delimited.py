@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -13,7 +14,7 @@ import numpy as np
 from reduction.errors import LogError
 from reduction.ingest.columns import Wanted, check_lengths, find_column, wanted_columns
 from reduction.ingest.fields import Fields, read_fields
-from reduction.ingest.growing import GrowingLog, in_order
+from reduction.ingest.growing import AT_A_TIME, GrowingLog, in_order
 from reduction.ingest.layout import Layout
 from reduction.ingest.parts import Parts
 from reduction.ingest.preamble import check_units, keep_line
@@ -76,8 +77,13 @@ def read_delimited(path: Path, layout: Layout, *, name: str, parts: Parts | None
     """
     head = _Head()
     log: GrowingLog | None = None
-    with unchanged(path), open_text(path, layout.encoding, parts or Parts()) as file:
-        for rows, fields in in_order(partial(_fields, head), _data_rows(path, file, head, layout)):
+    with (
+        unchanged(path),
+        open_text(path, layout.encoding, parts or Parts()) as file,
+        ThreadPoolExecutor(AT_A_TIME) as workers,
+    ):
+        data_rows = _data_rows(path, file, head, layout)
+        for rows, fields in in_order(workers, partial(_fields, head), data_rows):
             log = log or GrowingLog([want for want, _ in head.wanted], file.folder)
             log.add(fields, rows.first_row)
         if log is None:

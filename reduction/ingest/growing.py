@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -18,14 +18,16 @@ from reduction.ingest.textrows import TextRows
 from reduction.record import Floats, Integers
 from reduction.samples import BLOCK, ColumnWriter
 
-__all__ = ["GrowingLog", "in_order"]
+__all__ = ["AT_A_TIME", "GrowingLog", "in_order"]
+
+AT_A_TIME = 2
+"""Parts whose numbers are read together. [1]."""
 
 _WORKERS = 4
-_AT_A_TIME = 2  # parts whose numbers are read together
 
 
 def in_order(
-    read: Callable[[TextRows], Fields], parts: Iterator[TextRows]
+    workers: Executor, read: Callable[[TextRows], Fields], parts: Iterator[TextRows]
 ) -> Iterator[tuple[TextRows, Fields]]:
     """Parts with what has been read from each, a few at the same time.
 
@@ -33,19 +35,18 @@ def in_order(
     """
     waiting: deque[tuple[TextRows, Future[Fields]]] = deque()
     error: ReductionError | None = None
-    with ThreadPoolExecutor(_AT_A_TIME) as workers:
-        is_done = False
-        while waiting or not is_done:
-            try:
-                part = next(parts, None)
-            except ReductionError as found:
-                part, error = None, found
-            is_done = part is None
-            if part is not None:
-                waiting.append((part, workers.submit(read, part)))
-            while waiting and (is_done or len(waiting) >= _AT_A_TIME):
-                first, fields = waiting.popleft()
-                yield first, fields.result()
+    is_done = False
+    while waiting or not is_done:
+        try:
+            part = None if is_done else next(parts, None)
+        except ReductionError as found:
+            part, error = None, found
+        is_done = part is None
+        if part is not None:
+            waiting.append((part, workers.submit(read, part)))
+        while waiting and (is_done or len(waiting) >= AT_A_TIME):
+            first, fields = waiting.popleft()
+            yield first, fields.result()
     if error is not None:
         raise error
 
