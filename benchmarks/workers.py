@@ -167,4 +167,4 @@ def main(n_tests: int, n_rows: int, repeats: int) -> None:
 
 if __name__ == "__main__":
     given = [int(one) for one in sys.argv[1:]]
-    main(*(given + [64, 4000, 3][len(given) :]))
+    main(*(given + [64, 6000, 3][len(given) :]))

@@ -25,6 +25,7 @@ Result = TypeVar("Result")
 PATIENCE = 60.0
 """How long a run waits for the first worker, and for one after the last was lost. [s]."""
 _LOOK = 1.0  # between two looks at whether scheduler and workers are there [s]
+_FIRST = 1 << 62  # priority of what takes no time
 DEATHS = 1
 """Of workers at a test, after which it is tried by itself. [1]."""
 
@@ -84,7 +85,7 @@ class Cluster:
         return self.start(pickle.loads, pickle.dumps(value), stage="", test="")
 
     def start(
-        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str
+        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str, size: int = 0
     ) -> Task[Result]:
         """Order a function of arguments at once; those without a stage come before others."""
 
@@ -94,7 +95,7 @@ class Cluster:
             return self._client.submit(
                 _work, __version__, self._run if stage else "", test, function, *given,
                 key=f"{stage or 'small'}-{self._run}-{self._number}", pure=False,
-                priority=0 if stage else 10,
+                priority=size if stage else _FIRST,
             )  # fmt: skip
 
         sent = _Sent(order, test)

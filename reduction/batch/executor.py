@@ -55,9 +55,12 @@ class Executor(Protocol):
         ...
 
     def start(
-        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str
+        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str, size: int = 0
     ) -> Task[Result]:
-        """Order a function of arguments; one that is a task stands for what the task gives."""
+        """Order a function of arguments; one that is a task stands for what the task gives.
+
+        Of work that is done side by side, that of the largest size is begun first.
+        """
         ...
 
     def ended(self, tasks: Iterable[Task[Result]]) -> Iterator[Ended[Result]]:
@@ -94,7 +97,7 @@ class Serial:
         return _Later(lambda: value, "")
 
     def start(
-        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str
+        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str, size: int = 0
     ) -> Task[Result]:
         """Keep the order until its result is asked for; a stage without a name is not told of."""
 

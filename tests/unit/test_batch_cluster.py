@@ -88,6 +88,19 @@ def test_serial_work_is_done_once_and_in_order():
     assert order == ["kept", "1", "2", "3"]
 
 
+def test_the_largest_work_is_begun_first():
+    begun = []
+    with local_cluster(1) as one:
+        one.begun = begun.append
+        tasks = [one.start(wait_a_little, 0, stage="reduce", test="held")]
+        tasks += [
+            one.start(wait_a_little, size, stage="reduce", test=str(size), size=size)
+            for size in (2, 9, 1, 5)
+        ]
+        assert len(list(one.ended(tasks))) == 5
+    assert begun[-3:] == ["9", "5", "1"]  # the worker had the others by then
+
+
 def test_an_error_with_words_of_a_worker_is_raised_with_all_its_parts(cluster):
     task = cluster.start(raise_data_error, "7", stage="reduce", test="a")
     with pytest.raises(DataError, match=r"^a.csv:3 \[load\]: no sense in it; found 7$") as caught:
