@@ -71,7 +71,12 @@ def run_blocks(
 
 
 def _n_processors() -> int:
-    """Processors this process may use, which may be fewer than the machine has."""
+    """Processors this process may use: of those of the machine, as many as it is given.
+
+    OMP_NUM_THREADS says so too, as to numerical libraries, where several processes share them.
+    """
+    available = os.cpu_count() or 1
     if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+        available = len(os.sched_getaffinity(0))
+    asked = os.environ.get("OMP_NUM_THREADS", "")
+    return max(1, min(available, int(asked))) if asked.isdecimal() else available

@@ -80,6 +80,13 @@ class ObjectStore(fsspec.AbstractFileSystem):
         self.objects[path] = data[:-1] if path in self.short else data
         self.written.append(path)
 
+    def pipe_file(self, path, value, mode="overwrite", **kwargs):
+        path = self._strip_protocol(path)
+        self._check(path)
+        if mode == "create" and path in self.objects:
+            raise FileExistsError
+        self.objects[path] = value
+
     def _rm(self, path):
         self._check(path)
         del self.objects[path]
@@ -141,13 +148,20 @@ def memory_store():
 
 
 class Server(ThreadingHTTPServer):
-    """Files by their paths; ``user`` has to be named, ``statuses`` refuse, ``cut`` breaks off."""
+    """Files by their paths; ``user`` has to be named, ``statuses`` refuse, ``cut`` breaks off.
+
+    Of one that is ``stopped`` half is sent, and then nothing; of one that is ``unsized`` neither
+    size nor mark is announced.
+    """
 
     def __init__(self):
         super().__init__(("127.0.0.1", 0), _Handler)
         self.files = {}
         self.statuses = {}
         self.cut = {}
+        self.stopped = set()
+        self.unsized = set()
+        self.has_stopped = threading.Event()
         self.user = ""
         self.asked = []
 
@@ -175,11 +189,17 @@ class _Handler(BaseHTTPRequestHandler):
             status = 401
         self.send_response(status)
         data = self.server.files.get(name, b"") if status == 200 else b""
-        self.send_header("Content-Length", str(len(data)))
-        if status == 200:
+        if name not in self.server.unsized:
+            self.send_header("Content-Length", str(len(data)))
+        if status == 200 and name not in self.server.unsized:
             self.send_header("ETag", f'"{sha256(data).hexdigest()}"')
         self.end_headers()
-        if with_body:
+        if with_body and name in self.server.stopped:
+            self.wfile.write(data[: len(data) // 2])
+            self.wfile.flush()
+            self.server.has_stopped.set()
+            self.connection.recv(1)  # until the other side is gone
+        elif with_body:
             self.wfile.write(data[: self.server.cut.get(name, len(data))])
 
 

@@ -27,6 +27,7 @@ from reduction.archive.version import SCHEMA_VERSION
 __all__ = ["check_archive"]
 
 _BLOCK = 1 << 20  # values of a long variable that are read at a time
+_CACHE = 1 << 20  # bytes
 _REQUIRED = ("title", "history", "raw_file_sha256", "settings", "software_version")
 
 
@@ -141,6 +142,8 @@ def _parts(variable: netCDF4.Variable[Any]) -> Iterator[NDArray[Any]]:
     if not variable.ndim:
         yield np.asarray(variable[...])
         return
+    if variable.chunking() != "contiguous":
+        variable.set_var_chunk_cache(_CACHE)  # each chunk is read once
     for start in range(0, variable.shape[-1], _BLOCK):
         yield np.asarray(variable[..., start : start + _BLOCK])
 

@@ -1,33 +1,33 @@
-"""The tests of a campaign on the worker processes of Dask: of this machine, or the user's own."""
+"""The tests of a campaign on the worker processes of Dask."""
 
 from __future__ import annotations
 
-import logging
-import os
 import pickle
 import time
 import uuid
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from concurrent.futures import CancelledError
 from queue import Empty, SimpleQueue
 from threading import Lock
 from typing import Any, Generic, TypeVar
 
 import dask
-from distributed import Client, Future, KilledWorker, LocalCluster, get_worker
+from distributed import Client, Future, KilledWorker, get_worker
 
 from reduction import __version__
 from reduction.batch.executor import Ended, Task
 from reduction.errors import ReductionError, SettingsError, WorkerError
 
-__all__ = ["Cluster", "local_cluster", "users_cluster"]
+__all__ = ["DEATHS", "PATIENCE", "Cluster"]
 
 Result = TypeVar("Result")
 
-# how long a run waits for the first worker, and for one after the last was lost [s]
 PATIENCE = 60.0
+"""How long a run waits for the first worker, and for one after the last was lost. [s]."""
 _LOOK = 1.0  # between two looks at whether scheduler and workers are there [s]
-_DEATHS = 1  # of workers at a test, before it is tried by itself
+_FIRST = 1 << 62  # priority of what takes no time
+DEATHS = 1
+"""Of workers at a test, after which it is tried by itself. [1]."""
 
 
 # a worker may have several threads, and the netCDF library bears one
@@ -72,9 +72,8 @@ class Cluster:
 
     is_elsewhere = True
 
-    def __init__(self, client: Client, n_workers: int) -> None:
+    def __init__(self, client: Client) -> None:
         self.begun: Callable[[str], None] = lambda test: None
-        self.n_workers = n_workers
         self._client = client
         self._run = uuid.uuid4().hex
         self._number = 0
@@ -86,7 +85,7 @@ class Cluster:
         return self.start(pickle.loads, pickle.dumps(value), stage="", test="")
 
     def start(
-        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str
+        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str, size: int = 0
     ) -> Task[Result]:
         """Order a function of arguments at once; those without a stage come before others."""
 
@@ -96,7 +95,7 @@ class Cluster:
             return self._client.submit(
                 _work, __version__, self._run if stage else "", test, function, *given,
                 key=f"{stage or 'small'}-{self._run}-{self._number}", pure=False,
-                priority=0 if stage else 10,
+                priority=size if stage else _FIRST,
             )  # fmt: skip
 
         sent = _Sent(order, test)
@@ -121,13 +120,16 @@ class Cluster:
         error = self._error_of(task)
         task.let_go()
         if error is None:
-            told = task.future.result()
+            try:
+                told = task.future.result()
+            except (OSError, CancelledError) as gone:
+                raise _scheduler_lost() from gone
             return Ended(task.test, told.value, worker=told.worker)
         if not isinstance(error, KilledWorker):
             raise error
         died = WorkerError(
             "every worker that began this test died at it",
-            found=f"{_DEATHS + 1} workers or more lost, also with no other test beside it",
+            found=f"{DEATHS + 1} workers or more lost, also with no other test beside it",
             needed="workers that live as long as a test takes",
             hint="Most often the memory did not suffice: take fewer workers (--jobs), or workers "
             "with more memory.",
@@ -174,7 +176,10 @@ class Cluster:
             return None
         if status != "error":  # the client gives up what a lost scheduler knew
             return _scheduler_lost()
-        error = task.future.exception()
+        try:
+            error = task.future.exception()
+        except (OSError, CancelledError):
+            return _scheduler_lost()
         if error is None or isinstance(error, (ReductionError, KilledWorker)):
             return error
         return WorkerError(
@@ -210,110 +215,3 @@ def _scheduler_lost() -> WorkerError:
         "the scheduler was lost",
         hint="Products that were finished are kept; start it anew, and run again to go on.",
     )
-
-
-@contextmanager
-def local_cluster(n_workers: int) -> Iterator[Cluster]:
-    """Start worker processes on this machine, and end them.
-
-    Parameters
-    ----------
-    n_workers : int
-        How many; they share the processors.
-
-    Yields
-    ------
-    cluster : Cluster
-        Reachable from this machine alone.
-
-    Raises
-    ------
-    WorkerError
-        If they do not start.
-    """
-    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    threads = str(max(1, (available or 1) // n_workers))
-    _silence()
-    settings = {
-        "distributed.scheduler.allowed-failures": _DEATHS,
-        "distributed.worker.daemon": True,
-    }
-    with dask.config.set(settings):
-        try:
-            cluster = LocalCluster(
-                n_workers=n_workers,
-                threads_per_worker=1,
-                processes=True,
-                dashboard_address=None,
-                # as in one process, the system says when memory ends: a worker that waits for
-                # memory that it holds itself would wait for ever
-                memory_limit=0,
-                silence_logs=logging.CRITICAL,
-                env={"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": "1"},
-            )
-        except (OSError, RuntimeError, TimeoutError) as error:
-            raise WorkerError(
-                "worker processes cannot be started on this machine",
-                found=f"{type(error).__name__}: {error}",
-                hint="Run with --jobs 1, which needs none.",
-            ) from error
-        with cluster, Client(cluster, set_as_default=False) as client:
-            yield from _used(client, n_workers)
-
-
-@contextmanager
-def users_cluster(address: str) -> Iterator[Cluster]:
-    """Use the workers of a scheduler that runs already.
-
-    Parameters
-    ----------
-    address : str
-        ``tcp://HOST:PORT``.
-
-    Yields
-    ------
-    cluster : Cluster
-        Whose workers are left as they are.
-
-    Raises
-    ------
-    SettingsError
-        If no scheduler answers there.
-    WorkerError
-        If it has no worker.
-    """
-    _silence()
-    try:
-        client = Client(address, timeout=10, set_as_default=False)
-    except (OSError, ValueError, ImportError) as error:
-        raise SettingsError(
-            "no scheduler answers at the address of --scheduler",
-            found=f"{address}: {error}",
-            needed="the address that `dask scheduler` prints, tcp://HOST:PORT",
-        ) from error
-    with client:
-        try:
-            client.wait_for_workers(1, timeout=PATIENCE)
-        except TimeoutError as error:
-            raise WorkerError(
-                f"the scheduler {address} has no worker",
-                found=f"none for {PATIENCE:.0f} s",
-                needed=f"one started with `dask worker {address}`",
-            ) from error
-        yield from _used(client, len(client.nthreads()))
-
-
-def _used(client: Client, n_workers: int) -> Iterator[Cluster]:
-    cluster = Cluster(client, n_workers)
-    try:
-        yield cluster
-    finally:
-        # the futures of a run that was ended are let go with the client
-        with suppress(Exception):
-            client.unsubscribe_topic(cluster._run)
-
-
-def _silence() -> None:
-    """Keep what Dask says of lost workers off the terminal: the run says it in its own words."""
-    for name in ("distributed", "tornado.application", "asyncio"):
-        logging.getLogger(name).setLevel(logging.CRITICAL + 1)

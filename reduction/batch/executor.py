@@ -43,11 +43,10 @@ class Ended(Generic[Result]):
 class Executor(Protocol):
     """One that works on the tests, each by itself.
 
-    ``n_workers`` is how many do it side by side, ``begun`` what is called with the id of a test
-    as work on it begins, ``is_elsewhere`` whether it is done in other processes.
+    ``begun`` is called with the id of a test as work on it begins; ``is_elsewhere`` says whether
+    it is done in other processes.
     """
 
-    n_workers: int
     is_elsewhere: bool
     begun: Callable[[str], None]
 
@@ -56,9 +55,12 @@ class Executor(Protocol):
         ...
 
     def start(
-        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str
+        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str, size: int = 0
     ) -> Task[Result]:
-        """Order a function of arguments; one that is a task stands for what the task gives."""
+        """Order a function of arguments; one that is a task stands for what the task gives.
+
+        Of work that is done side by side, that of the largest size is begun first.
+        """
         ...
 
     def ended(self, tasks: Iterable[Task[Result]]) -> Iterator[Ended[Result]]:
@@ -85,7 +87,6 @@ class _Later(Generic[Result]):
 class Serial:
     """One test after another, in this process and in the order in which they are given."""
 
-    n_workers = 1
     is_elsewhere = False
 
     def __init__(self) -> None:
@@ -96,7 +97,7 @@ class Serial:
         return _Later(lambda: value, "")
 
     def start(
-        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str
+        self, function: Callable[..., Result], *arguments: Any, stage: str, test: str, size: int = 0
     ) -> Task[Result]:
         """Keep the order until its result is asked for; a stage without a name is not told of."""
 

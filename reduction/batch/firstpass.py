@@ -63,8 +63,9 @@ def survey_campaign(
     told: list[Task[list[Survey]]] = []
     for log in campaign.tests:
         kept[log] = executor.start(
-            _survey, shared, log, lock, executor.is_elsewhere, stage="survey", test=log
-        )
+            _survey, shared, log, lock, executor.is_elsewhere,
+            stage="survey", test=log, size=_n_bytes(campaign, log),
+        )  # fmt: skip
         told.append(executor.start(_without_records, kept[log], stage="", test=log))
     of_log: dict[str, list[Survey]] = {}
     n_kept = 0
@@ -76,6 +77,12 @@ def survey_campaign(
             del kept[ended.test]
         progress.ended(ended.test)
     return FirstPass([survey for log in campaign.tests for survey in of_log[log]], kept)
+
+
+def _n_bytes(campaign: Campaign, log: str) -> int:
+    """Size of the files of a log, as far as they are there."""
+    paths = [campaign.file(name) for name, _ in campaign.tests[log].files]
+    return sum(path.stat().st_size for path in paths if path.exists())
 
 
 def _survey(campaign: Campaign, log: str, lock: RunLock | None, is_elsewhere: bool) -> list[Survey]:

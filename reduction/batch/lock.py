@@ -147,7 +147,7 @@ def _take(path: Path, own: _Holder, remark: Callable[[str], None]) -> None:
 
 def _put_away(path: Path, text: str) -> bool:
     """Remove the lock of a process that is gone; of several that try, one does."""
-    aside = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
+    aside = path.with_name(f".{path.name}.{uuid.uuid4().hex}")
     try:
         path.rename(aside)
     except FileNotFoundError:

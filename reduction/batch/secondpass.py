@@ -107,7 +107,7 @@ def reduce_campaign(
             executor.start(
                 _make, shared, survey, first.kept.get(survey.plan.log), rests_on,
                 folder / f"{name}.nc", lock, clock, force, command,
-                stage="reduce", test=name,
+                stage="reduce", test=name, size=survey.n_rows,
             )
         )  # fmt: skip
     first.kept.clear()  # each record goes with the last task that takes it

@@ -22,7 +22,6 @@ from reduction.errors import LogError
 from reduction.remote.place import allowed, base_name, below, folder_of
 from reduction.remote.scratch import renamed, scratch_folder
 from reduction.remote.transfer import State, fetch, state_of
-from reduction.workers import run_blocks
 
 __all__ = ["staged_campaign"]
 
@@ -115,28 +114,20 @@ def _with_logs(
         elif base:
             wanted[name] = (below(base, name), campaign.folder / name)
     unread: dict[str, LogError] = {}
-
-    def look(name: str) -> State | None:
+    states: dict[str, State] = {}
+    for name, (address, _) in wanted.items():
         try:
-            return state_of(wanted[name][0])
+            states[name] = state_of(address)
         except LogError as error:
             unread[name] = error
-            return None
-
-    states = dict(zip(wanted, run_blocks(look, wanted), strict=True))
-    _refuse_too_much(campaign, folder.parent, [one for one in states.values() if one is not None])
-
-    def bring(name: str) -> None:
-        before = states[name]
-        if before is None:
-            return
+    _refuse_too_much(campaign, folder.parent, list(states.values()))
+    # one after another: not every package bears threads, and an interruption ends at once
+    for name, before in states.items():
         progress("fetch", name)
         try:
             fetch(*wanted[name], before=before)
         except LogError as error:
             unread[name] = error
-
-    run_blocks(bring, wanted)  # several at once: most of the time is waiting
     return replace(
         campaign,
         addresses={},

@@ -9,7 +9,7 @@ import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, Quiet, Units
-from reduction.cli.usage import here
+from reduction.cli.usage import here, written_here
 
 __all__ = ["catalogue"]
 
@@ -51,7 +51,8 @@ def catalogue(
     descending: Annotated[bool, typer.Option("--descending", help="From the greatest.")] = False,
     limit: Annotated[int | None, typer.Option(min=1, help="Rows at most.")] = None,
     export: Annotated[
-        Path | None, typer.Option(help="Write the rows: FILE.csv or FILE.parquet, SI.")
+        Path | None,
+        typer.Option(help="Write the rows: FILE.csv or FILE.parquet, SI.", callback=written_here),
     ] = None,
     what_there_is: Annotated[
         bool, typer.Option("--list", help="Which quantities there are, and how many numbers.")

@@ -10,6 +10,7 @@ import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import AllowRemote, Json, Quiet, SpecPath, Units
+from reduction.cli.usage import written_here
 
 __all__ = ["assembly", "composite"]
 
@@ -45,7 +46,10 @@ def composite(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Every node as .csv, .json, .nc, .md or .tex; a page as .html."),
+        typer.Option(
+            help="Every node as .csv, .json, .nc, .md or .tex; a page as .html.",
+            callback=written_here,
+        ),
     ] = None,
     allow_remote: AllowRemote = False,
     json: Json = False,
@@ -72,7 +76,10 @@ def assembly(
     spec: SpecPath,
     out: Annotated[
         Path | None,
-        typer.Option(help="Every node as .csv, .json, .nc, .md or .tex; a page as .html."),
+        typer.Option(
+            help="Every node as .csv, .json, .nc, .md or .tex; a page as .html.",
+            callback=written_here,
+        ),
     ] = None,
     json: Json = False,
     quiet: Quiet = False,

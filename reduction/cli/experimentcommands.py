@@ -10,7 +10,7 @@ import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, Quiet, SpecPath, Units
-from reduction.cli.usage import here
+from reduction.cli.usage import here, written_here
 
 __all__ = ["experiment", "surface"]
 
@@ -29,7 +29,9 @@ class DesignName(StrEnum):
 def experiment(
     kind: Annotated[DesignName, typer.Argument(help="Design.", show_default=False)],
     spec: SpecPath,
-    out: Annotated[Path | None, typer.Option(help="Write the run sheet as a CSV too.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Write the run sheet as a CSV too.", callback=written_here)
+    ] = None,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",

@@ -10,6 +10,7 @@ import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import AllowRemote, Json, Quiet, Units
+from reduction.cli.usage import written_here
 
 __all__ = ["lookup"]
 
@@ -62,7 +63,10 @@ def lookup(
         bool, typer.Option("--table", help="A grid; values of a level parted by commas.")
     ] = False,
     out: Annotated[
-        Path | None, typer.Option(help="Write the values: FILE.csv, .json, .tex, .md or .nc.")
+        Path | None,
+        typer.Option(
+            help="Write the values: FILE.csv, .json, .tex, .md or .nc.", callback=written_here
+        ),
     ] = None,
     what_there_is: Annotated[bool, typer.Option("--list", help="What SOURCE holds.")] = False,
     allow_remote: AllowRemote = False,

@@ -10,6 +10,7 @@ import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import AllowRemote, Json, Quiet, SpecPath, Units
+from reduction.cli.usage import written_here
 
 __all__ = ["compare", "predict"]
 
@@ -26,7 +27,10 @@ def predict(
     kind: Annotated[PredictionName, typer.Argument(help="Of what.", show_default=False)],
     spec: SpecPath,
     out: Annotated[
-        Path | None, typer.Option(help="Write archive, tables and figures to this folder.")
+        Path | None,
+        typer.Option(
+            help="Write archive, tables and figures to this folder.", callback=written_here
+        ),
     ] = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -48,7 +52,10 @@ def compare(
     measured: Annotated[str, typer.Argument(metavar="MEASURED.nc", show_default=False)],
     spec: SpecPath,
     out: Annotated[
-        Path | None, typer.Option(help="Write archive, tables and figures to this folder.")
+        Path | None,
+        typer.Option(
+            help="Write archive, tables and figures to this folder.", callback=written_here
+        ),
     ] = None,
     allow_remote: AllowRemote = False,
     json: Json = False,

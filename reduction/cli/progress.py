@@ -41,7 +41,8 @@ class CampaignProgress:
         self._stage, self._done, self._total = name, 0, n_tests
         self._running.clear()
         if self._bar is not None and self._task is not None:
-            self._bar.reset(self._task, total=n_tests or None)
+            self._bar.remove_task(self._task)
+            self._task = self._bar.add_task("", total=n_tests or None)
         self._show()
 
     def begun(self, test: str) -> None:

@@ -9,6 +9,7 @@ import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import AllowRemote, Json, Quiet, Units
+from reduction.cli.usage import written_here
 
 __all__ = ["export", "reproduce"]
 
@@ -32,7 +33,9 @@ def export(
             show_default=False,
         ),
     ],
-    out: Annotated[Path, typer.Option("--out", help="The file.", show_default=False)],
+    out: Annotated[
+        Path, typer.Option("--out", help="The file.", show_default=False, callback=written_here)
+    ],
     form: Annotated[
         str | None, typer.Option(help="Where a format has several, such as table.")
     ] = None,
@@ -110,7 +113,10 @@ def reproduce(
     report: Annotated[
         str | None, typer.Argument(metavar="[REPORT]", help="All unless said.", show_default=False)
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Write page and table to this folder.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Write page and table to this folder.", callback=written_here),
+    ] = None,
     erratum: Annotated[
         str | None, typer.Option(help="One fault of a page with its evidence, such as CG-39.")
     ] = None,

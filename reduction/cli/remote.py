@@ -9,6 +9,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
+from signal import SIGTERM, default_int_handler, signal
+from threading import current_thread, main_thread
 
 from reduction.address import shown_address
 from reduction.archive.products import OF_CAMPAIGN
@@ -42,6 +44,7 @@ def campaign_at(address: str, *, allow_remote: bool, output: CommandOutput) -> I
         Copies of its files are gone when the block ends.
     """
     with ExitStack() as opened:
+        opened.enter_context(_in_order(allow_remote))
         with campaign_progress(output) as bar:
             campaign = opened.enter_context(
                 staged_campaign(
@@ -52,6 +55,19 @@ def campaign_at(address: str, *, allow_remote: bool, output: CommandOutput) -> I
             )
         output.names |= campaign.names
         yield campaign
+
+
+@contextmanager
+def _in_order(allow_remote: bool) -> Iterator[None]:
+    """Take a request to end as an interruption, so that copies are taken away first."""
+    if not allow_remote or current_thread() is not main_thread():
+        yield
+        return
+    before = signal(SIGTERM, default_int_handler)
+    try:
+        yield
+    finally:
+        signal(SIGTERM, before)
 
 
 @contextmanager
@@ -161,6 +177,7 @@ def local_sources(
         If there is no archive, or it cannot be copied.
     """
     with ExitStack() as opened:
+        opened.enter_context(_in_order(allow_remote))
         opened.enter_context(renamed(output.names))
         found = []
         for source in sources:

@@ -14,7 +14,7 @@ from typer.core import TyperGroup
 
 from reduction.address import shown_address
 
-__all__ = ["Commands", "here"]
+__all__ = ["Commands", "here", "written_here"]
 
 USAGE = 2
 # click's own class, which some versions of typer carry within themselves
@@ -24,14 +24,32 @@ _URL = re.compile(r"^([a-z][a-z0-9+.-]+):/+", re.IGNORECASE)
 
 def here(path: Path) -> Path:
     """A path of this machine; an address on the net is refused in words."""
+    shown = _address_in(path)
+    if shown:
+        raise typer.BadParameter(
+            f"this command reads no address on the net; found '{shown}'; needed a file on this "
+            "machine. Download it first."
+        )
+    return path
+
+
+def written_here(path: Path | None) -> Path | None:
+    """A path of this machine to write to, where one is given; an address is refused in words."""
+    shown = _address_in(path)
+    if shown:
+        raise typer.BadParameter(
+            f"this command writes to no address on the net; found '{shown}'; needed a path on "
+            "this machine"
+        )
+    return path
+
+
+def _address_in(path: Path | None) -> str:
+    """What may be shown of an address that was given as a path; empty where there is none."""
     address = _URL.match(str(path))
     if address is None:
-        return path
-    shown = shown_address(f"{address[1]}://{str(path)[address.end() :]}")
-    raise typer.BadParameter(
-        f"this command reads no address on the net; found '{shown}'; needed a file on this "
-        "machine. Download it first."
-    )
+        return ""
+    return shown_address(f"{address[1]}://{str(path)[address.end() :]}")
 
 
 class Commands(TyperGroup):

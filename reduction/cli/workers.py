@@ -42,7 +42,7 @@ def chosen_executor(jobs: int | None, scheduler: str | None) -> Iterator[Executo
         yield Serial()
         return
     try:
-        from reduction.batch.cluster import local_cluster, users_cluster
+        from reduction.batch.clusters import local_cluster, users_cluster
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
             raise

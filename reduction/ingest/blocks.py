@@ -106,9 +106,12 @@ class _Blocks:
         number = np.arange(lines.starts.size)
         block = np.searchsorted(lines.openers, number, side="right")
         is_below = number - np.append(-n_header - 1, lines.openers)[block] > n_header
-        n_fields = np.array([kind.n_fields if kind else 0 for kind in kinds])[block]
-        is_row = is_below & (n_fields > 0)
-        is_row &= lines.look_like_rows(self.layout.delimiter, n_fields)
+        # of a kind that is not read a row has to begin as a number does
+        n_fields = np.array(
+            [kind.n_fields if kind and kind is self.chosen else 0 for kind in kinds]
+        )
+        is_row = is_below & np.array([kind is not None for kind in kinds])[block]
+        is_row &= lines.look_like_rows(self.layout.delimiter, n_fields[block])
         self._keep_loose(lines, is_below & ~is_row)
         for kind, n_rows in zip(
             kinds, np.bincount(block[is_row], minlength=len(kinds)), strict=True

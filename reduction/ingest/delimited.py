@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from reduction.errors import LogError
 from reduction.ingest.columns import Wanted, check_lengths, find_column, wanted_columns
-from reduction.ingest.fields import read_fields
-from reduction.ingest.growing import GrowingLog
+from reduction.ingest.fields import Fields, read_fields
+from reduction.ingest.growing import AT_A_TIME, GrowingLog, in_order
 from reduction.ingest.layout import Layout
 from reduction.ingest.parts import Parts
 from reduction.ingest.preamble import check_units, keep_line
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import unchanged
-from reduction.ingest.textparts import open_text
+from reduction.ingest.textparts import TextFile, open_text
 from reduction.ingest.textrows import TextRows, line_starts, split_line
 
 __all__ = ["read_delimited"]
@@ -40,7 +42,11 @@ class _Head:
     first_line: str = ""
     """First data row."""
     first_row: int = 0
-    """Its editor's row."""
+    """Its editor's row, 0 where it has not been found yet."""
+    n_fields: int = 0
+    """Fields in it."""
+    wanted: list[tuple[Wanted, int]] = field(default_factory=list)
+    """Each declared column with its place."""
 
 
 def read_delimited(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
@@ -71,22 +77,15 @@ def read_delimited(path: Path, layout: Layout, *, name: str, parts: Parts | None
     """
     head = _Head()
     log: GrowingLog | None = None
-    wanted: list[tuple[Wanted, int]] = []
-    n_fields = 0
-    with unchanged(path), open_text(path, layout.encoding, parts or Parts()) as file:
-        for part in file:
-            text, row = _tidy(part.text, layout), part.first_row
-            if log is None:
-                begin = _read_head(head, text, row, layout)
-                if begin is None:
-                    continue
-                text, row = text[begin:], head.first_row
-                n_fields = _count_fields(path, head, layout)
-                wanted = _find_columns(path, head, layout, n_fields)
-                log = GrowingLog([want for want, _ in wanted], file.folder)
-            rows = TextRows(path, layout, text, row, is_open=part.is_open)
-            rows = _without_comments(rows, head.metadata)
-            log.add(read_fields(rows, wanted, n_fields), row)
+    with (
+        unchanged(path),
+        open_text(path, layout.encoding, parts or Parts()) as file,
+        ThreadPoolExecutor(AT_A_TIME) as workers,
+    ):
+        data_rows = _data_rows(path, file, head, layout)
+        for rows, fields in in_order(workers, partial(_fields, head), data_rows):
+            log = log or GrowingLog([want for want, _ in head.wanted], file.folder)
+            log.add(fields, rows.first_row)
         if log is None:
             raise _no_rows(path, head)
         columns = log.finish(path, layout)
@@ -100,6 +99,26 @@ def read_delimited(path: Path, layout: Layout, *, name: str, parts: Parts | None
         n_rows_read=check_lengths(path, columns),
         metadata=head.metadata,
     )
+
+
+def _data_rows(path: Path, file: TextFile, head: _Head, layout: Layout) -> Iterator[TextRows]:
+    """Data rows of each part, once the head has been read."""
+    for part in file:
+        text, row = _tidy(part.text, layout), part.first_row
+        if not head.first_row:
+            begin = _read_head(head, text, row, layout)
+            if begin is None:
+                continue
+            text, row = text[begin:], head.first_row
+            head.n_fields = _count_fields(path, head, layout)
+            head.wanted = _find_columns(path, head, layout)
+        n_lines = part.first_row + part.n_lines - row
+        rows = TextRows(path, layout, text, row, is_open=part.is_open, n_lines=n_lines)
+        yield _without_comments(rows, head.metadata)
+
+
+def _fields(head: _Head, rows: TextRows) -> Fields:
+    return read_fields(rows, head.wanted, head.n_fields)
 
 
 def _tidy(text: memoryview, layout: Layout) -> memoryview:
@@ -169,13 +188,11 @@ def _count_fields(path: Path, head: _Head, layout: Layout) -> int:
     return n_fields
 
 
-def _find_columns(
-    path: Path, head: _Head, layout: Layout, n_fields: int
-) -> list[tuple[Wanted, int]]:
+def _find_columns(path: Path, head: _Head, layout: Layout) -> list[tuple[Wanted, int]]:
     """Each declared column with its place, found in the header and in the declared unit."""
-    names = head.names or [""] * n_fields
+    names = head.names or [""] * head.n_fields
     wanted = [
-        (want, find_column(path, want, names[:n_fields], row=head.name_row))
+        (want, find_column(path, want, names[: head.n_fields], row=head.name_row))
         for want in wanted_columns(layout)
     ]
     check_units(path, wanted, names=names, units=head.units, unit_row=head.unit_row)

@@ -113,6 +113,8 @@ def find_encoding(path: Path, head: bytes, declared: str) -> TextEncoding:
         )
     if marked == "utf-8":
         return TextEncoding(path, declared, marked, mark)
+    if not marked and codec in ("utf-16", "utf-32"):
+        codec += "-le"  # as most machines write
     return TextEncoding(path, declared, codec, b"")
 
 

@@ -166,7 +166,8 @@ def _blank_to_empty(rows: TextRows) -> TextRows:
     blank = rb"(?m)^[ \t]+(?=\r?$)" if rows.layout.delimiter != "\t" else rb"(?m)^ +(?=\r?$)"
     text = re.sub(blank, b"", rows.text)
     filled = text.rstrip(b"\r\n")
-    return replace(rows, text=memoryview(filled), is_open=rows.is_open and filled == text)
+    is_open = rows.is_open and filled == text
+    return replace(rows, text=memoryview(filled), is_open=is_open, n_lines=None)
 
 
 def _ragged(rows: TextRows, n_fields: int, message: str) -> LogError:

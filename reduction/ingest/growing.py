@@ -2,22 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 
+from reduction.errors import ReductionError
 from reduction.ingest.clock import clock_to_seconds
 from reduction.ingest.columns import Wanted
 from reduction.ingest.fields import Fields
 from reduction.ingest.layout import CLOCK, Layout
+from reduction.ingest.textrows import TextRows
 from reduction.record import Floats, Integers
 from reduction.samples import BLOCK, ColumnWriter
 
-__all__ = ["GrowingLog"]
+__all__ = ["AT_A_TIME", "GrowingLog", "in_order"]
+
+AT_A_TIME = 2
+"""Parts whose numbers are read together. [1]."""
 
 _WORKERS = 4
+
+
+def in_order(
+    workers: Executor, read: Callable[[TextRows], Fields], parts: Iterator[TextRows]
+) -> Iterator[tuple[TextRows, Fields]]:
+    """Parts with what has been read from each, a few at the same time.
+
+    An error in the making of a part is told after what stands above it.
+    """
+    waiting: deque[tuple[TextRows, Future[Fields]]] = deque()
+    error: ReductionError | None = None
+    is_done = False
+    while waiting or not is_done:
+        try:
+            part = None if is_done else next(parts, None)
+        except ReductionError as found:
+            part, error = None, found
+        is_done = part is None
+        if part is not None:
+            waiting.append((part, workers.submit(read, part)))
+        while waiting and (is_done or len(waiting) >= AT_A_TIME):
+            first, fields = waiting.popleft()
+            yield first, fields.result()
+    if error is not None:
+        raise error
 
 
 class GrowingLog:

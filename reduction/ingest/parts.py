@@ -12,17 +12,15 @@ __all__ = ["Parts"]
 
 @dataclass(frozen=True)
 class Parts:
-    """Parts of a raw file.
-
-    No number depends on them: a file read whole is one part.
+    """Parts of a raw file; no number depends on them.
 
     Parameters
     ----------
     in_memory : int
-        Bytes of a text file, or of the columns of a binary one, up to which it is read whole
-        and its columns stay in memory. [1]
+        Bytes of a text file, or of the columns of a binary one, up to which its columns stay
+        in memory. [1]
     n_bytes : int
-        Bytes of a part where it is longer. [1]
+        Bytes of a part, of text or of columns; a shorter file is one part. [1]
     folder : pathlib.Path
         Where the scratch files of its columns lie.
     """
@@ -37,4 +35,4 @@ class Parts:
 
     def length_of(self, n_bytes: int) -> int:
         """Bytes of a part of a file of that length."""
-        return self.n_bytes if n_bytes > self.in_memory else max(n_bytes, 1)
+        return max(min(self.n_bytes, n_bytes), 1)

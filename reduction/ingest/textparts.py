@@ -81,24 +81,26 @@ class TextFile:
             raise self._encoding.binary(row_of(head, nul))
         self._decoder = codecs.getincrementaldecoder(self._encoding.codec)()
         self._is_at_start = True
+        self._worker = ThreadPoolExecutor(1)
         self._hash = RunningHash()
         self._hash.add(memoryview(self._encoding.mark))
 
     def __iter__(self) -> Iterator[TextPart]:
         """Parts in order; the next one is read while the caller works on this one."""
         parts = self._parts()
-        with ThreadPoolExecutor(1) as worker:
-            coming = worker.submit(next, parts, None)
-            while (part := coming.result()) is not None:
-                coming = worker.submit(next, parts, None)
-                yield part
+        coming = self._worker.submit(next, parts, None)
+        while (part := coming.result()) is not None:
+            coming = self._worker.submit(next, parts, None)
+            yield part
 
     def source(self, name: str) -> Source:
         """Name, hash and size of the file, once all of it has been read."""
         return self._hash.source(name)
 
     def close(self) -> None:
-        """End the hashing."""
+        """End the reading and the hashing."""
+        # here, not where a forgotten iterator ends: that may be any thread at any time
+        self._worker.shutdown()
         self._hash.close()
 
     def _parts(self) -> Iterator[TextPart]:

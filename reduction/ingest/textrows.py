@@ -40,6 +40,8 @@ class TextRows:
         Editor's row of each line where they are not consecutive.
     is_open : bool
         Whether the file ends with the last line, without a line end.
+    n_lines : int, optional
+        Lines where they have been counted.
     """
 
     path: Path
@@ -48,6 +50,7 @@ class TextRows:
     first_row: int
     line_row: Integers | None = None
     is_open: bool = False
+    n_lines: int | None = None
 
     def row_of_line(self, line: int) -> int:
         """Editor's row of a line counted from 0."""
@@ -61,7 +64,7 @@ class TextRows:
             lines = int(np.searchsorted(self.line_row, row))
         stop = int(starts[lines]) if lines < starts.size else len(self.text)
         text = bytes(self.text[:stop]).rstrip(b"\r\n")
-        return replace(self, text=memoryview(text), is_open=False)
+        return replace(self, text=memoryview(text), is_open=False, n_lines=None)
 
     def rows(self, n_rows: int) -> Integers | None:
         """Editor's row of each of so many data rows, or None where they are those of the lines.
@@ -71,7 +74,7 @@ class TextRows:
         LogError
             If a quoted field goes over the end of its line.
         """
-        n_lines = count_lines(self.text)
+        n_lines = count_lines(self.text) if self.n_lines is None else self.n_lines
         row = None if self.line_row is None else self.line_row[:n_lines]
         if n_lines != n_rows:
             codes = np.frombuffer(self.text, np.uint8)[line_starts(self.text)]

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Callable, Iterator
+from typing import TypeVar
 
 from reduction.address import secrets_of, shown_address, without_secrets
 from reduction.errors import ArchiveError, ReductionError
 
-__all__ = ["Fault", "product_fault", "said_of"]
+__all__ = ["Fault", "attempt", "product_fault", "said_of"]
+
+Result = TypeVar("Result")
 
 Fault = Callable[..., ReductionError]
 """An error of a place and a problem, with ``found``, ``needed`` and ``hint``: `LogError`,
@@ -27,6 +30,43 @@ _CUT_OFF = ("Connect", "Timeout", "Endpoint", "gaierror", "DNS")
 def product_fault(place: str, problem: str, **parts: str) -> ArchiveError:
     """An error of a product, its place in front."""
     return ArchiveError(f"{place}: {problem}", **parts)
+
+
+def attempt(
+    function: Callable[[], Result],
+    address: str,
+    fault: Fault,
+    *,
+    doing: str,
+    begun: Callable[[], str] = str,
+) -> Result:
+    """Do what a package does; an error of it becomes one of this program.
+
+    Parameters
+    ----------
+    function : callable
+        Of nothing.
+    address, fault, doing
+        As `said_of` takes them.
+    begun : callable
+        How much was copied when an error came.
+
+    Returns
+    -------
+    result
+        Of the function.
+
+    Raises
+    ------
+    ReductionError
+        From ``fault``. Nothing of what the package raised goes with it: that may hold a
+        signature, and not every package raises what can be sent to another process.
+    """
+    try:
+        return function()
+    except Exception as error:
+        told = said_of(error, address, fault, doing=doing, begun=begun())
+    raise told  # out here it has no cause and no context
 
 
 def said_of(
@@ -50,7 +90,7 @@ def said_of(
     Returns
     -------
     error : ReductionError
-        To be raised ``from None``: what the package said may hold a signature.
+        Not raised yet.
     """
     place = shown_address(address)
     chain = list(_chain(error))

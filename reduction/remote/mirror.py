@@ -9,6 +9,7 @@ from pathlib import Path, PurePosixPath
 
 from reduction.address import shown_address
 from reduction.errors import ArchiveError
+from reduction.remote.claim import claimed
 from reduction.remote.faults import product_fault
 from reduction.remote.place import base_name, below, folder_of
 from reduction.remote.transfer import (
@@ -60,11 +61,12 @@ def mirrored(address: str, folder: Path) -> Iterator[None]:
         gone = [name for name in sums if name not in now]
         changed = [name for name in sorted(now, key=_place) if sums.get(name) != now[name]]
         if changed or gone:
-            _refuse_another_run(address, before)
-        for name in changed:
-            put(folder / name, below(address, name))
-        for name in gone:
-            remove(below(address, name))
+            with claimed(address):
+                _refuse_another_run(address, before)
+                for name in changed:
+                    put(folder / name, below(address, name))
+                for name in gone:
+                    remove(below(address, name))
 
 
 @contextmanager

@@ -20,6 +20,8 @@ _PACKAGES = {
 # they read this machine: a campaign names its own files by their paths, inside its folder
 _HERE = {"file", "local", "git"}
 _HTTP = {"http", "https"}
+# stores of objects
+_WHOLE = {"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "adl", "oci", "oss", "tos", "hf"}
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,11 @@ class Place:
     system: Any
     path: str
     protocol: str
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether a file is shown when all of it is there; elsewhere it is seen to grow."""
+        return self.protocol in _WHOLE
 
 
 def allowed(text: str, allow_remote: bool, *, what: str) -> bool:

@@ -12,7 +12,7 @@ from uuid import uuid4
 
 from reduction.address import shown_address
 from reduction.errors import LogError, SettingsError
-from reduction.remote.faults import Fault, product_fault, said_of
+from reduction.remote.faults import Fault, attempt, product_fault
 from reduction.remote.place import Place, connect
 
 __all__ = [
@@ -26,8 +26,6 @@ __all__ = [
     "state_of",
 ]
 
-# stores that show a file when all of it is there; elsewhere a file that is written is seen to grow
-_WHOLE = {"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "adl", "oci", "oss", "tos", "hf"}
 _READ_ONLY = {"http", "https"}
 # what tells two states of a file apart, as far as a file system says it; the surest first
 _MARKS = (
@@ -67,10 +65,7 @@ def state_of(address: str, *, fault: Fault = LogError) -> State:
         If no package speaks to such an address.
     """
     place = connect(address)
-    try:
-        return _state(place)
-    except Exception as error:
-        raise said_of(error, address, fault, doing="read") from None
+    return attempt(lambda: _state(place), address, fault, doing="read")
 
 
 def fetch(
@@ -105,11 +100,10 @@ def fetch(
     place = connect(address)
     target.parent.mkdir(parents=True, exist_ok=True)
     try:
-        try:
-            place.system.get_file(place.path, str(target))
-        except Exception as error:
-            begun = _arrived(target, before)
-            raise said_of(error, address, fault, doing="read", begun=begun) from None
+        attempt(
+            lambda: place.system.get_file(place.path, str(target)), address, fault, doing="read",
+            begun=lambda: _arrived(target, before),
+        )  # fmt: skip
         after = state_of(address, fault=fault)
         size = target.stat().st_size
         if after != before:
@@ -149,14 +143,7 @@ def put(source: Path, address: str) -> None:
     """
     refuse_read_only(address)
     place = connect(address)
-    try:
-        if place.protocol in _WHOLE:
-            place.system.put_file(str(source), place.path)
-        else:
-            _put_and_name(source, place)
-        size = _state(place).size
-    except Exception as error:
-        raise said_of(error, address, product_fault, doing="written") from None
+    size = attempt(lambda: _put(source, place), address, product_fault, doing="written")
     expected = source.stat().st_size
     if size not in (None, expected):
         raise product_fault(
@@ -179,10 +166,7 @@ def remove(address: str) -> None:
         If that is not allowed.
     """
     place = connect(address)
-    try:
-        place.system.rm_file(place.path)
-    except Exception as error:
-        raise said_of(error, address, product_fault, doing="removed") from None
+    attempt(lambda: place.system.rm_file(place.path), address, product_fault, doing="removed")
 
 
 def listing(address: str) -> dict[str, State]:
@@ -212,13 +196,7 @@ def listing(address: str) -> dict[str, State]:
             needed="the address of one file, or a store such as s3:// or gs://",
         )  # fmt: skip
     root = place.path.rstrip("/") + "/"
-    try:
-        place.system.invalidate_cache()
-        found: dict[str, dict[str, Any]] = place.system.find(place.path, detail=True)
-    except FileNotFoundError:
-        return {}
-    except Exception as error:
-        raise said_of(error, address, product_fault, doing="read") from None
+    found = attempt(lambda: _found(place), address, product_fault, doing="read")
     return {
         name.removeprefix(root): _state_from(about)
         for name, about in sorted(found.items())
@@ -239,6 +217,23 @@ def refuse_read_only(address: str) -> None:
             f"nothing can be written to {protocol}://", found=shown_address(address),
             needed="a folder on this machine, or a store such as s3:// or gs://",
         )  # fmt: skip
+
+
+def _found(place: Place) -> dict[str, dict[str, Any]]:
+    place.system.invalidate_cache()
+    try:
+        return dict(place.system.find(place.path, detail=True))
+    except FileNotFoundError:
+        return {}
+
+
+def _put(source: Path, place: Place) -> int | None:
+    """Write a file, and give the size that it has there."""
+    if place.is_whole:
+        place.system.put_file(str(source), place.path)
+    else:
+        _put_and_name(source, place)
+    return _state(place).size
 
 
 def _put_and_name(source: Path, place: Place) -> None:

@@ -87,7 +87,8 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
                 starts[view.key] = view.start_time
                 tests.append(view.without_samples())
         except ArchiveError as error:
-            unreadable[path.name] = str(error)
+            # the page is the same wherever the archives lie
+            unreadable[path.name] = str(error).replace(str(path), path.name)
     by_id = {view.id: view for view in tests}
     order = sorted(range(len(tests)), key=lambda place: _place(tests[place], by_id, starts))
     tests = [tests[place] for place in order]

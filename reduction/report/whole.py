@@ -192,5 +192,5 @@ def _read(
         with open_archive(path) as data:
             return tuple(read(data))
     except ArchiveError as error:
-        unreadable[path.name] = str(error)
+        unreadable[path.name] = str(error).replace(str(path), path.name)
         return ()

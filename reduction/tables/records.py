@@ -42,7 +42,7 @@ RECORD_TABLES = (
     Table(
         "rows",
         ("channel", "quality_mask"),
-        ("n_rows_read", "n_rows_kept", "n_flagged"),
+        ("n_rows_read", "n_rows_kept", "n_rows_stored", "n_flagged"),
         ("n_flagged",),
     ),
 )

@@ -358,6 +358,11 @@ def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
             "a file on this machine. Download it first.",
         ),
         (
+            ("lookup", "published", "--out", "s3://ann:secret@bucket/a.csv"),
+            "this command writes to no address on the net; found 's3://bucket/a.csv'; needed a "
+            "path on this machine",
+        ),
+        (
             ("check", "https://ann:secret@example.org/c.toml?sig=abc"),
             "the campaign is an address on the net, and none is fetched unasked; found "
             "'https://example.org/c.toml'; needed --allow-remote",

@@ -2,8 +2,12 @@
 
 import csv
 import json
+import os
+import pickle
 import re
 import shutil
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -17,7 +21,8 @@ from reduction.campaign import staged
 from reduction.errors import ArchiveError, LogError, SettingsError
 from reduction.remote.mirror import mirrored
 
-RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
+ROOT = Path(__file__).parents[2]
+RAW = ROOT / "raw" / "tmt-synthetic"
 CAMPAIGN = """
 tests = "tests.csv"
 [campaign]
@@ -279,6 +284,7 @@ def test_check_reads_a_remote_campaign_and_writes_nothing(bucket, command, tmp_p
 
 def test_a_log_that_is_not_there_is_the_error_of_its_test(bucket, command, tmp_path, scratch):
     del bucket.objects["bucket/raw/logs/B.csv"]
+    bucket.objects["bucket/processed/small/Z.nc"] = b"no archive"
     done = command(*RUN, cwd=tmp_path)
     assert done.returncode == 3
     message = "s3://bucket/raw/logs/B.csv: there is no such file; needed the address of a file"
@@ -289,6 +295,8 @@ def test_a_log_that_is_not_there_is_the_error_of_its_test(bucket, command, tmp_p
     assert "bucket/processed/small/B.nc" not in bucket.objects
     page = bucket.objects["bucket/reports/small/index.html"].decode()
     assert message in page and str(scratch) not in page
+    assert "s3://bucket/processed/small/Z.nc: belongs to no test of this campaign" in done.stderr
+    assert "Z.nc is not a netCDF file" in page
 
 
 def test_a_fault_in_a_remote_log_is_told_by_its_address_and_row(bucket, command, tmp_path):
@@ -345,6 +353,25 @@ def test_a_fault_of_a_remote_campaign_is_told_by_its_address(
     assert bucket.written == []
 
 
+def test_a_campaign_goes_to_a_worker_with_its_copies_and_without_its_addresses(here, tmp_path):
+    shutil.copytree(here / "raw", tmp_path / "raw")
+    with stores.server() as site:
+        site.files["A.csv"] = (here / "raw" / "logs" / "A.csv").read_bytes()
+        table = "id,file,n_cycles,marks\n"
+        for name in ("A", "B"):
+            address = site.address(f"{name}.csv", user=USER, query=QUERY)
+            table += f"{name},{address},10,marks.csv\n"
+        (tmp_path / "raw" / "tests.csv").write_text(table)
+        with staged.staged_campaign(tmp_path / "raw" / "campaign.toml", allow_remote=True) as one:
+            sent = pickle.dumps(one)
+            there = pickle.loads(sent)  # noqa: S301
+            assert there.file(site.address("A.csv")).read_bytes() == site.files["A.csv"]
+            with pytest.raises(LogError, match=f"^{site.address('B.csv')}: there is no such file"):
+                there.file(site.address("B.csv"))
+    assert not any(secret.encode() in sent for secret in SECRETS)
+    assert not any(secret in repr(there) for secret in SECRETS)
+
+
 def test_a_table_that_may_not_be_read_is_told(bucket):
     bucket.closed.add("bucket/raw/marks.csv")
     with (
@@ -385,9 +412,8 @@ def test_each_file_is_announced_and_fetched_once(bucket, monkeypatch):
         assert campaign.shown("logs/A.csv") == "s3://bucket/raw/logs/A.csv"
         assert campaign.addresses == {}
     names = ["campaign.toml", "tests.csv", "marks.csv", "logs/A.csv", "logs/B.csv"]
-    # logs are fetched side by side
-    assert sorted(said) == sorted(("fetch", name) for name in names)
-    assert sorted(fetched) == sorted(f"s3://bucket/raw/{name}" for name in names)
+    assert said == [("fetch", name) for name in names]
+    assert fetched == [f"s3://bucket/raw/{name}" for name in names]
 
 
 def test_products_that_were_finished_before_an_interruption_are_kept(
@@ -408,6 +434,28 @@ def test_products_that_were_finished_before_an_interruption_are_kept(
     assert bucket.written == ["bucket/processed/small/A.nc"]
 
 
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+def test_a_command_that_is_told_to_end_takes_its_copies_away(here, tmp_path):
+    with stores.server() as site:
+        site.files |= {f"raw/{name}": data for name, data in files_below(here / "raw").items()}
+        site.stopped.add("raw/logs/B.csv")
+        scratch = tmp_path / "scratch"
+        scratch.mkdir()
+        words = ("run", site.address("raw/campaign.toml"), "--allow-remote")
+        with subprocess.Popen(
+            [sys.executable, "-m", "reduction", *words],
+            cwd=tmp_path, env=os.environ | {"TMPDIR": str(scratch), "PYTHONPATH": str(ROOT)},
+            stderr=subprocess.PIPE, text=True,
+        ) as process:  # fmt: skip
+            assert site.has_stopped.wait(60)
+            assert (next(scratch.iterdir()) / "campaign" / "logs" / "A.csv").is_file()
+            process.terminate()
+            _, told = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert told == "interrupted; products that were finished are kept\n"
+    assert list(scratch.iterdir()) == []
+
+
 def test_two_runs_do_not_mix(processed, here, tmp_path):
     address = "s3://bucket/processed/small"
     message = (
@@ -422,6 +470,32 @@ def test_two_runs_do_not_mix(processed, here, tmp_path):
     with pytest.raises(ArchiveError, match=message):
         run.__exit__(None, None, None)
     assert processed.written == []
+
+
+def test_one_run_at_a_time_puts_its_products(processed, here, tmp_path):
+    address = "s3://bucket/processed/small"
+    run = mirrored(address, tmp_path / "small")
+    run.__enter__()
+    (tmp_path / "small" / "A.nc").write_bytes(b"of this run")
+    processed.objects["bucket/processed/small/put.lock"] = b"of another"
+    message = (
+        "^s3://bucket/processed/small: another run puts its products here; found put.lock; needed "
+        "one run at a time in a folder of products. Nothing of this run was put there. Run again"
+    )
+    with pytest.raises(ArchiveError, match=message):
+        run.__exit__(None, None, None)
+    assert processed.written == []
+    assert processed.objects["bucket/processed/small/put.lock"] == b"of another"
+
+
+def test_a_folder_that_may_not_be_written_to_is_told(processed, tmp_path):
+    run = mirrored("s3://bucket/processed/small", tmp_path / "small")
+    run.__enter__()
+    (tmp_path / "small" / "A.nc").write_bytes(b"of this run")
+    processed.closed.add("bucket/processed/small/put.lock")
+    message = "^s3://bucket/processed/small/put.lock: there is no permission: it cannot be written"
+    with pytest.raises(ArchiveError, match=message):
+        run.__exit__(None, None, None)
 
 
 def test_products_in_a_store_whose_listing_marks_files_in_its_own_way(tmp_path):

@@ -46,7 +46,7 @@ def test_the_messages_are_those_of_the_program():
     )
     part = PAGE.partition("## When it fails")[2]
     messages = re.findall(r"^\| `(?:\.\. )?(.*?)` \|", part, re.M)
-    assert len(messages) == 9
+    assert len(messages) == 10
     for message in messages:
         assert (
             re.sub(r"gs://", "{protocol}://", message).replace(

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 
@@ -195,3 +196,13 @@ def test_an_archive_of_a_part_keeps_every_rule_of_cf(tmp_path):
         [sys.executable, checker, path], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stdout
+
+
+def test_nothing_as_long_as_the_record_is_made_for_an_archive_of_a_part():
+    test = long_test(cycles=cycles_of(2000, per_cycle=1000))
+    built(test, kept_samples(test, wanted()))  # what is imported at the first time
+    tracemalloc.start()
+    built(test, kept_samples(test, wanted()))
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < test.record.time.nbytes / 4

@@ -1,6 +1,7 @@
 """Files go over the net whole or not at all, and what goes wrong is said in words."""
 
 import errno
+import pickle
 import sys
 
 import pytest
@@ -50,12 +51,20 @@ def test_a_file_of_a_server_is_copied_whole(site, tmp_path, user, query):
     assert all(path.endswith(query) for path in site.asked)
 
 
+def test_a_file_of_unknown_size_is_copied(site, tmp_path):
+    site.unsized.add("raw/T.csv")
+    assert fetch(site.address("raw/T.csv"), tmp_path / "T.csv").size is None
+    assert (tmp_path / "T.csv").read_bytes() == DATA
+
+
 def fault_of(address, target, match):
     with pytest.raises(LogError, match=match) as caught:
         fetch(address, target)
     assert not target.exists()
     assert "secret" not in str(caught.value) and "abcdef" not in str(caught.value)
-    assert caught.value.__cause__ is None  # what a package says may hold a signature
+    # what a package raised may hold a signature, and may not go to another process
+    assert caught.value.__cause__ is None and caught.value.__context__ is None
+    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)  # noqa: S301
     return caught.value
 
 

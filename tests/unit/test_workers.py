@@ -39,6 +39,15 @@ def test_processors_are_counted_where_there_is_no_affinity(
     assert run_blocks(str, [1, 2]) == ["1", "2"]
 
 
+@pytest.mark.parametrize(("asked", "used"), [("1", 1), ("2", 2), ("99", 3), ("0", 1), ("4,2", 3)])
+def test_a_process_uses_no_more_processors_than_it_is_told_to(
+    asked: str, used: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda pid: {0, 1, 2}, raising=False)
+    monkeypatch.setenv("OMP_NUM_THREADS", asked)
+    assert workers._n_processors() == used
+
+
 def test_the_moduli_have_the_same_bytes_on_any_number_of_processors(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

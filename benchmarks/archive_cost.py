@@ -1,0 +1,120 @@
+"""What the archive of a long log costs, by default and with every sample, over parsing the log.
+
+    python benchmarks/archive_cost.py [ROWS] [REPEATS]
+
+Three programs run in turn, A B C A B C ..., each in a process of its own, so that a ratio holds
+when the machine's speed drifts: `pandas.read_csv` of the log; the reduction, hashing included, with
+the archive as it is by default; the same with every sample in it. Programs are imported before the
+clock starts. The log is generated (synthetic) in the folder BENCHMARK_DATA, or a temporary one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+HERE = Path(__file__).parent
+PARSE = """
+import time, json, resource, sys
+import pandas
+start = time.perf_counter()
+table = pandas.read_csv(sys.argv[1])
+print(json.dumps({"seconds": time.perf_counter() - start,
+    "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}))
+"""
+STORE = """
+import time, json, resource, sys
+from pathlib import Path
+import netCDF4, xarray
+from reduction.archive.dataset import to_dataset
+from reduction.archive.kept import kept_samples
+from reduction.archive.write import write_archive
+from reduction.batch.models import fit_strain_models
+from reduction.batch.reduce import reduce_survey
+from reduction.batch.survey import survey_log
+from reduction.campaign.load import load_campaign
+campaign = load_campaign(Path(sys.argv[1]))
+start = time.perf_counter()
+surveys = survey_log(campaign, "long")
+models, errors = fit_strain_models(campaign, surveys)
+survey = surveys[0]
+if survey.error is not None:
+    raise survey.error
+of_test = [models[survey.plan.id, name] for name in survey.plan.specimens]
+test = reduce_survey(campaign, survey, of_test, None, "{}")
+reduced = time.perf_counter()
+kept = kept_samples(test, survey.plan.settings)
+archive = Path(sys.argv[2])
+write_archive(to_dataset(test, version="0", command="benchmark", kept=kept), archive)
+done = time.perf_counter()
+print(json.dumps({"seconds": done - start, "archive": done - reduced,
+    "cycles": test.cycles.n_cycles,
+    "stored": test.record.n_samples if kept is None else kept.index.size,
+    "size": archive.stat().st_size,
+    "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}))
+"""
+
+
+def run(code: str, *arguments: Path) -> dict[str, Any]:
+    """Run one program in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+    if done.returncode:
+        sys.exit(done.stderr)
+    return dict(json.loads(done.stdout))
+
+
+def main(n_rows: int, repeats: int) -> None:
+    """Print a Markdown table of the three and their ratios."""
+    sys.path.insert(0, str(HERE))
+    from generate import write_campaign
+
+    folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
+    campaign = write_campaign(folder, n_rows=n_rows)
+    whole = campaign.with_name(f"whole_{n_rows}.toml")
+    # the last table is the test
+    whole.write_text(
+        campaign.read_text(encoding="utf-8") + 'reduction.archive.samples = "all"\n',
+        encoding="utf-8",
+    )
+    log, archive = folder / f"long_{n_rows}.csv", folder / "archive.nc"
+    turns = [
+        (run(PARSE, log), run(STORE, campaign, archive), run(STORE, whole, archive))
+        for _ in range(repeats + 1)
+    ][1:]
+    archive.unlink()
+    print(
+        f"{n_rows} rows, {log.stat().st_size / 1e6:.0f} MB, {turns[0][1]['cycles']} cycles, "
+        f"{len(os.sched_getaffinity(0))} processors, {repeats} turns after one warm-up\n"
+    )
+    print("| | s (min to max) | over parsing | archive alone | over parsing | MB on disk | samples "
+          "| peak MB |\n|---|---|---|---|---|---|---|---|")  # fmt: skip
+    for name, place in (("parsing alone", 0), ("default archive", 1), ("whole record", 2)):
+        own = [turn[place] for turn in turns]
+        seconds = sorted(one["seconds"] for one in own)
+        cells = [name, f"{median(seconds):.2f} ({seconds[0]:.2f} to {seconds[-1]:.2f})"]
+        for key in ("seconds", "archive"):
+            if place:
+                ratio = median(turn[place][key] / turn[0]["seconds"] for turn in turns)
+                cells += [f"{median(one[key] for one in own):.2f}"] * (key == "archive")
+                cells.append(f"{ratio:.1f}")
+            else:
+                cells += [""] * (1 + (key == "archive"))
+        cells += [f"{own[0]['size'] / 1e6:.1f}", f"{own[0]['stored']}"] if place else ["", ""]
+        cells.append(f"{max(one['peak_mb'] for one in own):.0f}")
+        print(f"| {' | '.join(cells)} |")
+
+
+if __name__ == "__main__":
+    main(
+        int(sys.argv[1]) if len(sys.argv) > 1 else 5_760_000,
+        int(sys.argv[2]) if len(sys.argv) > 2 else 3,
+    )

@@ -1,0 +1,253 @@
+"""Campaigns on several workers: the same bytes, whoever does the work and whoever dies at it."""
+
+import contextlib
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import cloudpickle
+import psutil
+import pytest
+from manytests import ROOT, archives, products, run, start, wait_for, write_many
+
+from reduction.batch import run as run_module
+from reduction.batch import secondpass
+from reduction.batch.clusters import local_cluster
+from reduction.batch.run import run_campaign
+from reduction.campaign.load import load_campaign
+
+N_TESTS = 8
+SOUND = {"T01", "T02.a", "T02.b", *(f"T{number:02}" for number in range(4, N_TESTS + 1))}
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    return write_many(tmp_path_factory.mktemp("many") / "raw", N_TESTS)
+
+
+@pytest.fixture(scope="module")
+def serial(campaign, tmp_path_factory):
+    """What one process makes of it."""
+    folder = tmp_path_factory.mktemp("serial")
+    status, _, errors = run(campaign, folder)
+    assert status == 3 and "T03.csv" in errors
+    return products(folder)
+
+
+@pytest.fixture
+def scheduler(tmp_path):
+    """A scheduler and two workers, started by hand on this machine."""
+    with contextlib.ExitStack() as opened:
+        file = tmp_path / "scheduler.json"
+        local = ("--host", "127.0.0.1", "--dashboard-address", "127.0.0.1:0")
+        processes = [_dask(opened, "scheduler", *local, "--port", 0, "--scheduler-file", file)]
+        wait_for(lambda: file.exists() and file.stat().st_size)
+        address = json.loads(file.read_text())["address"]
+        processes += [
+            _dask(opened, "worker", address, *local, "--nthreads", 1, "--no-nanny",
+                  "--local-directory", tmp_path / f"worker-{number}")
+            for number in (1, 2)
+        ]  # fmt: skip
+        yield address, processes
+
+
+def _dask(opened, *words):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "dask", *map(str, words)],
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    opened.callback(process.wait)
+    opened.callback(process.kill)
+    return process
+
+
+def of_tests(folder):
+    with (folder / "processed" / "many" / "status.csv").open(newline="") as file:
+        return {row["test"]: row for row in csv.DictReader(file)}
+
+
+def is_at_work(folder, *, made=1):
+    return lambda: len(archives(folder)) >= made
+
+
+def test_the_serial_run_holds_all_but_the_log_that_cannot_be_read(serial):
+    assert {name.removesuffix(".nc") for name in serial if name.endswith(".nc")} == SOUND
+    assert any(name.startswith("tables/") for name in serial)
+
+
+@pytest.mark.parametrize("jobs", [2, 3])
+def test_products_have_the_same_bytes_on_any_number_of_workers(jobs, campaign, serial, tmp_path):
+    status, said, errors = run(campaign, tmp_path, "--jobs", str(jobs))
+    assert status == 3
+    assert products(tmp_path) == serial
+    lines = errors.splitlines()
+    assert (
+        sum(line.lstrip().split("/")[0].isdigit() for line in lines[: N_TESTS + 1]) == N_TESTS + 1
+    )
+    assert f"{N_TESTS + 1}/{N_TESTS + 1} " in errors and "reduced_with_notes" in errors
+    head = said.splitlines()[0].split()
+    assert {"seconds", "worker"} <= set(head)
+    assert "tcp://127.0.0.1:" in said
+
+
+def test_one_job_starts_no_worker_and_names_none(campaign, serial, tmp_path):
+    status, said, errors = run(
+        campaign, tmp_path, "--jobs", "1", "--json", "--test", "T01", "--test", "T02"
+    )
+    assert status == 0 and errors == ""
+    answer = json.loads(said)["tests"]
+    assert [test["id"] for test in answer] == ["T01", "T02.a", "T02.b"]
+    assert {test["worker"] for test in answer} == {""}
+    made = products(tmp_path)
+    assert all(serial[name] == made[name] for name in made if name.endswith(".nc"))
+
+
+def test_a_worker_of_the_users_scheduler_that_is_killed_changes_nothing(
+    campaign, serial, scheduler, tmp_path
+):
+    address, (_, first, _) = scheduler
+    process = start(campaign, tmp_path, "--scheduler", address, "--json")
+    wait_for(is_at_work(tmp_path, made=2))
+    first.send_signal(signal.SIGKILL)
+    assert len(archives(tmp_path)) < len(SOUND), "it was killed too late to show anything"
+    said, errors = process.communicate(timeout=120)
+    assert process.returncode == 3, errors
+    assert products(tmp_path) == serial
+    tests = json.loads(said)["tests"]
+    assert {test["id"] for test in tests if test["status"] == "failed"} == {"T03"}
+
+
+def test_a_scheduler_that_is_lost_ends_the_run_with_words_and_nothing_half_written(
+    campaign, serial, scheduler, tmp_path
+):
+    address, (master, *_) = scheduler
+    process = start(campaign, tmp_path, "--scheduler", address)
+    wait_for(is_at_work(tmp_path, made=2))
+    master.send_signal(signal.SIGKILL)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert "the scheduler was lost. Products that were finished are kept" in errors
+    assert "Traceback" not in errors and "distributed" not in errors
+    made = products(tmp_path)
+    assert made and all(serial[name] == made[name] for name in made)
+
+
+def test_a_run_that_was_killed_goes_on_where_it_was(campaign, serial, tmp_path):
+    process = start(campaign, tmp_path, "--jobs", "2")
+    wait_for(is_at_work(tmp_path, made=3))
+    process.kill()
+    process.communicate()
+    done = archives(tmp_path)
+    assert 3 <= len(done) < len(SOUND)
+    folder = tmp_path / "processed" / "many"
+    assert (folder / "run.lock").exists()
+    (folder / ".T09.nc.12345.part").write_text("half")
+    status, _, errors = run(campaign, tmp_path)
+    assert status == 3
+    assert "run.lock: taken over from" in errors and f"process {process.pid} on" in errors
+    assert products(tmp_path) == serial
+    unchanged = {name for name, row in of_tests(tmp_path).items() if row["status"] == "unchanged"}
+    # a worker may have finished one more before it saw that it was alone
+    assert done <= unchanged < SOUND and len(unchanged) <= len(done) + 2
+
+
+def test_an_interrupt_ends_the_workers_and_gives_back_the_lock(campaign, tmp_path):
+    process = start(campaign, tmp_path, "--jobs", "2")
+    wait_for(is_at_work(tmp_path, made=1))
+    children = psutil.Process(process.pid).children(recursive=True)
+    assert len(children) >= 2
+    began = time.monotonic()
+    # as a terminal does, to every process of the group
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == "interrupted; products that were finished are kept"
+    assert "Traceback" not in errors
+    assert time.monotonic() - began < 15
+    assert psutil.wait_procs(children, timeout=10)[1] == []
+    assert products(tmp_path)  # and no lock
+
+
+def test_a_second_run_on_the_same_products_is_refused(campaign, serial, tmp_path):
+    first = start(campaign, tmp_path)
+    wait_for((tmp_path / "processed" / "many" / "run.lock").exists)
+    status, said, errors = run(campaign, tmp_path)
+    assert status == 6 and said == ""
+    assert "another run holds" in errors and f"process {first.pid} on" in errors
+    assert "Wait for it or end it" in errors
+    first.communicate(timeout=120)
+    assert first.returncode == 3
+    assert products(tmp_path) == serial
+
+
+def test_a_test_that_kills_its_workers_is_one_failed_test(campaign, serial, tmp_path, monkeypatch):
+    whole = secondpass._make
+
+    def made(campaign, survey, *rest):
+        if survey.plan.id == "T05":
+            os._exit(1)
+        return whole(campaign, survey, *rest)
+
+    monkeypatch.setattr(secondpass, "_make", made)
+    monkeypatch.setattr(run_module, "write_report", lambda *a, **b: None)
+    with local_cluster(2) as cluster:
+        cloudpickle.register_pickle_by_value(sys.modules[__name__])
+        result = run_campaign(
+            load_campaign(campaign), processed=tmp_path / "processed", reports=tmp_path / "r",
+            clock=time.perf_counter, executor=cluster, command="reduction run campaign.toml",
+        )  # fmt: skip
+    failed = {test.test: test for test in result.tests if test.status == "failed"}
+    assert set(failed) == {"T03", "T05"} and result.exit_status == 3
+    assert "every worker that began this test died at it" in failed["T05"].message
+    assert failed["T05"].exit_status == 1
+    made_here = products(tmp_path)
+    assert {name: serial[name] for name in made_here if name.endswith(".nc")} == {
+        name: sum_ for name, sum_ in made_here.items() if name.endswith(".nc")
+    }
+    assert {name.removesuffix(".nc") for name in made_here if name.endswith(".nc")} == SOUND - {
+        "T05"
+    }
+
+
+def test_jobs_and_scheduler_exclude_each_other(campaign, command, tmp_path):
+    done = command("run", campaign, "--jobs", "2", "--scheduler", "tcp://127.0.0.1:1", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--jobs and --scheduler exclude each other; found --jobs 2 --scheduler" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_several_jobs_without_dask_say_what_to_install(campaign, command, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    monkeypatch.delitem(sys.modules, "reduction.batch.clusters", raising=False)
+    done = command("run", campaign, "--jobs", "2", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "several workers need Dask, which is not installed" in done.stderr
+    assert "pip install 'mooring-reduction[cluster]'" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_without_jobs_imports_no_dask(campaign, tmp_path):
+    code = (
+        "import sys, reduction.cli.runs, reduction.cli.workers\n"
+        "sys.exit('distributed' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], env=os.environ | {"PYTHONPATH": str(ROOT)})
+    assert done.returncode == 0
+
+
+def test_a_folder_of_products_that_workers_do_not_see_ends_the_run(campaign, scheduler, tmp_path):
+    """The lock that the run holds is not there where the workers look."""
+    address, _ = scheduler
+    process = start(campaign, tmp_path, "--scheduler", address)
+    lock = tmp_path / "processed" / "many" / "run.lock"
+    wait_for(lock.exists)
+    lock.unlink()
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 6
+    assert "is not the lock of this run any more; found no such file on this machine" in errors
+    assert not archives(tmp_path)

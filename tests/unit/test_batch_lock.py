@@ -1,0 +1,207 @@
+"""One run at a time on the products of a campaign, whatever became of the one before."""
+
+import json
+import os
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from reduction.batch import lock as module
+from reduction.batch.lock import LOCK_NAME, RunLock, run_lock
+from reduction.errors import ArchiveError
+
+ROOT = Path(__file__).parents[2]
+# takes the lock, adds a line to a file twice with time between, and says who it was
+CONTENDER = """
+import sys, time
+from pathlib import Path
+from reduction.batch.lock import run_lock
+from reduction.errors import ArchiveError
+folder = Path(sys.argv[1])
+try:
+    with run_lock(folder, remark=lambda text: None):
+        with (folder / "inside").open("x"):
+            time.sleep(0.3)
+        (folder / "inside").unlink()
+        print("held")
+except ArchiveError as error:
+    print("refused" if "another run holds" in str(error) else error)
+"""
+DIES = """
+import os, sys
+from pathlib import Path
+from reduction.batch.lock import run_lock
+with run_lock(Path(sys.argv[1]), remark=print):
+    (Path(sys.argv[1]) / ".T-1.nc.1.part").touch()
+    print(os.getpid(), flush=True)
+    os._exit(1)
+"""
+
+
+def started(code, folder):
+    return subprocess.Popen(
+        [sys.executable, "-c", code, str(folder)], stdout=subprocess.PIPE, text=True,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+
+
+def held(folder, **changes):
+    """The lock of this process in a folder, with other words in it."""
+    with run_lock(folder, remark=pytest.fail):
+        text = (folder / LOCK_NAME).read_text()
+        (folder / "kept").touch()
+    (folder / LOCK_NAME).write_text(json.dumps(json.loads(text) | changes))
+
+
+def test_a_lock_says_who_holds_it_since_when_and_with_what_command(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["/usr/bin/reduction", "run", "my campaign.toml"])
+    with run_lock(tmp_path, remark=pytest.fail) as lock:
+        found = json.loads(lock.path.read_text())
+        assert found["host"] == platform.node() and found["pid"] == os.getpid()
+        assert found["command"] == "reduction run 'my campaign.toml'"
+        assert found["started"].endswith("+00:00")
+        lock.confirm()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_was_made_for_nothing_is_not_left(tmp_path):
+    with run_lock(tmp_path / "processed" / "a", remark=pytest.fail):
+        assert (tmp_path / "processed" / "a" / LOCK_NAME).exists()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_lock_is_given_back_after_an_error(tmp_path):
+    with pytest.raises(KeyboardInterrupt), run_lock(tmp_path, remark=pytest.fail):
+        raise KeyboardInterrupt
+    with run_lock(tmp_path, remark=pytest.fail):
+        pass
+
+
+def test_a_second_run_is_told_who_holds_the_folder(tmp_path):
+    with (
+        run_lock(tmp_path, remark=pytest.fail),
+        pytest.raises(
+            ArchiveError,
+            match=rf"^another run holds .*process {os.getpid()} on .*, since 20.*one run at a time.*"
+            "Wait for it or end it; products that it finished are kept",
+        ),
+        run_lock(tmp_path, remark=pytest.fail),
+    ):
+        pass
+
+
+def test_the_lock_of_a_process_that_is_no_more_is_taken_over_and_its_parts_removed(tmp_path):
+    process = started(DIES, tmp_path)
+    (pid,) = process.stdout.read().split()  # it is a zombie now, until it is waited for
+    said = []
+    with run_lock(tmp_path, remark=said.append):
+        assert [path.name for path in tmp_path.iterdir()] == [LOCK_NAME]
+    assert len(said) == 1
+    assert "taken over from" in said[0] and f"process {pid} on" in said[0]
+    process.communicate()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"boot": "another boot of the machine"},
+        pytest.param(
+            {"process_start": "1"},
+            marks=pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="no /proc"),
+        ),
+        {"pid": 2**22 + 1},
+    ],
+)
+def test_a_process_that_has_the_number_of_another_does_not_hold_its_lock(changes, tmp_path):
+    held(tmp_path, **changes)
+    said = []
+    with run_lock(tmp_path, remark=said.append):
+        pass
+    assert len(said) == 1
+
+
+@pytest.mark.parametrize(("start", "is_gone"), [("1", True), ("", False)])
+def test_without_the_start_of_processes_their_number_decides(start, is_gone, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "_process_start", lambda pid: None)
+    held(tmp_path, process_start="", **({"pid": 2**22 + 1} if is_gone else {}))
+    said = []
+    if is_gone:
+        with run_lock(tmp_path, remark=said.append):
+            pass
+        assert len(said) == 1
+    else:
+        with (
+            pytest.raises(ArchiveError, match="another run holds"),
+            run_lock(tmp_path, remark=pytest.fail),
+        ):
+            pass
+
+
+@pytest.mark.parametrize("changes", [{"host": "elsewhere"}, {"space": "pid:[1]"}])
+def test_a_lock_of_another_machine_or_container_is_left_to_a_person(changes, tmp_path):
+    held(tmp_path, pid=2**22 + 1, **changes)
+    with (
+        pytest.raises(ArchiveError, match=r"which cannot be seen from .*, delete the file"),
+        run_lock(tmp_path, remark=pytest.fail),
+    ):
+        pass
+    assert (tmp_path / LOCK_NAME).exists()
+
+
+@pytest.mark.parametrize("text", ["", "no lock at all", '{"host": "a"}', "[1]", "null"])
+def test_a_text_that_is_no_lock_is_left_to_a_person(text, tmp_path):
+    (tmp_path / LOCK_NAME).write_text(text)
+    with (
+        pytest.raises(ArchiveError, match="a text that is no lock; .*if no run is at work there"),
+        run_lock(tmp_path, remark=pytest.fail),
+    ):
+        pass
+
+
+def test_a_folder_that_cannot_be_written_to_is_told(tmp_path, monkeypatch):
+    def refuse(*arguments):
+        raise OSError(30, "Read-only file system")
+
+    monkeypatch.setattr(module.os, "open", refuse)
+    with (
+        pytest.raises(ArchiveError, match=r"run\.lock cannot be written; found Read-only file sys"),
+        run_lock(tmp_path, remark=pytest.fail),
+    ):
+        pass
+
+
+def test_of_many_runs_at_once_none_works_beside_another(tmp_path):
+    """Also where all of them find the lock of one that is no more."""
+    started(DIES, tmp_path).communicate()
+    processes = [started(CONTENDER, tmp_path) for _ in range(6)]
+    said = [process.communicate()[0].strip() for process in processes]
+    assert set(said) <= {"held", "refused"} and "held" in said
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_lock_of_a_quicker_one_is_put_back(tmp_path):
+    path = tmp_path / LOCK_NAME
+    path.write_text("of the quicker one")
+    assert not module._put_away(path, "of one that is no more")
+    assert path.read_text() == "of the quicker one"
+    assert [one.name for one in tmp_path.iterdir()] == [LOCK_NAME]
+
+
+def test_a_lock_that_was_put_away_by_another_is_no_concern(tmp_path):
+    assert not module._put_away(tmp_path / LOCK_NAME, "")
+
+
+def test_work_goes_on_under_its_own_lock_alone(tmp_path):
+    with run_lock(tmp_path, remark=pytest.fail) as lock:
+        with pytest.raises(ArchiveError, match=r"is not the lock of this run any more; found '"):
+            RunLock(lock.path, "of another").confirm()
+        lock.path.unlink()
+        with pytest.raises(ArchiveError, match="found no such file on this machine"):
+            lock.confirm()
+        lock.path.write_text("{}")
+        with pytest.raises(ArchiveError, match="found another text"):
+            lock.confirm()
+        lock.path.unlink()

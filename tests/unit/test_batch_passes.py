@@ -1,0 +1,182 @@
+"""The two passes over a campaign: which records are kept, and what becomes of lost tests."""
+
+from dataclasses import replace
+
+import pytest
+from manytests import write_many
+
+from reduction.batch import firstpass, secondpass
+from reduction.batch.basis import Basis
+from reduction.batch.executor import Ended, Serial
+from reduction.batch.firstpass import FirstPass, survey_campaign, with_record
+from reduction.batch.lock import RunLock, run_lock
+from reduction.batch.models import fit_strain_models
+from reduction.batch.progress import Silent
+from reduction.batch.pulls import fit_pulls
+from reduction.batch.secondpass import reduce_campaign
+from reduction.campaign.load import load_campaign
+from reduction.errors import ArchiveError, WorkerError
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    return load_campaign(write_many(tmp_path_factory.mktemp("many") / "raw", 4, n_cycles=4))
+
+
+class Lossy(Serial):
+    """Its workers die at one test."""
+
+    def __init__(self, test):
+        super().__init__()
+        self.lost = test
+
+    def ended(self, tasks):
+        for task in tasks:
+            if task.test == self.lost:
+                yield Ended(task.test, None, WorkerError("lost with all hands"))
+            else:
+                yield Ended(task.test, task.result(), worker="tcp://w:1")
+
+
+class Told(Silent):
+    """Keeps what it is told."""
+
+    def __init__(self):
+        self.words = []
+
+    def stage(self, name, n_tests):
+        self.words.append((name, n_tests))
+
+    def begun(self, test):
+        self.words.append(("begun", test))
+
+    def ended(self, test, status=None):
+        self.words.append(("ended", test, None if status is None else status.status))
+
+
+def test_surveys_come_in_the_order_of_the_campaign_without_their_samples(campaign):
+    first = survey_campaign(campaign)
+    assert [one.plan.id for one in first.surveys] == ["T01", "T02.a", "T02.b", "T03", "T04"]
+    assert all(one.located is None for one in first.surveys)
+    assert list(first.kept) == ["T01", "T02", "T03", "T04"]
+    records = [one.located for one in first.kept["T02"].result()]
+    assert len(records) == 2 and all(one is not None for one in records)
+    assert "no number" in str(first.surveys[3].error)
+
+
+def test_records_beyond_the_bound_are_not_kept(campaign, monkeypatch):
+    n_rows = survey_campaign(campaign).surveys[0].n_rows
+    monkeypatch.setattr(firstpass, "KEPT_SAMPLES", n_rows)
+    assert list(survey_campaign(campaign).kept) == ["T01"]
+
+
+def test_a_record_on_disk_stays_where_it_was_read(campaign, monkeypatch):
+    monkeypatch.setattr(firstpass, "is_on_disk", lambda array: True)
+    executor = Serial()
+    assert survey_campaign(campaign, executor=executor).kept["T01"].result()[0].located is not None
+    executor.is_elsewhere = True
+    assert survey_campaign(campaign, executor=executor).kept["T01"].result()[0].located is None
+
+
+def test_a_record_of_another_file_is_not_taken(campaign):
+    first = survey_campaign(campaign)
+    survey, kept = first.surveys[0], first.kept["T01"].result()
+    assert with_record(survey, kept).located is kept[0].located
+    assert with_record(survey, None) is survey
+    changed = replace(survey, sources=(replace(survey.sources[0], sha256="0" * 64),))
+    assert with_record(changed, kept) is changed
+
+
+def test_progress_hears_of_each_log_as_it_begins_and_ends(campaign):
+    progress, executor = Told(), Serial()
+    executor.begun = progress.begun
+    survey_campaign(campaign, executor=executor, progress=progress)
+    assert progress.words[:3] == [("survey", 4), ("begun", "T01"), ("ended", "T01", None)]
+    assert progress.words[-1] == ("ended", "T04", None)
+
+
+def test_a_test_that_is_lost_in_the_first_pass_has_an_error(campaign):
+    first = survey_campaign(campaign, executor=Lossy("T01"))
+    assert str(first.surveys[0].error) == "lost with all hands"
+    assert first.surveys[1].error is None
+
+
+def test_a_slow_pull_that_is_lost_is_an_error_of_its_test(campaign):
+    plan = type("Plan", (), {"quasi_static": {"one": "T01"}})
+    asking = replace(campaign, experiments={"e": plan})
+    first = survey_campaign(campaign)
+    models, _ = fit_strain_models(campaign, first.surveys)
+    pulls, errors = fit_pulls(asking, first, models, executor=Lossy("T01"), progress=Silent())
+    assert pulls == {} and str(errors["T01"]) == "lost with all hands"
+
+
+def reduced(campaign, folder, *, executor, lock, progress=None, basis=None, errors=None):
+    first = FirstPass(survey_campaign(campaign).surveys)
+    return reduce_campaign(
+        campaign, first, first.surveys, errors=errors or {}, folder=folder, executor=executor,
+        basis=basis or (lambda survey: Basis(None, (), None, (), "{}", (), ())),
+        lock=lock, progress=progress or Silent(), clock=lambda: 7.0, force=True, command="",
+    )  # fmt: skip
+
+
+def test_a_test_that_is_lost_in_the_second_pass_is_a_failed_row(campaign, tmp_path, monkeypatch):
+    monkeypatch.setattr(secondpass, "bring_up_to_date", lambda *a, **b: ("reduced", "well"))
+    progress = Told()
+    with run_lock(tmp_path, remark=pytest.fail) as lock:
+        rows = reduced(campaign, tmp_path, executor=Lossy("T02.b"), lock=lock, progress=progress)
+    assert [(row.test, row.status, row.worker) for row in rows] == [
+        ("T01", "reduced", "tcp://w:1"),
+        ("T02.a", "reduced", "tcp://w:1"),
+        ("T02.b", "failed", ""),
+        ("T03", "failed", ""),
+        ("T04", "reduced", "tcp://w:1"),
+    ]
+    assert rows[2].message.endswith("lost with all hands") and rows[2].exit_status == 1
+    assert progress.words[0] == ("reduce", 5)
+    assert ("ended", "T02.b", "failed") in progress.words
+
+
+def test_a_defect_in_what_one_test_rests_on_fails_that_test_alone(campaign, tmp_path, monkeypatch):
+    monkeypatch.setattr(secondpass, "bring_up_to_date", lambda *a, **b: ("reduced", "well"))
+
+    def basis(survey):
+        if survey.plan.id == "T04":
+            raise KeyError("no such thing")
+        return Basis(None, (), None, (), "{}", (), ())
+
+    with run_lock(tmp_path, remark=pytest.fail) as lock:
+        rows = reduced(campaign, tmp_path, executor=Serial(), lock=lock, basis=basis)
+    assert [row.status for row in rows] == ["reduced"] * 3 + ["failed"] * 2
+    assert "internal error, a defect of this program: KeyError" in rows[-1].message
+
+
+def test_nothing_is_begun_without_the_lock(campaign, tmp_path):
+    lost = RunLock(tmp_path / "run.lock", "token")
+    with pytest.raises(ArchiveError, match="is not the lock of this run any more"):
+        survey_campaign(campaign, lock=lost)
+    with pytest.raises(ArchiveError, match="is not the lock of this run any more"):
+        reduced(campaign, tmp_path, executor=Serial(), lock=lost)
+
+
+def test_nothing_is_written_where_the_lock_went_while_a_test_was_reduced(
+    campaign, tmp_path, monkeypatch
+):
+    """What is left of a run that was ended reduces to its end, and keeps it to itself."""
+    lock = RunLock(tmp_path / "run.lock", "token")
+    monkeypatch.setattr(secondpass.RunLock, "confirm", lambda self: None)
+    whole = secondpass.bring_up_to_date
+
+    def slow(*arguments, before_writing, **options):
+        monkeypatch.undo()
+        return whole(*arguments, before_writing=lock.confirm, **options)
+
+    monkeypatch.setattr(secondpass, "bring_up_to_date", slow)
+    first = survey_campaign(campaign)
+    models, _ = fit_strain_models(campaign, first.surveys)
+    rows = reduce_campaign(
+        campaign, first, first.surveys[:1], errors={}, folder=tmp_path, executor=Serial(),
+        basis=lambda survey: Basis(None, (models["T01", "one"],), None, (), "{}", (), ()),
+        lock=lock, progress=Silent(), clock=lambda: 7.0, force=True, command="",
+    )  # fmt: skip
+    assert "is not the lock of this run any more" in rows[0].message
+    assert list(tmp_path.iterdir()) == []
