@@ -11,8 +11,9 @@ import mmap
 import os
 import tempfile
 from collections.abc import Iterator, Sequence
+from io import FileIO
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -184,7 +185,7 @@ class ColumnWriter:
         self._folder = folder
         self._dtype = np.dtype(dtype)
         self._parts: list[NDArray[Any]] = []
-        self._file: IO[bytes] | None = None
+        self._file: FileIO | None = None
         self._file = None if folder is None else _scratch_file(folder)
         self.size = 0
 
@@ -201,8 +202,10 @@ class ColumnWriter:
         if self._file is None or self._folder is None:
             self._parts.append(part)
             return
+        left = part.data.cast("B") if part.size else memoryview(b"")
         try:
-            self._file.write(part.data.cast("B") if part.size else b"")
+            while left:  # a disk that fills takes what it can
+                left = left[self._file.write(left) :]
         except OSError as error:
             raise _no_space(self._folder, part.nbytes, error) from error
 
@@ -210,10 +213,6 @@ class ColumnWriter:
         """Return the column, shape (size,); nothing may be added any more."""
         if self._file is not None and self._folder is not None:
             with self._file as file:
-                try:
-                    file.flush()
-                except OSError as error:
-                    raise _no_space(self._folder, self.size, error) from error
                 return _mapped(file, self.size * self._dtype.itemsize, self._folder, self._dtype)
         if len(self._parts) == 1 and self._parts[0].flags.writeable:
             return self._parts[0]
@@ -245,9 +244,9 @@ def _map_of(array: NDArray[Any]) -> _ScratchMap | None:
     return base if isinstance(base, _ScratchMap) else None
 
 
-def _scratch_file(folder: Path) -> IO[bytes]:
+def _scratch_file(folder: Path) -> FileIO:
     try:
-        return tempfile.TemporaryFile(dir=folder)
+        return tempfile.TemporaryFile(buffering=0, dir=folder)
     except OSError as error:
         raise DataError(
             "no scratch file can be made for a long log",
@@ -257,7 +256,7 @@ def _scratch_file(folder: Path) -> IO[bytes]:
         ) from error
 
 
-def _reserve(file: IO[bytes], n_bytes: int, folder: Path) -> None:
+def _reserve(file: FileIO, n_bytes: int, folder: Path) -> None:
     """Take the room at once: a map of a file that the disk cannot hold ends the process."""
     try:
         if hasattr(os, "posix_fallocate"):
@@ -268,7 +267,7 @@ def _reserve(file: IO[bytes], n_bytes: int, folder: Path) -> None:
         raise _no_space(folder, n_bytes, error) from error
 
 
-def _mapped(file: IO[bytes], n_bytes: int, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
+def _mapped(file: FileIO, n_bytes: int, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
     if not n_bytes:
         return np.empty(0, dtype=dtype)
     found = _ScratchMap(file.fileno(), n_bytes)
