@@ -11,9 +11,8 @@ import mmap
 import os
 import tempfile
 from collections.abc import Iterator, Sequence
-from io import FileIO
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -185,7 +184,7 @@ class ColumnWriter:
         self._folder = folder
         self._dtype = np.dtype(dtype)
         self._parts: list[NDArray[Any]] = []
-        self._file: FileIO | None = None
+        self._file: IO[bytes] | None = None
         self._file = None if folder is None else _scratch_file(folder)
         self.size = 0
 
@@ -244,7 +243,7 @@ def _map_of(array: NDArray[Any]) -> _ScratchMap | None:
     return base if isinstance(base, _ScratchMap) else None
 
 
-def _scratch_file(folder: Path) -> FileIO:
+def _scratch_file(folder: Path) -> IO[bytes]:
     try:
         return tempfile.TemporaryFile(buffering=0, dir=folder)
     except OSError as error:
@@ -256,7 +255,7 @@ def _scratch_file(folder: Path) -> FileIO:
         ) from error
 
 
-def _reserve(file: FileIO, n_bytes: int, folder: Path) -> None:
+def _reserve(file: IO[bytes], n_bytes: int, folder: Path) -> None:
     """Take the room at once: a map of a file that the disk cannot hold ends the process."""
     try:
         if hasattr(os, "posix_fallocate"):
@@ -267,7 +266,7 @@ def _reserve(file: FileIO, n_bytes: int, folder: Path) -> None:
         raise _no_space(folder, n_bytes, error) from error
 
 
-def _mapped(file: FileIO, n_bytes: int, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
+def _mapped(file: IO[bytes], n_bytes: int, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
     if not n_bytes:
         return np.empty(0, dtype=dtype)
     found = _ScratchMap(file.fileno(), n_bytes)
