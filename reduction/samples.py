@@ -489,8 +489,10 @@ class ColumnWriter:
         if self._file is None or self._folder is None:
             self._parts.append(part)
             return
+        left = part.data.cast("B") if part.size else memoryview(b"")
         try:
-            self._file.write(part.data.cast("B") if part.size else b"")
+            while left:  # a disk that fills takes what it can
+                left = left[self._file.write(left) :]
         except OSError as error:
             raise _no_space(self._folder, part.nbytes, error) from error
 
@@ -498,10 +500,6 @@ class ColumnWriter:
         """Return the column, shape (size,); nothing may be added any more."""
         if self._file is not None and self._folder is not None:
             with self._file as file:
-                try:
-                    file.flush()
-                except OSError as error:
-                    raise _no_space(self._folder, self.size, error) from error
                 return _mapped(file, self.size * self._dtype.itemsize, self._folder, self._dtype)
         if len(self._parts) == 1 and self._parts[0].flags.writeable:
             return self._parts[0]
@@ -535,7 +533,7 @@ def _map_of(array: NDArray[Any]) -> _ScratchMap | None:
 
 def _scratch_file(folder: Path) -> IO[bytes]:
     try:
-        return tempfile.TemporaryFile(dir=folder)
+        return tempfile.TemporaryFile(buffering=0, dir=folder)
     except OSError as error:
         raise DataError(
             "no scratch file can be made for a long log",

@@ -27,7 +27,7 @@ from reduction.archive.version import SCHEMA_VERSION
 __all__ = ["check_archive"]
 
 _BLOCK = 1 << 20  # values of a long variable that are read at a time
-_CACHE = 1 << 20  # bytes
+_CACHE = 1 << 19  # bytes of the largest chunk
 _REQUIRED = ("title", "history", "raw_file_sha256", "settings", "software_version")
 
 

@@ -146,8 +146,9 @@ def select_places(
     places : SamplePlaces
         Of stretches between cycles: the first, the last, those beside a selected cycle and the
         thousand longest others. Where all of this together is more than ``most``, the longest
-        cycles and stretches are thinned to a common length: a cycle to every k-th sample, a
-        stretch to its first quarter and its last, and every k-th sample between them.
+        cycles and stretches are thinned to a common number of samples: a cycle to every k-th;
+        of a stretch a quarter are its first ones, a quarter its last, the others every k-th
+        between them.
 
     Examples
     --------

@@ -21,7 +21,7 @@ from reduction.samples import sample_blocks
 __all__ = ["write_netcdf"]
 
 _BLOCK = 1 << 20  # values of the last dimension at a time: whole chunks
-_CACHE = 1 << 20  # bytes; a chunk is written once, so that one in memory is enough
+_CACHE = 1 << 19  # bytes of the largest chunk: each is written once
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> None:

@@ -81,7 +81,8 @@ def survey_campaign(
 
 def _n_bytes(campaign: Campaign, log: str) -> int:
     """Size of the files of a log, as far as they are there."""
-    paths = [campaign.file(name) for name, _ in campaign.tests[log].files]
+    names = [name for name, _ in campaign.tests[log].files if name not in campaign.unread]
+    paths = [campaign.file(name) for name in names]
     return sum(path.stat().st_size for path in paths if path.exists())
 
 

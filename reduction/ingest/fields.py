@@ -174,6 +174,8 @@ def _ragged(rows: TextRows, n_fields: int, message: str) -> LogError:
     """First row with another number of fields, or in which a quote is not closed."""
     n_lines = count_lines(rows.text)
     for line, text in enumerate(rows.lines()):
+        if error := rows.unclosed(line, text):
+            return error
         found = len(split_line(text, rows.layout))
         if text.strip("\r") and found != n_fields:
             is_cut_off = rows.is_open and line == n_lines - 1
@@ -185,8 +187,6 @@ def _ragged(rows: TextRows, n_fields: int, message: str) -> LogError:
                 needed=f"{n_fields} fields",
                 hint="The log was cut off; remove its last line." if is_cut_off else None,
             )
-        if error := rows.unclosed(line, text):
-            return error
     return rows.not_told_apart(message)
 
 

@@ -21,13 +21,15 @@ from reduction.ingest.table import ColumnTable, read_columns
 __all__ = ["open_parquet", "parquet_table", "read_parquet"]
 
 _UNIT_KEYS = (b"units", b"unit")
+_BUFFER = 1 << 20  # bytes
 _MACHINERY = (b"ARROW:schema", b"pandas")  # for programs, not for a reader
 
 
 def open_parquet(path: Path) -> pyarrow.parquet.ParquetFile:
     """Open a Parquet file; `LogError` where the file is none."""
     try:
-        return pyarrow.parquet.ParquetFile(path)
+        # else each column of a row group is read whole
+        return pyarrow.parquet.ParquetFile(path, buffer_size=_BUFFER, pre_buffer=False)
     except (pyarrow.ArrowException, OSError) as error:
         raise LogError(
             path, "the file is not Parquet", found=str(error)[:200], needed="a .parquet file"

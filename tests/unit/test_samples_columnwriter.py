@@ -1,0 +1,82 @@
+import errno
+import os
+from io import FileIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from reduction import samples
+from reduction.errors import DataError
+from reduction.samples import ColumnWriter, empty_like, is_on_disk
+
+
+@pytest.mark.parametrize("kind", [np.float64, np.int64, np.uint16])
+@pytest.mark.parametrize("sizes", [[], [0], [3], [1, 0, 4], [70_000, 5]])
+def test_a_column_is_the_same_in_memory_and_on_disk(tmp_path, kind, sizes):
+    rng = np.random.default_rng(1)
+    parts = [rng.integers(0, 1000, size).astype(kind) for size in sizes]
+    expected = np.concatenate([np.empty(0, kind), *parts])
+    for folder in (None, tmp_path):
+        writer = ColumnWriter(folder, kind)
+        for part in parts:
+            writer.append(part)
+        assert writer.size == expected.size
+        column = writer.finish()
+        np.testing.assert_array_equal(column, expected)
+        assert (column.dtype, is_on_disk(column)) == (kind, bool(folder and expected.size))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_column_can_be_written_to_although_its_part_could_not():
+    part = np.ones(3)
+    part.flags.writeable = False
+    writer = ColumnWriter(None)
+    writer.append(part)
+    assert writer.finish().flags.writeable
+
+
+def test_parts_of_another_kind_or_order_are_made_the_column_s(tmp_path):
+    writer = ColumnWriter(tmp_path)
+    writer.append(np.arange(6, dtype=np.int16)[::2])
+    writer.append(np.array([7.0], dtype=">f8"))
+    assert writer.finish().tolist() == [0, 2, 4, 7]
+
+
+def test_a_disk_that_fills_takes_what_it_can(tmp_path, monkeypatch):
+    class Slow(FileIO):
+        def write(self, data):
+            return super().write(data[:5])
+
+    monkeypatch.setattr(samples, "_scratch_file", lambda folder: Slow(folder / "x", "w+"))
+    writer = ColumnWriter(tmp_path)
+    writer.append(np.arange(4.0))
+    assert writer.finish().tolist() == [0, 1, 2, 3]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_full_disk_is_told_with_what_to_do(tmp_path, monkeypatch):
+    monkeypatch.setattr(samples, "_scratch_file", lambda _: FileIO("/dev/full", "w"))
+    with pytest.raises(
+        DataError,
+        match=r"scratch files of a long log do not fit on the disk; found no room for 8 MB in "
+        r".*: No space left on device; needed about 60 bytes a row and specimen\. Set TMPDIR",
+    ):
+        ColumnWriter(tmp_path).append(np.zeros(1_000_000))
+
+
+def test_a_disk_without_the_room_of_an_array_is_told(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    writer = ColumnWriter(tmp_path)
+    writer.append(np.zeros(1 << 18))
+    column = writer.finish()
+    monkeypatch.setattr(os, "posix_fallocate", full)
+    with pytest.raises(DataError, match="no room for 2 MB .*No space left on device"):
+        empty_like(column)
+
+
+def test_a_folder_that_is_not_there_is_told(tmp_path):
+    with pytest.raises(DataError, match="no scratch file can be made for a long log; found .*no"):
+        ColumnWriter(tmp_path / "no")
