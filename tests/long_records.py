@@ -11,20 +11,27 @@ BEFORE, PER_CYCLE, AFTER = 300, 20, 150
 
 
 def cycles_of(n_cycles, *, before=BEFORE, per_cycle=PER_CYCLE, after=AFTER, rest=0):
-    """Cycles of equal length, ``rest`` samples between two of them."""
+    """Cycles of equal length, ``rest`` samples between two of them.
+
+    Without a rest two cycles share the sample at which one turns to the other, which goes by the
+    number of the later one.
+    """
     first = before + (per_cycle + rest) * np.arange(n_cycles)
-    n_samples = before + n_cycles * (per_cycle + rest) - rest + after
+    shared = 1 if rest == 0 else 0
+    n_samples = before + n_cycles * (per_cycle + rest) - rest + shared + after
     number = np.zeros(n_samples, dtype=np.int32)
     branch = np.zeros(n_samples, dtype=np.int8)
     for place, begin in enumerate(first):
         number[begin : begin + per_cycle] = place + 1
         branch[begin : begin + per_cycle] = np.repeat([1, 2], per_cycle // 2)
+    last = first + per_cycle - 1 + shared
+    number[last[-1]], branch[last[-1]] = n_cycles, 2
     halves = np.column_stack([first, first + per_cycle // 2])
     return Cycles(
         first=first,
-        last=first + per_cycle - 1,
+        last=last,
         branch_first=halves,
-        branch_last=halves + per_cycle // 2 - 1,
+        branch_last=halves + per_cycle // 2 - 1 + shared,
         plateau_rate=np.ones((n_cycles, 2)),
         cycle_number=number,
         branch=branch,

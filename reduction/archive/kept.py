@@ -13,6 +13,7 @@ from math import ceil
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.cycles.product import Cycles
@@ -22,7 +23,7 @@ from reduction.record import UNUSABLE, Floats, Integers, freeze_arrays
 from reduction.samples import let_go, sample_blocks
 from reduction.settings import ReductionSettings
 
-__all__ = ["KeptSamples", "SamplePlaces", "kept_samples", "select_places"]
+__all__ = ["KeptSamples", "SamplePlaces", "kept_samples", "select_places", "stored_cycles"]
 
 _MOST_STRETCHES = 1000
 _SHARE = 4  # of the longest record that is stored whole: the most that is stored of a longer one
@@ -117,6 +118,33 @@ def kept_samples(test: ReducedTest, settings: ReductionSettings) -> KeptSamples 
     )
 
 
+def stored_cycles(dataset: xr.Dataset) -> Integers:
+    """Return the numbers of the cycles whose samples an archive holds.
+
+    One that is not among them can have both its ends there, since two cycles share the sample at
+    which one turns to the other; that sample goes by the number of the later one.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The archive.
+
+    Returns
+    -------
+    numbers : ndarray of int, shape (n_stored,)
+        From 1; none where the test has no cycles. [1]
+    """
+    if "cycle" not in dataset:
+        return np.empty(0, dtype=np.int64)
+    numbers: Integers = dataset["cycle"].values
+    if "sample_index" not in dataset:
+        return numbers
+    index = dataset["sample_index"].values
+    begin = np.searchsorted(index, dataset["cycle_first_sample"].values, side="left")
+    end = np.searchsorted(index, dataset["cycle_last_sample"].values, side="right")
+    return numbers[end - begin > 2]
+
+
 def _cycles_with_curves(test: ReducedTest, longest: int) -> Integers:
     if test.cycles is None or not test.cycles.n_cycles:
         return np.empty(0, dtype=np.int64)
@@ -182,7 +210,9 @@ def select_places(
         for begin, end, outside in pieces.tolist()
     ]
     return SamplePlaces(
-        np.sort(np.concatenate(index)),
+        np.unique(
+            np.concatenate(index)
+        ),  # two cycles share the sample at which one turns to the other
         pieces[lengths > level, :2],
         int(np.count_nonzero(is_stretch & ~kept)),
     )

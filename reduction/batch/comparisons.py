@@ -8,11 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from reduction import __version__
 from reduction.archive.comparisons import NamedComparison, comparisons_to_dataset
 from reduction.archive.curveerrors import curve_errors_of
+from reduction.archive.kept import stored_cycles
 from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive
 from reduction.batch.part import PartStatus
@@ -23,6 +25,7 @@ from reduction.ingest.source import hash_source, source_of
 from reduction.pipeline.hosecomparison import compare_record, loading_of
 from reduction.prediction import HosePlan
 from reduction.provenance import Origin, Source, Step
+from reduction.record import Integers
 
 __all__ = ["compare_archive", "write_comparisons", "write_named"]
 
@@ -148,7 +151,7 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
             archive["strain"].values[index],
             archive["tension"].values[index],
             loading=plan.loading or loading_of(kind),
-            cycle_number=archive["cycle_number"].values if "cycle_number" in archive else None,
+            cycle_number=_numbers(archive) if "cycle_number" in archive else None,
             branch=archive["branch"].values if "branch" in archive else None,
             # a pull has no cycles to break in
             break_in_cycles=_break_in(archive) if "cycle_number" in archive else 0,
@@ -160,6 +163,14 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
             assumed = f'taken as dynamic, as {kind} tests are; a slow one has loading = "static"'
             comparison = replace(comparison, notes=(assumed, *comparison.notes))
         return NamedComparison(plan.name, archive.attrs["test"], specimen, hose.name, comparison)
+
+
+def _numbers(archive: xr.Dataset) -> Integers:
+    """Cycle of each sample, 0 of one at the end of a cycle whose others are stored no longer."""
+    number: Integers = archive["cycle_number"].values
+    if "sample_index" not in archive:
+        return number
+    return np.where(np.isin(number, stored_cycles(archive)), number, 0)
 
 
 def _of_part(archive: xr.Dataset) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
+from reduction.archive.kept import stored_cycles
 from reduction.record import Floats, Integers
 from reduction.units import UnitSystem
 
@@ -108,18 +109,17 @@ class TestView:
     def pieces(self) -> Integers:
         """Piece of the record that each stored sample is in: between two, cycles are left out."""
         index, first = self.array("sample_index"), self.array("cycle_first_sample")
-        if index is None or first is None:
+        last = self.array("cycle_last_sample")
+        if index is None or first is None or last is None:
             return np.zeros(int(self.data.sizes.get("sample", 0)), dtype=np.int64)
-        begun, before = (
-            np.searchsorted(first, index[:-1], side="right"),
-            np.searchsorted(first, index[1:], side="left"),
-        )
-        return np.concatenate([[0], np.cumsum(before > begun)])
+        # cycles from one sample to the next: neighbours share the sample at which one turns
+        begun = np.searchsorted(first, index[:-1], side="left")
+        ended = np.searchsorted(last, index[1:], side="right")
+        return np.concatenate([[0], np.cumsum(ended > begun)])
 
     def stored_near(self, cycles: Floats) -> Floats:
         """Numbers of cycles, each once; where samples of some alone are stored, the nearest."""
-        number = None if self.is_whole else self.array("cycle_number")
-        stored = np.zeros(0) if number is None else np.unique(number[number > 0])
+        stored = np.zeros(0) if self.is_whole else stored_cycles(self.data)
         if not stored.size:
             return np.unique(cycles)
         return np.unique(stored[np.abs(stored[:, None] - cycles).argmin(axis=0)])

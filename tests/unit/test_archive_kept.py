@@ -13,7 +13,7 @@ from long_records import AFTER, BEFORE, PER_CYCLE, cycles_of, long_test
 
 from reduction.archive.check import check_archive
 from reduction.archive.dataset import to_dataset
-from reduction.archive.kept import kept_samples, select_places
+from reduction.archive.kept import kept_samples, select_places, stored_cycles
 from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive
 from reduction.moduli.groups import select_cycles
@@ -26,6 +26,14 @@ def wanted(samples=None, longest=4000, selected=8):
     return ReductionSettings(
         archive=ArchiveSettings(samples, longest), modulus=ModulusSettings(selected_cycles=selected)
     )
+
+
+def places_of(cycles, numbers):
+    """Of the cycles, from end to end, and of what is in none."""
+    is_there = cycles.cycle_number == 0
+    for number in numbers:
+        is_there[cycles.first[number - 1] : cycles.last[number - 1] + 1] = True
+    return np.flatnonzero(is_there)
 
 
 def built(test, kept):
@@ -47,17 +55,16 @@ def test_a_record_of_which_everything_is_selected_is_stored_whole():
 def test_selected_cycles_and_all_that_is_in_no_cycle_stay():
     test = long_test()
     found = kept_samples(test, wanted("selected", longest=10**6)).index
-    number = test.cycles.cycle_number
     # first three, last three, and by equal ratio between them: the rule of the modulus curves
-    expected = np.isin(number, [0, 1, 2, 3, 10, 32, 98, 99, 100])
-    np.testing.assert_array_equal(found, np.flatnonzero(expected))
+    np.testing.assert_array_equal(found, places_of(test.cycles, [1, 2, 3, 10, 32, 98, 99, 100]))
 
 
 def test_cycles_whose_curves_are_pooled_are_there_by_their_first():
     test = long_test()
     curves = type("Curves", (), {"selected_cycle": np.array([1, 41])})()
     found = kept_samples(replace(test, curves=curves), wanted("selected", longest=10**6))
-    assert set(test.cycles.cycle_number[found.index]) == {0, 1, 2, 3, 10, 32, 41, 98, 99, 100}
+    expected = places_of(test.cycles, [1, 2, 3, 10, 32, 41, 98, 99, 100])
+    np.testing.assert_array_equal(found.index, expected)
 
 
 def test_what_is_too_long_is_thinned_and_keeps_its_ends_and_its_extremes():
@@ -85,11 +92,11 @@ def test_what_is_too_long_is_thinned_and_keeps_its_ends_and_its_extremes():
 
 def test_slow_cycles_are_thinned_evenly():
     cycles = cycles_of(4, before=10, per_cycle=1000, after=10)
-    places = select_places(4020, cycles, np.array([1, 4]), most=420)
-    own = places.index[(places.index >= 10) & (places.index < 1010)]
-    assert own[0] == 10 and own[-1] == 1009
-    assert np.unique(np.diff(own)[:-1]).tolist() == [6]  # 999 samples by 199, rounded up
-    assert places.thinned.tolist() == [[10, 1010], [3010, 4010]]
+    places = select_places(4021, cycles, np.array([1, 4]), most=420)
+    own = places.index[(places.index >= 10) & (places.index <= 1010)]
+    assert own[0] == 10 and own[-1] == 1010
+    assert np.unique(np.diff(own)[:-1]).tolist() == [6]  # 1000 samples by 199, rounded up
+    assert places.thinned.tolist() == [[10, 1011], [3010, 4011]]
 
 
 def test_of_very_many_rests_the_longest_and_those_beside_a_kept_cycle_stay():
@@ -130,11 +137,10 @@ def test_places_rise_stay_in_the_record_and_hold_the_ends_of_every_kept_cycle(
     assert index[0] == 0 and index[-1] == n_samples - 1
     assert index.size <= max(most, 8 * (n_cycles + 1 + numbers.size))
     assert set(cycles.first[numbers - 1]) | set(cycles.last[numbers - 1]) <= set(index)
-    left = np.setdiff1d(np.arange(1, n_cycles + 1), numbers)
-    assert not np.isin(cycles.cycle_number[index], left).any()
+    expected = places_of(cycles, numbers)
+    assert set(index) <= set(expected)
     if not places.thinned.size:
-        whole = ~np.isin(cycles.cycle_number, left)
-        np.testing.assert_array_equal(index, np.flatnonzero(whole))
+        np.testing.assert_array_equal(index, expected)
 
 
 def test_the_archive_says_what_it_holds_and_counts_over_the_whole_record(tmp_path):
@@ -160,7 +166,7 @@ def test_the_archive_says_what_it_holds_and_counts_over_the_whole_record(tmp_pat
         np.testing.assert_allclose(
             archive["nominal_stress"], test.record.tension[:, index] / area, rtol=1e-14
         )
-        n_samples = BEFORE + 100 * PER_CYCLE + AFTER
+        n_samples = BEFORE + 100 * PER_CYCLE + 1 + AFTER
         assert [int(archive[f"n_rows_{name}"]) for name in ("read", "kept", "stored")] == [
             n_samples + 2, n_samples, index.size,
         ]  # fmt: skip
@@ -173,6 +179,7 @@ def test_the_archive_says_what_it_holds_and_counts_over_the_whole_record(tmp_pat
         # places in the record, whatever is stored of it
         np.testing.assert_array_equal(archive["cycle_first_sample"], test.cycles.first)
         assert archive.attrs["stored_samples"] == kept.words
+        assert stored_cycles(archive).tolist() == [1, 2, 3, 10, 32, 98, 99, 100]
     assert kept.words.startswith(
         f"{index.size} of {n_samples}; 8 of 100 cycles (1, 2, 3, 10, 32, 98, 99, 100) and what"
     )
@@ -183,6 +190,8 @@ def test_the_archive_says_what_it_holds_and_counts_over_the_whole_record(tmp_pat
 def test_an_archive_of_the_whole_record_has_no_index_of_samples(rich_test):
     dataset = built(rich_test, None)
     assert "sample_index" not in dataset
+    assert stored_cycles(dataset).tolist() == dataset["cycle"].values.tolist()
+    assert stored_cycles(dataset.drop_dims("cycle")).size == 0
     assert dataset.attrs["stored_samples"] == "all"
     assert int(dataset["n_rows_stored"]) == int(dataset["n_rows_kept"])
 
