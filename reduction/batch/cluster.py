@@ -118,13 +118,14 @@ class Cluster:
 
     def _told(self, task: _Sent[Result]) -> Ended[Result]:
         error = self._error_of(task)
-        task.let_go()
         if error is None:
             try:
-                told = task.future.result()
-            except (OSError, CancelledError) as gone:
-                raise _scheduler_lost() from gone
-            return Ended(task.test, told.value, worker=told.worker)
+                told = self._fetched(task)
+                task.let_go()
+                return Ended(task.test, told.value, worker=told.worker)
+            except KilledWorker as gone:
+                error = gone
+        task.let_go()
         if not isinstance(error, KilledWorker):
             raise error
         died = WorkerError(
@@ -135,6 +136,17 @@ class Cluster:
             "with more memory.",
         )
         return Ended(task.test, None, died)
+
+    def _fetched(self, task: _Sent[Result]) -> _Told[Result]:
+        """Result of a task that ended; one that was lost with its worker is waited for again."""
+        last_seen = time.monotonic()
+        while True:
+            try:
+                return task.future.result(timeout=_LOOK)
+            except TimeoutError:
+                last_seen = self._look(last_seen)
+            except (OSError, CancelledError) as gone:
+                raise _scheduler_lost() from gone
 
     def _as_they_end(self, tasks: Iterable[Task[Result]]) -> Iterator[_Sent[Result]]:
         ended: SimpleQueue[_Sent[Result]] = SimpleQueue()

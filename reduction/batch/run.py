@@ -160,6 +160,7 @@ def _run(
         campaign, first, chosen, errors=errors, basis=basis, folder=folder, executor=executor,
         lock=lock, progress=progress, clock=clock, force=force, command=command,
     )  # fmt: skip
+    lock.confirm()  # before what is made of all tests
     now_failed = {status.test for status in statuses if status.status == "failed"}.union(failed)
     asked = {survey.plan.id for survey in chosen}
     parts = _write_parts(

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import cloudpickle
 import psutil
@@ -17,6 +18,7 @@ from manytests import ROOT, archives, products, run, start, wait_for, write_many
 from reduction.batch import run as run_module
 from reduction.batch import secondpass
 from reduction.batch.clusters import local_cluster
+from reduction.batch.executor import Serial
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
@@ -212,6 +214,31 @@ def test_a_test_that_kills_its_workers_is_one_failed_test(campaign, serial, tmp_
     assert {name.removesuffix(".nc") for name in made_here if name.endswith(".nc")} == SOUND - {
         "T05"
     }
+
+
+def test_slow_pulls_and_surfaces_are_the_same_with_workers(tmp_path, monkeypatch):
+    """Runs whose products rest on another test, which is worked on between the passes."""
+    monkeypatch.setattr(run_module, "write_report", lambda *a, **b: None)
+    whole = load_campaign(ROOT / "raw" / "nylon-synthetic" / "campaign.toml")
+    kept = ("R01", "R07", "Q01")
+    plan = whole.experiments["nylon"]
+    few = replace(
+        whole,
+        id="many",
+        tests={name: whole.tests[name] for name in kept},
+        experiments={"nylon": replace(plan, runs={name: plan.runs[name] for name in kept[:2]})},
+    )
+    found = []
+    with local_cluster(2) as cluster:
+        for name, executor in (("serial", Serial()), ("workers", cluster)):
+            result = run_campaign(
+                few, processed=tmp_path / name / "processed", reports=tmp_path / "r",
+                clock=time.perf_counter, executor=executor,
+            )  # fmt: skip
+            assert {test.exit_status for test in result.tests} == {0}
+            found.append(products(tmp_path / name))
+    assert found[0] == found[1]
+    assert {"R01.nc", "Q01.nc", "surfaces.nc", "tables/slow_pull.csv"} <= set(found[0])
 
 
 def test_jobs_and_scheduler_exclude_each_other(campaign, command, tmp_path):

@@ -141,6 +141,24 @@ def test_a_worker_that_dies_costs_its_tasks_a_retry(cluster, tmp_path):
     assert sorted(one.value for one in ended) == list(range(9))
 
 
+def slow_pid():
+    time.sleep(0.5)
+    return os.getpid()
+
+
+def test_a_result_that_is_lost_with_its_worker_is_made_again(cluster, monkeypatch):
+    monkeypatch.setattr(module, "_LOOK", 0.1)
+    task = cluster.start(slow_pid, stage="reduce", test="a")
+    end = time.monotonic() + 20
+    while task.future.status != "finished" and time.monotonic() < end:
+        time.sleep(0.01)
+    (holder,) = next(iter(cluster._client.who_has([task.future]).values()))
+    pid = cluster._client.run(os.getpid)[holder]
+    os.kill(pid, signal.SIGKILL)
+    (ended,) = cluster.ended([task])
+    assert ended.error is None and ended.value != pid
+
+
 def test_a_test_at_which_workers_die_fails_alone_and_with_words(cluster):
     kept = cluster.start(os._exit, 1, stage="survey", test="deadly")
     tasks = [
