@@ -51,11 +51,13 @@ def draw_record(view: TestView) -> list[Figure]:
         time, in_time = time / SECONDS_IN_AN_HOUR, Shown("h", 1.0)
     data: list[Trace] = []
     pieces = view.pieces
+    # most of the time of a record that is stored in part has no sample to draw
+    along = time if view.is_whole else np.arange(time.size, dtype=np.float64)
     position = position_of(view)
     if position is not None:
         words, values = position
         length = shown("length", view.units)
-        kept = keep_extremes(time, values)
+        kept = keep_extremes(along, values)
         data.append(
             line(
                 *with_gaps(pieces[kept], time[kept], values[kept] * length.factor), name=words,
@@ -67,7 +69,7 @@ def draw_record(view: TestView) -> list[Figure]:
                          flags, words, "#8C8C8C", "y2")  # fmt: skip
     flags = view.array("quality_flag")
     for index, specimen in enumerate(view.specimens):
-        kept = keep_extremes(time, tension[index])
+        kept = keep_extremes(along, tension[index])
         force = tension[index] * in_tension.factor
         data.append(
             line(
