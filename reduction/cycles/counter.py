@@ -23,7 +23,28 @@ Indices = NDArray[np.intp]
 
 
 def changes_of_count(cycle_counter: Integers) -> Indices:
-    """Samples after which the count is another, shape (n_changes,)."""
+    """Samples after which the machine's count is another.
+
+    Parameters
+    ----------
+    cycle_counter : ndarray of int, shape (n_samples,)
+        The count. [1]
+
+    Returns
+    -------
+    changes : ndarray of int, shape (n_changes,)
+        Last sample of each count but the last. [1]
+
+    Raises
+    ------
+    IndexError
+        If the count is not a series.
+
+    Examples
+    --------
+    >>> changes_of_count(np.array([0, 0, 1, 1, 2]))
+    array([1, 3])
+    """
     found = [np.empty(0, dtype=np.intp)]
     for part in sample_blocks(cycle_counter.size, cycle_counter, overlap=1):
         count = cycle_counter[part]

@@ -1,0 +1,155 @@
+"""A log that lies on disk gives the numbers of one in memory, in memory that does not grow."""
+
+import dataclasses
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from reduction import samples
+from reduction.batch.models import fit_strain_models
+from reduction.batch.reduce import reduce_survey
+from reduction.batch.survey import survey_log
+from reduction.campaign.load import load_campaign
+from reduction.cycles import runs
+from reduction.ingest import constant
+from reduction.ingest.parts import Parts
+from reduction.moduli import slip
+from reduction.phases import blocks
+
+RAW = Path(__file__).parents[2] / "raw"
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+# of each kind: cycles of tethers, of a sine, of a hose; a long test; pulls; a hold
+TESTS = (
+    ("tmt-synthetic", "T-1"),
+    ("tmt-synthetic", "T-4-extended"),
+    ("tmt-synthetic", "overnight-hold"),
+    ("nylon-synthetic", "R01"),
+    ("nylon-synthetic", "Q01"),
+    ("hose-synthetic", "L-64"),
+    ("hose-synthetic", "D-64"),
+    ("hose-synthetic", "B-64"),
+)
+
+
+def reduced(campaign, name):
+    """The test, with models of its own marks alone where it has any."""
+    loaded = load_campaign(RAW / campaign / "campaign.toml")
+    surveys = survey_log(loaded, name)
+    for survey in surveys:
+        if survey.error is not None:
+            raise survey.error
+    models, errors = fit_strain_models(loaded, surveys)
+    if errors:
+        raise next(iter(errors.values()))
+    return [
+        reduce_survey(
+            loaded, survey, [models[survey.plan.id, one] for one in survey.plan.specimens], None, ""
+        )
+        for survey in surveys
+    ]
+
+
+def numbers(product, place=""):
+    """Every array and number of a product, by where it stands."""
+    if dataclasses.is_dataclass(product):
+        for item in dataclasses.fields(product):
+            yield from numbers(getattr(product, item.name), f"{place}.{item.name}")
+    elif isinstance(product, dict):
+        for key, value in product.items():
+            yield from numbers(value, f"{place}[{key}]")
+    elif isinstance(product, (tuple, list)):
+        yield f"{place}.length", len(product)
+        for number, value in enumerate(product):
+            yield from numbers(value, f"{place}[{number}]")
+    else:
+        yield place, product
+
+
+def assert_same(found, expected, *, relative=0.0):
+    one, other = dict(numbers(found)), dict(numbers(expected))
+    assert one.keys() == other.keys()
+    for place, value in one.items():
+        if isinstance(value, (np.ndarray, float)) and np.asarray(value).dtype.kind == "f":
+            wanted = np.asarray(other[place])
+            size = np.nanmax(np.abs(wanted), initial=0.0) if np.isfinite(wanted).any() else 0.0
+            np.testing.assert_allclose(
+                value, wanted, rtol=relative, atol=relative * size, err_msg=place
+            )
+        elif isinstance(value, np.ndarray):
+            np.testing.assert_array_equal(value, other[place], err_msg=place)
+        elif relative == 0 or not isinstance(value, str):
+            assert value == other[place], place
+
+
+@pytest.fixture
+def on_disk(monkeypatch, tmp_path):
+    """Make every log one that is read in parts of some length and lies on disk."""
+
+    def set_up(part):
+        monkeypatch.setattr(Parts, "folder_of", lambda self, n_bytes: tmp_path)
+        monkeypatch.setattr(Parts, "length_of", lambda self, n_bytes: part)
+        monkeypatch.setattr(samples, "_ON_DISK_FROM", 1)
+
+    return set_up
+
+
+@pytest.mark.parametrize("part", [4_001, 100_000], ids="parts of {} bytes".format)
+@pytest.mark.parametrize(("campaign", "name"), TESTS)
+def test_a_log_on_disk_gives_the_numbers_of_one_in_memory(on_disk, campaign, name, part):
+    in_memory = reduced(campaign, name)
+    assert not any(samples.is_on_disk(test.record.tension) for test in in_memory)
+    on_disk(part)
+    found = reduced(campaign, name)
+    assert all(samples.is_on_disk(test.record.tension) for test in found)
+    assert all(samples.is_on_disk(test.strain) for test in found)
+    assert_same(found, in_memory)
+
+
+@pytest.mark.parametrize("length", [997, 4096])
+@pytest.mark.parametrize(("campaign", "name"), TESTS)
+def test_the_length_of_the_blocks_is_in_no_number(monkeypatch, campaign, name, length):
+    expected = reduced(campaign, name)
+    for module in (samples, runs, constant, slip, blocks):
+        monkeypatch.setattr(module, "BLOCK", length)
+    monkeypatch.setitem(samples.sample_blocks.__kwdefaults__, "size", length)
+    assert_same(reduced(campaign, name), expected, relative=1e-12)
+
+
+REDUCE = """
+import json, resource, sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from generate import write_campaign
+from reduction.batch.models import fit_strain_models
+from reduction.batch.reduce import reduce_survey
+from reduction.batch.survey import survey_log
+from reduction.campaign.load import load_campaign
+from reduction.ingest.parts import Parts
+Parts.folder_of = lambda self, n_bytes: self.folder
+Parts.length_of = lambda self, n_bytes: 1 << 22
+campaign = load_campaign(write_campaign(Path(sys.argv[2]), n_rows=int(sys.argv[3])))
+[survey] = survey_log(campaign, "long")
+models, _ = fit_strain_models(campaign, [survey])
+test = reduce_survey(
+    campaign, survey, [models["long", name] for name in survey.plan.specimens], None, "{}"
+)
+peak = [line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM")]
+print(json.dumps({"peak": int(peak[0]) / 1024, "cycles": test.cycles.n_cycles}))
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no /proc to read the peak from")
+def test_a_log_four_times_as_long_takes_no_more_memory(tmp_path):
+    def peak(n_rows):
+        done = subprocess.run(
+            [sys.executable, "-c", REDUCE, BENCHMARKS, tmp_path, str(n_rows)],
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        return json.loads(done.stdout)["peak"]
+
+    # 1.2 million rows more are 200 MB more in memory: 160 bytes a row and two specimens
+    assert peak(1_600_000) - peak(400_000) < 60
