@@ -1,0 +1,85 @@
+"""Time and memory of the reduction of logs of 10^5 to 10^8 rows, in memory and on disk.
+
+    python benchmarks/long_logs.py [ROWS ...]
+
+Each log is generated (synthetic), reduced without its archive in a process of its own, once in
+memory and once in scratch files, in turn; a log of more than 10^7 rows on disk alone.  10^8 rows
+are 3.1 GB of CSV, and about 10 GB of scratch files, in the folder BENCHMARK_DATA, or a temporary
+one, and in TMPDIR.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).parent
+SIZES = (100_000, 1_000_000, 10_000_000, 100_000_000)
+MOST_IN_MEMORY = 10_000_000
+REDUCE = """
+import hashlib, json, resource, sys, time
+from pathlib import Path
+from reduction.batch.models import fit_strain_models
+from reduction.batch.reduce import reduce_survey
+from reduction.batch.survey import survey_log
+from reduction.campaign.load import load_campaign
+from reduction.ingest.parts import Parts
+on_disk = sys.argv[2] == "disk"
+Parts.folder_of = lambda self, n_bytes: self.folder if on_disk else None
+imported = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+campaign = load_campaign(Path(sys.argv[1]))
+start = time.perf_counter()
+[survey] = survey_log(campaign, "long")
+if survey.error is not None:
+    raise survey.error
+models, _ = fit_strain_models(campaign, [survey])
+test = reduce_survey(
+    campaign, survey, [models["long", name] for name in survey.plan.specimens], None, "{}"
+)
+seconds = time.perf_counter() - start
+digest = hashlib.sha256(test.curves.tangent_modulus.tobytes())
+for name in ("peak_tension", "hysteresis_energy", "apparent_spring_constant"):
+    digest.update(getattr(test.loops, name).tobytes())
+print(json.dumps({
+    "seconds": seconds, "cycles": test.cycles.n_cycles, "imported_mb": imported,
+    "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+    "digest": digest.hexdigest()[:16],
+}))
+"""
+
+
+def reduced(campaign: Path, where: str) -> dict[str, float]:
+    """Reduce the log of a campaign in a process of its own; ``where`` is memory or disk."""
+    done = subprocess.run(
+        [sys.executable, "-c", REDUCE, str(campaign), where],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return dict(json.loads(done.stdout))
+
+
+def main(sizes: tuple[int, ...]) -> None:
+    """Print a Markdown table: seconds, seconds a million rows, peak memory."""
+    sys.path.insert(0, str(HERE))
+    from generate import write_campaign
+
+    folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
+    print("| rows | cycles | columns in | s | s a million rows | peak MB | numbers |")
+    print("|---|---|---|---|---|---|---|")
+    for n_rows in sizes:
+        campaign = write_campaign(folder, n_rows=n_rows)
+        for where in ("memory", "disk") if n_rows <= MOST_IN_MEMORY else ("disk",):
+            found = reduced(campaign, where)
+            print(
+                f"| {n_rows:,} | {found['cycles']:,} | {where} | {found['seconds']:.2f} "
+                f"| {found['seconds'] / n_rows * 1e6:.2f} | {found['peak_mb']:.0f} "
+                f"| {found['digest']} |",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main(tuple(int(one) for one in sys.argv[1:]) or SIZES)
