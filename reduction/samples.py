@@ -25,6 +25,7 @@ __all__ = [
     "BLOCK",
     "ColumnWriter",
     "any_sample",
+    "beside",
     "copied",
     "count_samples",
     "empty_like",
@@ -422,6 +423,16 @@ def empty_like(
     with _scratch_file(beside.folder) as file:
         _reserve(file, n_bytes, beside.folder)
         return _mapped(file, n_bytes, beside.folder, kind).reshape(shape)
+
+
+def beside(reference: NDArray[Any], made: NDArray[Any]) -> NDArray[Any]:
+    """Return an array moved to disk where the reference is, else as it is; both are let go."""
+    if not is_on_disk(reference):
+        return made
+    moved = empty_like(reference, shape=made.shape, dtype=made.dtype)
+    moved[...] = made
+    let_go(reference, moved)
+    return moved
 
 
 def copied(series: NDArray[Any]) -> NDArray[Any]:

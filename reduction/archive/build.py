@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from reduction.archive.values import Values
 from reduction.archive.variable import Variable
 from reduction.errors import ArchiveError
+from reduction.samples import let_go
 
 __all__ = ["build_dataset"]
 
@@ -83,12 +84,14 @@ def _sizes(values: Values, schema: Mapping[str, Variable]) -> dict[str, int]:
 
 
 def _variable(array: NDArray[Any], row: Variable, present: Values, auxiliary: str) -> xr.Variable:
-    return xr.Variable(
+    made = xr.Variable(
         row.dims,
         array if row.is_text else array.astype(row.dtype, copy=False),
         attrs=_attributes(row, present),
         encoding=_encoding(array, row, auxiliary),
     )
+    let_go(array)
+    return made
 
 
 def _attributes(row: Variable, present: Values) -> dict[str, Any]:

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from reduction.samples import sample_blocks
+from reduction.samples import let_go, sample_blocks
 
 __all__ = ["write_netcdf"]
 
@@ -53,6 +53,7 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
             else:
                 for part in _parts(values):
                     place[part] = values[part]
+                let_go(values)
 
 
 def _defined(file: netCDF4.Dataset, name: str, variable: xr.Variable) -> netCDF4.Variable[Any]:

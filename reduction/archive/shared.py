@@ -17,6 +17,7 @@ from reduction.archive.values import Values, texts
 from reduction.archive.variable import Variable, companion, count, label, stated
 from reduction.errors import ArchiveError
 from reduction.record import Floats
+from reduction.samples import beside, let_go
 from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.uncertainty.product import Component, Contributions
 
@@ -253,7 +254,8 @@ def _combine(values: Values, name: str, rows: Floats) -> Floats:
     if key not in values:
         return np.full(np.shape(values.get(name, np.nan)), np.nan)
     random: Floats = values[key]
-    values[key] = combined_standard_uncertainty(rows, random)
+    values[key] = beside(random, combined_standard_uncertainty(rows, random))
+    let_go(rows)
     return random
 
 

@@ -11,6 +11,7 @@ from reduction.ingest.parts import Parts
 from reduction.ingest.read import read_log
 from reduction.provenance import Source
 from reduction.record import Record
+from reduction.samples import give_back
 from reduction.settings import QualitySettings
 
 __all__ = ["read_record"]
@@ -62,4 +63,5 @@ def read_record(
     record = to_record(
         logs, test_id=test_id, specimens=specimens, quality=quality, length_needed=length_needed
     )
+    give_back(record.time)
     return record, tuple(log.source for log, _ in logs)
