@@ -158,7 +158,7 @@ def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArr
     array([7., 5.])
     """
     if not is_on_disk(series):
-        return np.asarray(series[..., index])
+        return np.asarray(series.take(index, axis=-1))
     flat = index.reshape(-1)
     taken = np.empty((*series.shape[:-1], flat.size), dtype=series.dtype)
     edges = np.flatnonzero(np.diff(flat // _SPAN)) + 1
@@ -217,8 +217,12 @@ def finite_extremes(series: NDArray[np.float64]) -> tuple[float, float]:
     """
     low, high = np.inf, -np.inf
     for part in sample_blocks(series.size, series):
-        finite = series[part][np.isfinite(series[part])]
-        low, high = finite.min(initial=low), finite.max(initial=high)
+        finite = series[part]
+        least, greatest = finite.min(), finite.max()
+        if not (np.isfinite(least) and np.isfinite(greatest)):
+            finite = finite[np.isfinite(finite)]
+            least, greatest = finite.min(initial=low), finite.max(initial=high)
+        low, high = min(low, least), max(high, greatest)
     return float(low), float(high)
 
 
@@ -451,9 +455,8 @@ def zeros_like(
 ) -> NDArray[Any]:
     """Return an array of zeros; parameters as in `empty_like`."""
     made = empty_like(reference, shape=shape, dtype=dtype)
-    if not is_on_disk(made):
-        made[...] = 0  # a new scratch file holds zeros
-    return made
+    # a new scratch file holds zeros, and so does memory that the system gives when it is touched
+    return made if is_on_disk(made) else np.zeros(made.shape, dtype=made.dtype)
 
 
 def full_like(

@@ -20,7 +20,7 @@ from reduction.cycles.halves import find_half_cycles
 from reduction.cycles.jumps import drop_jumps
 from reduction.cycles.product import Cycles
 from reduction.cycles.reversals import find_reversals, first_pass
-from reduction.cycles.trim import constant_rate_span, stroke_span
+from reduction.cycles.trim import constant_rate_span, plateau_rates, stroke_span
 from reduction.cycles.whole import whole_cycles
 from reduction.errors import DataError
 from reduction.phases.noise import estimate_noise
@@ -87,25 +87,26 @@ def _trimmed(
     branch_last: Indices,
     settings: CycleSettings,
 ) -> tuple[Indices, Indices, Floats, list[str]]:
-    first, last, rate = constant_rate_span(
-        time,
-        values,
-        branch_first,
-        branch_last,
-        noise=estimate_noise(values)[0],
-        trim_threshold=settings.trim_threshold,
-    )
+    noise = estimate_noise(values)[0]
     if settings.waveform != "triangular":
         first, last = stroke_span(values, branch_first, branch_last)
         return (
             first,
             last,
-            rate,
+            plateau_rates(time, values, branch_first, branch_last, noise=noise),
             [
                 f"a {settings.waveform} waveform has no plateau of rate: the trimmed branches "
                 "leave out 5 % of the stroke at each end"
             ],
         )
+    first, last, rate = constant_rate_span(
+        time,
+        values,
+        branch_first,
+        branch_last,
+        noise=noise,
+        trim_threshold=settings.trim_threshold,
+    )
     bare = int(np.sum(last < first))
     return (
         first,

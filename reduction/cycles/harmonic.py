@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reduction.cycles.energy import sums_over_cycles
+from reduction.cycles.turn import cosine_and_sine
 from reduction.errors import DataError
 from reduction.record import Floats, Integers, freeze_arrays
 
@@ -109,7 +110,7 @@ def cycle_basis(
     share, cosine, sine = np.zeros_like(time), np.zeros_like(time), np.zeros_like(time)
     rate = np.repeat(np.column_stack([1 / duration, nothing]).ravel(), lengths)
     np.multiply(rate, weight[begin:], out=share[begin:])
-    bare = np.cos(phase), np.sin(phase, out=phase)
+    bare = cosine_and_sine(phase)
     np.multiply(bare[0], share[begin:], out=cosine[begin:])
     np.multiply(bare[1], share[begin:], out=sine[begin:])
     end_share = (time[last] - time[last - 1]) / duration

@@ -22,7 +22,7 @@ from reduction.phases.noise import estimate_noise
 from reduction.record import Bools, Floats
 from reduction.samples import take_samples
 
-__all__ = ["constant_rate_span", "stroke_span"]
+__all__ = ["constant_rate_span", "plateau_rates", "stroke_span"]
 
 _RATE_NOISE = 0.01
 _WIDEST = 4  # a window is at most this part of a branch
@@ -131,6 +131,60 @@ def constant_rate_span(
             found=f"{trim_threshold:g}",
             needed="above 0 and at most 1",
         )
+    plateau, sign, width = _plateau(time, values, branch_first, branch_last, noise)
+    reach = branch_last - branch_first - width
+    least = trim_threshold * plateau
+
+    def passes(samples: Indices, rows: Indices, direction: int) -> Bools:
+        other = samples + direction * width[rows, None]
+        rate = sign[rows, None] * _rate(time, values, samples, other)
+        return np.asarray(rate >= least[rows, None])
+
+    searched = np.where(plateau > 0, reach, -1)
+    head = _steps_until(branch_first, 1, searched, partial(passes, direction=1))
+    tail = _steps_until(branch_last, -1, searched, partial(passes, direction=-1))
+    first = branch_first + np.maximum(head, 0)
+    last = np.where(head >= 0, branch_last - tail, branch_first - 1)
+    return first, last, plateau
+
+
+def plateau_rates(
+    time: Floats, values: Floats, branch_first: Indices, branch_last: Indices, *, noise: float
+) -> Floats:
+    """Plateau rate of each branch, without its ends: parameters as in `constant_rate_span`.
+
+    Parameters
+    ----------
+    time, values : ndarray, shape (n_samples,)
+        Elapsed time and control channel. [s], [m] or [N]
+    branch_first, branch_last : ndarray of int, shape (n_branches,)
+        Ends of each branch, both inside. [1]
+    noise : float
+        Standard deviation of the control channel. [m] or [N]
+
+    Returns
+    -------
+    plateau_rate : ndarray, shape (n_branches,)
+        Median of 33 rates spread over the branch, positive. [m s-1] or [N s-1]
+
+    Raises
+    ------
+    IndexError
+        If an end is not a sample of the values.
+
+    Examples
+    --------
+    >>> values = np.array([0.0, 0.2, 1.2, 2.2, 3.2, 4.2, 5.2, 5.4])
+    >>> plateau_rates(np.arange(8.0), values, np.array([0]), np.array([7]), noise=0.0)
+    array([1.])
+    """
+    return _plateau(time, values, branch_first, branch_last, noise)[0]
+
+
+def _plateau(
+    time: Floats, values: Floats, branch_first: Indices, branch_last: Indices, noise: float
+) -> tuple[Floats, Floats, Indices]:
+    """Plateau rate, direction and steps of a window of each branch."""
     n_steps = branch_last - branch_first
     travel = take_samples(values, branch_last) - take_samples(values, branch_first)
     sign = np.sign(travel)
@@ -147,20 +201,7 @@ def constant_rate_span(
         at = branch_first[part, None] + steps.astype(np.intp)
         end = np.minimum(at + width[part, None], branch_last[part, None])
         plateau[part] = _median(sign[part, None] * _rate(time, values, at, end))
-
-    least = trim_threshold * plateau
-
-    def passes(samples: Indices, rows: Indices, direction: int) -> Bools:
-        other = samples + direction * width[rows, None]
-        rate = sign[rows, None] * _rate(time, values, samples, other)
-        return np.asarray(rate >= least[rows, None])
-
-    searched = np.where(plateau > 0, reach, -1)
-    head = _steps_until(branch_first, 1, searched, partial(passes, direction=1))
-    tail = _steps_until(branch_last, -1, searched, partial(passes, direction=-1))
-    first = branch_first + np.maximum(head, 0)
-    last = np.where(head >= 0, branch_last - tail, branch_first - 1)
-    return first, last, plateau
+    return plateau, sign, width
 
 
 def _window(time: Floats, travel: Floats, n_steps: Indices, noise: float) -> Indices:
