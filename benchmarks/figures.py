@@ -68,8 +68,11 @@ def hand_on(figures: Iterable[Figure]) -> None:
 
 def figures_in(path: Path) -> tuple[Figure, ...]:
     """Figures of a script that has ended."""
-    rows: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))
-    return tuple(
-        Figure(**{name: tuple(one) if isinstance(one, list) else one for name, one in row.items()})
-        for row in rows
-    )
+    found = []
+    for row in json.loads(path.read_text(encoding="utf-8")):
+        # JSON has no tuples
+        kept: dict[str, Any] = {
+            name: tuple(one) if isinstance(one, list) else one for name, one in row.items()
+        }
+        found.append(Figure(**kept))
+    return tuple(found)
