@@ -19,7 +19,10 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from figures import Figure, hand_on
+
 HERE = Path(__file__).parent
+WANTED = 5.0  # times parsing, with the default archive
 PARSE = """
 import time, json, resource, sys
 import pandas
@@ -72,19 +75,25 @@ def run(code: str, *arguments: Path) -> dict[str, Any]:
     return dict(json.loads(done.stdout))
 
 
-def main(n_rows: int, repeats: int) -> None:
+def keeping_all(campaign: Path) -> Path:
+    """Write the campaign again, with every sample of its test in the archive."""
+    whole = campaign.with_name(campaign.name.replace("campaign", "whole"))
+    # the last table is the test
+    whole.write_text(
+        campaign.read_text(encoding="utf-8") + 'reduction.archive.samples = "all"\n',
+        encoding="utf-8",
+    )
+    return whole
+
+
+def main(n_rows: int, repeats: int) -> list[Figure]:
     """Print a Markdown table of the three and their ratios."""
     sys.path.insert(0, str(HERE))
     from generate import write_campaign
 
     folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
     campaign = write_campaign(folder, n_rows=n_rows)
-    whole = campaign.with_name(f"whole_{n_rows}.toml")
-    # the last table is the test
-    whole.write_text(
-        campaign.read_text(encoding="utf-8") + 'reduction.archive.samples = "all"\n',
-        encoding="utf-8",
-    )
+    whole = keeping_all(campaign)
     log, archive = folder / f"long_{n_rows}.csv", folder / "archive.nc"
     turns = [
         (run(PARSE, log), run(STORE, campaign, archive), run(STORE, whole, archive))
@@ -111,10 +120,35 @@ def main(n_rows: int, repeats: int) -> None:
         cells += [f"{own[0]['size'] / 1e6:.1f}", f"{own[0]['stored']}"] if place else ["", ""]
         cells.append(f"{max(one['peak_mb'] for one in own):.0f}")
         print(f"| {' | '.join(cells)} |")
+    found = []
+    for name, place in (("default archive", 1), ("whole record in the archive", 2)):
+        found += [
+            Figure(
+                what=f"reduction of {n_rows:,} rows, {name}",
+                values=tuple(turn[place]["seconds"] for turn in turns),
+                against="times `pandas.read_csv`",
+                ratios=tuple(turn[place]["seconds"] / turn[0]["seconds"] for turn in turns),
+                at_most=WANTED if place == 1 else None,
+            ),
+            Figure(
+                what=f"its {name} alone",
+                values=tuple(turn[place]["archive"] for turn in turns),
+                against="times `pandas.read_csv`",
+                ratios=tuple(turn[place]["archive"] / turn[0]["seconds"] for turn in turns),
+            ),
+            Figure(
+                what=f"its peak memory, {name}",
+                unit="MB",
+                values=tuple(turn[place]["peak_mb"] for turn in turns),
+            ),
+        ]
+    return found
 
 
 if __name__ == "__main__":
-    main(
-        int(sys.argv[1]) if len(sys.argv) > 1 else 5_760_000,
-        int(sys.argv[2]) if len(sys.argv) > 2 else 3,
+    hand_on(
+        main(
+            int(sys.argv[1]) if len(sys.argv) > 1 else 5_760_000,
+            int(sys.argv[2]) if len(sys.argv) > 2 else 3,
+        )
     )

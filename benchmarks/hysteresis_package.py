@@ -28,6 +28,7 @@ from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
+from figures import Figure, hand_on
 
 from reduction.cycles.energy import loop_energy
 from reduction.cycles.find import find_cycles
@@ -42,6 +43,7 @@ from reduction.settings import CycleSettings, ModulusSettings, PhaseSettings
 PASSES = 9
 NOISE = 0.002  # of the range
 WANTED = 5.0
+ENERGY_WANTED = 0.2  # %
 STRAIN, STRAIN_AMPLITUDE = 1.0, 0.25
 TENSION, TENSION_AMPLITUDE, ANGLE = 400.0, 150.0, np.radians(8.0)
 ENERGY = np.pi * STRAIN_AMPLITUDE * TENSION_AMPLITUDE * np.sin(ANGLE)
@@ -120,8 +122,9 @@ def theirs_at_once(
     return Answer(len(whole.cycles), np.array([whole.getNetArea() / (len(whole.cycles) / 2)]))
 
 
-def timed(sides: dict[str, Callable[[], Answer]]) -> None:
+def timed(sides: dict[str, Callable[[], Answer]], n_half_cycles: int, kind: str) -> list[Figure]:
     """Print a row a side, with the ratio to that of `hysteresis` where it is installed."""
+    figures = []
     taken: dict[str, list[float]] = {name: [] for name in sides}
     answers = {}
     for _ in range(PASSES + 1):
@@ -135,17 +138,49 @@ def timed(sides: dict[str, Callable[[], Answer]]) -> None:
         # the first pass warms up
         seconds = sorted(every[1:])
         pairs = zip(every[1:], taken.get("hysteresis", every)[1:], strict=True)
-        ratio = statistics.median(other / own for own, other in pairs)
+        ratios = tuple(other / own for own, other in pairs)
+        ratio = statistics.median(ratios)
         found = answers[name]
         error = 100 * (found.energy.mean() / ENERGY - 1)
         print(
             f"| {name} | {statistics.median(seconds):.4f} | {seconds[0]:.4f} | {seconds[-1]:.4f} "
             f"| {ratio:.1f} | {found.half_cycles} | {error:+.4f} |"
         )
+        is_three = name == "three steps"
+        has_ratio = "hysteresis" in taken and name != "hysteresis"
+        figures.append(
+            Figure(
+                what=f"{name}, {kind}",
+                values=tuple(every[1:]),
+                against="times as fast as `hysteresis`",
+                ratios=ratios if has_ratio else (),
+                at_least=WANTED if is_three else None,
+            )
+        )
+        if is_three or name == "as in a run":
+            figures += [
+                Figure(
+                    what=f"half cycles found, {name}, {kind}",
+                    unit="",
+                    values=(found.half_cycles,),
+                    at_least=n_half_cycles,
+                    at_most=n_half_cycles,
+                    of="value",
+                ),
+                Figure(
+                    what=f"error of their energy, {name}, {kind}",
+                    unit="%",
+                    values=(abs(error),),
+                    at_most=ENERGY_WANTED,
+                    of="value",
+                ),
+            ]
+    return figures
 
 
-def main(cycles: int, samples: int) -> None:
+def main(cycles: int, samples: int) -> list[Figure]:
     """Print both tables."""
+    figures = []
     has_theirs = find_spec("hysteresis") is not None
     processors = (
         len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
@@ -175,7 +210,7 @@ def main(cycles: int, samples: int) -> None:
         print(f"\nnoise {100 * noise:g} % of the range")
         if has_theirs and noise:
             print("`hysteresis` here with revProminence of 10 % of the range")
-        timed(sides)
+        figures += timed(sides, 2 * cycles, f"noise {100 * noise:g} %" if noise else "noise-free")
         if has_theirs and noise:
             start = perf_counter()
             found = theirs(strain, tension)
@@ -184,10 +219,24 @@ def main(cycles: int, samples: int) -> None:
                 f"`hysteresis` with its defaults: {found.half_cycles} half cycles, energy of a "
                 f"pair {error:+.1f} %, {perf_counter() - start:.1f} s"
             )
+            figures.append(
+                Figure(
+                    what="half cycles found, `hysteresis` with its defaults, noise",
+                    unit="",
+                    values=(found.half_cycles,),
+                )
+            )
+    if not has_theirs:
+        figures.append(
+            Figure(what="`hysteresis`", remark="not installed (pip install hysteresis==2.0.5)")
+        )
+    return figures
 
 
 if __name__ == "__main__":
-    main(
-        int(sys.argv[1]) if len(sys.argv) > 1 else 3_000,
-        int(sys.argv[2]) if len(sys.argv) > 2 else 400,
+    hand_on(
+        main(
+            int(sys.argv[1]) if len(sys.argv) > 1 else 3_000,
+            int(sys.argv[2]) if len(sys.argv) > 2 else 400,
+        )
     )

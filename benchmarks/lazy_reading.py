@@ -1,20 +1,25 @@
 """One cycle of an archive against all of it: time and memory of what is read.
 
-    python benchmarks/lazy_reading.py ARCHIVE.nc
+    python benchmarks/lazy_reading.py [ARCHIVE.nc | ROWS]
 
-For a long one: `reduction run` on the campaign of `benchmarks/generate.py` (synthetic), with
-``reduction.archive.samples = "all"`` in its test.
+Without an archive, one is made of a generated log (synthetic) of that many rows, every sample in
+it, in the folder BENCHMARK_DATA, or a temporary one.
 """
 
 from __future__ import annotations
 
+import os
 import resource
 import statistics
 import sys
+import tempfile
 from pathlib import Path
 from time import perf_counter
 
 import xarray as xr
+from archive_cost import STORE, keeping_all, run
+from figures import Figure, hand_on
+from generate import write_campaign
 
 import reduction
 
@@ -37,7 +42,15 @@ def of_cycle(test: xr.Dataset, cycle: int) -> tuple[float, int]:
     return perf_counter() - start, loop.sizes["sample"]
 
 
-def main(path: Path) -> None:
+def made(n_rows: int) -> Path:
+    """Make an archive of a generated log, with every sample in it."""
+    folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
+    archive = folder / f"whole_{n_rows}.nc"
+    run(STORE, keeping_all(write_campaign(folder, n_rows=n_rows)), archive)
+    return archive
+
+
+def main(path: Path) -> list[Figure]:
     """Print a Markdown table."""
     reduction.open_campaign(path).close()  # imports
     start, before = perf_counter(), peak_mb()
@@ -68,7 +81,20 @@ def main(path: Path) -> None:
     )
     print(f"| chord moduli of all cycles, {table.size} | {of_table:.3f} | |")
     print(f"| seven variables, whole | {of_whole:.3f} | {peak_mb() - before:.0f} |")
+    every = tuple(seconds for seconds, _ in ones)
+    samples = f"seven variables of {whole.sizes['sample']:,} samples"
+    return [
+        Figure(what=f"{samples} read from an archive", values=(of_whole,)),
+        Figure(
+            what=f"those of one of its {n_cycles:,} cycles",
+            values=every,
+            against="times the whole record",
+            ratios=tuple(one / of_whole for one in every),
+        ),
+        Figure(what="memory of twenty cycles", unit="MB", values=(after_cycles - before,)),
+    ]
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    given = sys.argv[1] if len(sys.argv) > 1 else "2000000"
+    hand_on(main(made(int(given)) if given.isdecimal() else Path(given)))

@@ -15,11 +15,17 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
+from figures import Figure, hand_on
+
 HERE = Path(__file__).parent
+MOST_MB, MOST_OVER_MEMORY = 600.0, 1.2
 SIZES = (100_000, 1_000_000, 10_000_000, 100_000_000)
 MOST_IN_MEMORY = 10_000_000
+LINEAR_FROM = 100_000_000
+PLACES = {"memory": "in memory", "disk": "on disk"}
 REDUCE = """
 import hashlib, json, resource, sys, time
 from pathlib import Path
@@ -61,7 +67,41 @@ def reduced(campaign: Path, where: str) -> dict[str, float]:
     return dict(json.loads(done.stdout))
 
 
-def main(sizes: tuple[int, ...]) -> None:
+def figures(found: dict[tuple[int, str], dict[str, float]]) -> Iterator[Figure]:
+    """Time of a row beside that of the longest log in memory, growth of time, and memory."""
+    longest = max((rows for rows, where in found if where == "memory"), default=0)
+    for (n_rows, where), one in found.items():
+        per_row = one["seconds"] / n_rows
+        ratios: tuple[float, ...] = ()
+        if where == "disk" and longest:
+            ratios = (per_row / (found[longest, "memory"]["seconds"] / longest),)
+        yield Figure(
+            what=f"a million rows out of {n_rows:,}, columns {PLACES[where]}",
+            values=(1e6 * per_row,),
+            against=f"times {longest:,} rows in memory",
+            ratios=ratios,
+            at_most=MOST_OVER_MEMORY if ratios and n_rows >= longest else None,
+        )
+        shorter = found.get((n_rows // 10, where))
+        if shorter is not None:
+            yield Figure(
+                what=f"time of {n_rows:,} rows, columns {PLACES[where]}",
+                values=(one["seconds"],),
+                against="times a tenth of the rows",
+                ratios=(one["seconds"] / shorter["seconds"],),
+                at_least=9.0 if n_rows >= LINEAR_FROM else None,
+                at_most=11.0 if n_rows >= LINEAR_FROM else None,
+            )
+        yield Figure(
+            what=f"peak memory of {n_rows:,} rows, columns {PLACES[where]}",
+            unit="MB",
+            values=(one["peak_mb"],),
+            at_most=MOST_MB if where == "disk" else None,
+            of="value",
+        )
+
+
+def main(sizes: tuple[int, ...]) -> list[Figure]:
     """Print a Markdown table: seconds, seconds a million rows, peak memory."""
     sys.path.insert(0, str(HERE))
     from generate import write_campaign
@@ -69,17 +109,19 @@ def main(sizes: tuple[int, ...]) -> None:
     folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
     print("| rows | cycles | columns in | s | s a million rows | peak MB | numbers |")
     print("|---|---|---|---|---|---|---|")
+    all_found: dict[tuple[int, str], dict[str, float]] = {}
     for n_rows in sizes:
         campaign = write_campaign(folder, n_rows=n_rows)
         for where in ("memory", "disk") if n_rows <= MOST_IN_MEMORY else ("disk",):
-            found = reduced(campaign, where)
+            found = all_found[n_rows, where] = reduced(campaign, where)
             print(
                 f"| {n_rows:,} | {found['cycles']:,} | {where} | {found['seconds']:.2f} "
                 f"| {found['seconds'] / n_rows * 1e6:.2f} | {found['peak_mb']:.0f} "
                 f"| {found['digest']} |",
                 flush=True,
             )
+    return list(figures(all_found))
 
 
 if __name__ == "__main__":
-    main(tuple(int(one) for one in sys.argv[1:]) or SIZES)
+    hand_on(main(tuple(int(one) for one in sys.argv[1:]) or SIZES))

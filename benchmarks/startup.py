@@ -15,6 +15,8 @@ import sys
 from pathlib import Path
 from time import perf_counter
 
+from figures import Figure, hand_on
+
 PYTHON = [sys.executable]
 COMMAND = shutil.which("reduction", path=str(Path(sys.executable).parent))
 HELP = [COMMAND] if COMMAND else [*PYTHON, "-m", "reduction"]
@@ -36,7 +38,7 @@ def seconds(command: list[str]) -> float:
     return perf_counter() - start
 
 
-def main(runs: int) -> None:
+def main(runs: int) -> list[Figure]:
     """Print a row a side."""
     taken: dict[str, list[float]] = {name: [] for name in SIDES}
     for _ in range(runs + 1):
@@ -53,7 +55,11 @@ def main(runs: int) -> None:
             f"| {name} | {median:.3f} | {min(every[1:]):.3f} | {max(every[1:]):.3f} "
             f"| {median / alone:.1f} | {'' if limit is None else limit} | {verdict} |"
         )
+    return [
+        Figure(what=name, values=tuple(every[1:]), at_most=SIDES[name][1], of="value")
+        for name, every in taken.items()
+    ]
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 15)
+    hand_on(main(int(sys.argv[1]) if len(sys.argv) > 1 else 15))

@@ -18,6 +18,7 @@ from time import perf_counter
 
 import numpy as np
 import statsmodels.api as sm
+from figures import Figure, hand_on
 
 from reduction.surface.designs import box_behnken
 from reduction.surface.surfaces import fit_surfaces
@@ -46,7 +47,7 @@ def time_of_r(count: int) -> float | None:
     return float(done.stdout) if done.returncode == 0 else None
 
 
-def main(count: int) -> None:
+def main(count: int) -> list[Figure]:
     """Print the times and their ratios."""
     runs = box_behnken(3).coded
     responses = np.random.default_rng(1).normal(10.0, 1.0, (count, len(runs)))
@@ -82,14 +83,33 @@ def main(count: int) -> None:
     print(f"reduction, {count} surfaces in one call: {ours:.3f} s (median of {PASSES}, {spread})")
     print(f"statsmodels OLS arrays, {count} fits: {other:.2f} s; ratio {other / ours:.0f}")
     print(f"largest relative difference of coefficients, standard errors and p: {largest:.1e}")
+    figures = [
+        Figure(what=f"{count:,} surfaces in one call", values=tuple(seconds)),
+        Figure(
+            what=f"statsmodels OLS arrays, {count:,} fits",
+            values=(other,),
+            against="times the one call",
+            ratios=tuple(other / one for one in seconds),
+        ),
+    ]
     share = max(count // 10, 1)
     of_r = time_of_r(share)
     if of_r is None:
         print("R with rsm: not installed")
+        figures.append(Figure(what="R summary(rsm())", remark="R with rsm is not installed"))
     else:
         whole = of_r * count / share
         print(f"R summary(rsm()), {share} fits timed: {whole:.0f} s; ratio {whole / ours:.0f}")
+        figures.append(
+            Figure(
+                what=f"R summary(rsm()), {count:,} of {share:,} timed",
+                values=(whole,),
+                against="times the one call",
+                ratios=tuple(whole / one for one in seconds),
+            )
+        )
+    return figures
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000)
+    hand_on(main(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000))

@@ -20,6 +20,8 @@ from functools import partial
 from pathlib import Path
 from statistics import median
 
+from figures import Figure, hand_on
+
 from reduction.batch.basis import basis_of
 from reduction.batch.clusters import local_cluster
 from reduction.batch.executor import Executor, Serial
@@ -130,7 +132,7 @@ def with_dask(path: Path, folder: Path, n_workers: int) -> float:
         return time.perf_counter() - start
 
 
-def main(n_tests: int, n_rows: int, repeats: int) -> None:
+def main(n_tests: int, n_rows: int, repeats: int) -> list[Figure]:
     """Print the times and the ratios."""
     sys.path.insert(0, str(Path(__file__).parent))
     sides = {
@@ -163,8 +165,26 @@ def main(n_tests: int, n_rows: int, repeats: int) -> None:
         f"\nShare of the ratio of bare processes that workers reach: median {median(shares):.2f} "
         f"({min(shares):.2f} to {max(shares):.2f}); wanted at least 0.85."
     )
+    tests = f"{n_tests} tests of {n_rows:,} rows"
+    return [
+        *(
+            Figure(
+                what=f"{tests}, {side}",
+                values=tuple(times),
+                against="times as fast as one process",
+                ratios=tuple(ratios[side]),
+            )
+            for side, times in taken.items()
+        ),
+        Figure(
+            what=f"{tests}, two workers of Dask",
+            against="of the gain of two bare processes",
+            ratios=tuple(shares),
+            at_least=0.85,
+        ),
+    ]
 
 
 if __name__ == "__main__":
     given = [int(one) for one in sys.argv[1:]]
-    main(*(given + [64, 6000, 3][len(given) :]))
+    hand_on(main(*(given + [64, 6000, 3][len(given) :])))

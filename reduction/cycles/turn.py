@@ -39,8 +39,8 @@ def cosine_and_sine(phase: Floats) -> tuple[Floats, Floats]:
 
     Notes
     -----
-    From the nearest of 4,096 tabulated angles by the sum of two angles ([1]_).  Over the rest, at most
-    8e-4, the next terms of both series, of fifth and sixth power, are below 1e-17.
+    From the nearest of 4,096 tabulated angles by the sum of two angles ([1]_).  Over the rest, at
+    most 8e-4, the next terms of both series, of fifth and sixth power, are below 1e-17.
 
     Examples
     --------

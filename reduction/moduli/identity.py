@@ -47,25 +47,28 @@ def _tension_change(
     def fit_block(block: slice) -> None:
         samples = slice(int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1)
         number, side = cycles.cycle_number[samples], cycles.branch[samples]
-        branch = 2 * number + side - 3
+        n_branches = 2 * (block.stop - block.start)
+        own = slice(2 * block.start, 2 * block.stop)
+        branch = (2 * (number - (block.start + 1)) + side - 1).astype(np.intp)
         y = tension[samples] - reference
-        u = (strain[samples] - begin[branch]) * per_stroke[branch]
-        used = (number > block.start) & (number <= block.stop) & (side > 0)
-        used &= np.isfinite(u) & np.isfinite(y)
-        if not used.all():
-            branch, side, u, y = branch[used], side[used], u[used], y[used]
+        u = strain[samples] - begin[own].take(branch, mode="clip")
+        u *= per_stroke[own].take(branch, mode="clip")
         # a sample between two pieces goes to the one of higher strain on either branch, lest a
         # record in step with the cycles divide its branches differently
         at = n_pieces * u + np.where(side == 1, _TIE, -_TIE)
         # noise carries samples past the reversals: they belong to the end pieces
-        piece = np.clip(at.astype(np.int32), 0, n_pieces - 1)
-        cell = (branch - 2 * block.start) * n_pieces + piece
-        adds = sums_by_cell(cell, (block.stop - block.start) * 2 * n_pieces)
-        sums = np.stack([adds @ value for value in (np.ones_like(u), u, y, u * u, u * y)])
-        own = _add_shared_reversals(
+        with np.errstate(invalid="ignore"):  # what a NaN is cast to counts nowhere
+            piece = np.clip(at.astype(np.int32), 0, n_pieces - 1)
+        cell = branch * n_pieces + piece
+        n_cells = n_branches * n_pieces
+        used = (branch >= 0) & (branch < n_branches) & (side > 0) & np.isfinite(u) & np.isfinite(y)
+        cell[~used] = n_cells  # one more, which is cut off
+        adds = sums_by_cell(cell, n_cells + 1)
+        sums = np.stack([(adds @ one)[:n_cells] for one in (np.ones_like(u), u, y, u * u, u * y)])
+        of_branch = _add_shared_reversals(
             sums.reshape(5, -1, n_pieces), strain, tension, cycles, block, reference=reference
         )
-        change[block] = _mean_slope(own, n_pieces)
+        change[block] = _mean_slope(of_branch, n_pieces)
 
     samples = (strain, tension, cycles.cycle_number, cycles.branch)
     run_blocks(fit_block, cycles.blocks(_BLOCK_SAMPLES), samples=samples)

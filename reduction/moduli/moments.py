@@ -71,11 +71,6 @@ class BranchMoments:
         """Moments of the curves from start to stop, stop not included."""
         return BranchMoments(self.sums[:, start:stop], self.grid, self.tension_reference)
 
-    def followed_by(self, other: BranchMoments) -> BranchMoments:
-        """Curves of both, one after the other, of one grid and reference."""
-        both = np.concatenate([self.sums, other.sums], axis=1)
-        return BranchMoments(both, self.grid, self.tension_reference)
-
 
 @dataclass(frozen=True)
 class LocalFits:
@@ -151,23 +146,27 @@ def accumulate_moments(
     """
     position = (strain - grid.low) * (1 / grid.width)
     y = tension - tension_reference
-    # comparisons with NaN are false
+    n_padded = grid.n_bins + 2 * grid.half_window
+    n_cells = n_curves * n_padded
+    # comparisons with NaN are false, and what a NaN is cast to counts nowhere
     inside = (position >= 0) & (position < grid.n_bins) & np.isfinite(y) & (curve >= 0)
+    with np.errstate(invalid="ignore"):
+        cell = position.astype(np.int32)
+    cell += grid.half_window
+    cell += (curve * n_padded).astype(np.int32, copy=False)
     n_outside = 0
     if not inside.all():
         known = (curve >= 0) & np.isfinite(position) & np.isfinite(y)
         n_outside = int(np.count_nonzero(known) - np.count_nonzero(inside))
-        position, y, curve = position[inside], y[inside], curve[inside]
+        cell[~inside] = n_cells  # one more, which is cut off: cheaper than to take samples out
 
-    n_padded = grid.n_bins + 2 * grid.half_window
-    n_cells = n_curves * n_padded
-    cell = curve * n_padded + position.astype(np.int32) + grid.half_window
-    adds = sums_by_cell(cell, n_cells)
-    x = position - grid.n_bins / 2
+    x = position
+    x -= grid.n_bins / 2
+    adds = sums_by_cell(cell, n_cells + 1)
     x2, xy = x * x, x * y
     sums = np.empty((_N_SUMS, n_cells))
     for row, value in enumerate((np.ones_like(x), x, x2, x2 * x, x2 * x2, y, xy, x * xy, y * y)):
-        sums[row] = adds @ value
+        sums[row] = (adds @ value)[:n_cells]
     return BranchMoments(
         sums.reshape(_N_SUMS, n_curves, n_padded), grid, tension_reference
     ), n_outside

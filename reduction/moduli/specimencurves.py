@@ -56,7 +56,7 @@ def _curve_of_sample(
 ) -> Integers:
     """Curve of each sample of a block: trimmed parts first, then the ends; -1 for none."""
     number, branch = cycles.cycle_number[samples], cycles.branch[samples]
-    group = groups.of_cycle[number] - start
+    group = groups.of_cycle.take(number) - start
     curve = 2 * group + branch - 1
     curve[~cycles.is_constant_rate[samples]] += 2 * (stop - start)
     outside = (group < 0) | (group >= stop - start) | (branch == 0)
@@ -87,25 +87,25 @@ def _reduce_block(
         grid=grid,
         tension_reference=reference,
     )
-    shape = (2, n_groups, 2, grid.n_bins)
+    shape = (n_groups, 2, grid.n_bins)
     trimmed = moments.curves(0, 2 * n_groups)
     whole = trimmed + moments.curves(2 * n_groups, 4 * n_groups)
-    fits = fit_windows(trimmed.followed_by(whole), minimum_count=minimum_count)
-    slope, slope_variance = fits.slope.reshape(shape), fits.slope_variance.reshape(shape)
+    # one after the other: arrays of half the size stay in the cache
+    fits, untrimmed = (fit_windows(one, minimum_count=minimum_count) for one in (trimmed, whole))
 
-    def statistics(values: Floats, variance: Floats, which: int) -> RunningStatistics:
+    def statistics(values: Floats, variance: Floats) -> RunningStatistics:
         return RunningStatistics.of(
-            values.reshape(shape)[which, n_break_in:],
-            variance.reshape(shape)[which, n_break_in:],
+            values.reshape(shape)[n_break_in:],
+            variance.reshape(shape)[n_break_in:],
             weight=weight[n_break_in:],
         )
 
     return SpecimenCurves(
-        trimmed=statistics(slope, slope_variance, 0),
-        untrimmed=statistics(slope, slope_variance, 1),
-        tension=statistics(fits.tension, fits.tension_variance, 0),
-        selected=slope[0, chosen],
-        selected_variance=slope_variance[0, chosen],
+        trimmed=statistics(fits.slope, fits.slope_variance),
+        untrimmed=statistics(untrimmed.slope, untrimmed.slope_variance),
+        tension=statistics(fits.tension, fits.tension_variance),
+        selected=fits.slope.reshape(shape)[chosen],
+        selected_variance=fits.slope_variance.reshape(shape)[chosen],
         n_outside=n_outside,
     )
 
