@@ -99,7 +99,7 @@ def give_back(*arrays: NDArray[Any]) -> None:
 def sample_blocks(
     n_samples: int, *arrays: NDArray[Any], overlap: int = 0, size: int = BLOCK
 ) -> Iterator[slice]:
-    """Slices that cover a series, in order; arrays on disk are let go behind each.
+    """Slices that cover a series, in order; arrays on disk are let go behind every few.
 
     Parameters
     ----------
@@ -127,9 +127,13 @@ def sample_blocks(
     >>> list(sample_blocks(5, size=2, overlap=1))
     [slice(0, 3, None), slice(2, 5, None), slice(4, 5, None)]
     """
+    kept = 0
     for start in range(0, n_samples, size):
         yield slice(start, min(start + size + overlap, n_samples))
-        let_go(*arrays)
+        kept += size
+        if kept >= _SPAN // 2 or start + size >= n_samples:  # less is not worth the call
+            let_go(*arrays)
+            kept = 0
 
 
 def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArray[Any]:

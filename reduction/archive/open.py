@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Literal
 
+import netCDF4
 import xarray as xr
 
 from reduction.archive.version import SCHEMA_VERSION
@@ -16,6 +18,10 @@ __all__ = ["Chunks", "open_archive"]
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
 """Values of a chunk, or by dimension, as `xarray.open_dataset` takes them."""
+
+_CACHE = 1 << 20
+"""Bytes of each variable that the library keeps as they are read: two chunks of an archive. Its own
+64 MB hold all that was ever read of a test, beside what is made of it."""
 
 
 def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
@@ -44,9 +50,10 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
     if not path.is_file():
         raise ArchiveError(f"there is no archive {path}", hint="Run the campaign first.")
     try:
-        dataset = xr.open_dataset(
-            path, engine="netcdf4", decode_times=False, decode_timedelta=False
-        )
+        with _small_cache():
+            dataset = xr.open_dataset(
+                path, engine="netcdf4", decode_times=False, decode_timedelta=False
+            )
     except (OSError, RuntimeError, ValueError) as error:
         raise ArchiveError(
             f"{path} is not a netCDF file",
@@ -67,6 +74,17 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
     # what is known to be an archive is opened again, so that a fault is one of the chunks
     dataset.close()
     return _open_in_chunks(path, chunks)
+
+
+@contextmanager
+def _small_cache() -> Iterator[None]:
+    """Files that are opened meanwhile keep little of what is read; others are as they were."""
+    before = netCDF4.get_chunk_cache()
+    netCDF4.set_chunk_cache(_CACHE)
+    try:
+        yield
+    finally:
+        netCDF4.set_chunk_cache(*before)
 
 
 def _open_in_chunks(path: Path, chunks: Chunks) -> xr.Dataset:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 import xarray as xr
@@ -11,7 +14,7 @@ from reduction.archive.netcdf import write_netcdf
 from reduction.archive.whole import whole_file
 from reduction.errors import ArchiveError
 
-__all__ = ["write_archive", "write_whole"]
+__all__ = ["appended_whole", "write_archive", "write_whole"]
 
 
 def write_archive(dataset: xr.Dataset, path: Path) -> None:
@@ -54,9 +57,46 @@ def write_whole(path: Path, text: str) -> None:
     ArchiveError
         If the disk refuses.
     """
+    with appended_whole(path) as append:
+        append(text)
+
+
+@contextmanager
+def appended_whole(path: Path) -> Iterator[Callable[[str], None]]:
+    """Give what adds text to a file that appears whole when the block ends well, or not at all.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file, in UTF-8, line ends as they are in the text; one that is there is replaced at
+        the very end, or kept.
+
+    Yields
+    ------
+    append : callable
+        Of one text, which is written behind the ones before.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    is_in_block = False
     try:
         with whole_file(path) as part:
-            part.write_text(text, encoding="utf-8", newline="")
+            is_in_block = True
+            yield partial(_append, part, path)
+            is_in_block = False
+    except OSError as error:
+        if is_in_block:  # says nothing of this file
+            raise
+        raise _not_written(path, error) from error
+
+
+def _append(part: Path, path: Path, text: str) -> None:
+    try:
+        with part.open("a", encoding="utf-8", newline="") as file:
+            file.write(text)
     except OSError as error:
         raise _not_written(path, error) from error
 

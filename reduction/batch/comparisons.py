@@ -21,7 +21,7 @@ from reduction.batch.part import PartStatus
 from reduction.batch.predictions import settings_of_hose
 from reduction.campaign.plan import Campaign, ComparisonPlan
 from reduction.errors import DataError, ReductionError
-from reduction.ingest.source import hash_source, source_of
+from reduction.ingest.source import hash_source
 from reduction.pipeline.hosecomparison import compare_record, loading_of
 from reduction.prediction import HosePlan
 from reduction.provenance import Origin, Source, Step
@@ -101,7 +101,7 @@ def write_comparisons(
             attributes=campaign.attributes,
             sources=[
                 hash_source(campaign.path, campaign.path.name),
-                *(source_of(path.read_bytes(), path.name) for path in paths.values()),
+                *(hash_source(path, path.name) for path in paths.values()),
             ],
             command=command,
         )

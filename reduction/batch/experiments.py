@@ -19,7 +19,7 @@ from reduction.batch.waiting import waiting_in_words
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.errors import FitError
 from reduction.experiment import ExperimentResult, RunTable
-from reduction.ingest.source import source_of
+from reduction.ingest.source import hash_source
 from reduction.notes import by_severity
 from reduction.pipeline.experiment import fit_experiment
 from reduction.pipeline.runline import LineOfRuns
@@ -188,7 +188,7 @@ def fit_experiments(
         for run in plan.runs:
             path = archive_of(run)
             if path is not None and path.exists():
-                sources[path.name] = source_of(path.read_bytes(), path.name)
+                sources[path.name] = hash_source(path, path.name)
         result = fit_rows(plan, rows)
         results.append(replace(result, notes=(*result.notes, *same_logs(plan, raw_sha256))))
     return results, tuple(sources.values())

@@ -18,7 +18,7 @@ from reduction.archive.write import write_archive
 from reduction.batch.instruments import instruments_of
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
-from reduction.ingest.source import source_of
+from reduction.ingest.source import hash_source
 from reduction.line.properties import change_in_length
 from reduction.line.propertyproduct import ChangeInLength, StepOfProgramme
 from reduction.provenance import Origin, Source, Step
@@ -213,7 +213,7 @@ def _read(
                 silent.append(found.step.name)
             kind = str(archive["programme_step"].values) if "programme_step" in archive else ""
             is_programme |= kind in CHANGES_LENGTH
-        sources.append(source_of(path.read_bytes(), path.name))
+        sources.append(hash_source(path, path.name))
     return _Found(
         tuple(steps), tuple(sources), tuple(missing), is_programme, component, tuple(silent)
     )

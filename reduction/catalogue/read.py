@@ -180,19 +180,26 @@ def _blocks(archive: xr.Dataset, names: list[str]) -> list[Block]:
 def _block(
     archive: xr.Dataset, dims: tuple[Hashable, ...], group: list[str], specimens: list[str]
 ) -> Block:
-    shape = tuple(archive.sizes[dim] for dim in dims)
-    axes = [np.arange(size) for size in shape]
+    axes = [np.arange(archive.sizes[dim]) for dim in dims]
+    cycles: dict[str, NDArray[np.intp]] = {}
     if "cycle" in dims and archive.sizes["cycle"]:
-        axes[dims.index("cycle")] = kept_cycles(archive.sizes["cycle"])
-    picked = np.ix_(*axes)
-    values = np.stack([np.asarray(archive.variables[name].values, float)[picked] for name in group])
+        cycles["cycle"] = kept_cycles(archive.sizes["cycle"])
+        axes[dims.index("cycle")] = cycles["cycle"]
+    shape = tuple(len(axis) for axis in axes)
+    # of many cycles the others are not read
+    read = {
+        name: archive.variables[name].isel(cycles, missing_dims="ignore")
+        for one in group
+        for name in (one, f"{one}_standard_uncertainty")
+        if name in archive.variables
+    }
+    values = np.stack([np.asarray(read[name].values, float) for name in group])
     spread = np.full_like(values, np.nan)
     for row, name in enumerate(group):
-        beside = f"{name}_standard_uncertainty"
-        if beside in archive:
-            own = archive.variables[beside]
+        own = read.get(f"{name}_standard_uncertainty")
+        if own is not None:
             missing = [axis for axis, dim in enumerate(dims) if dim not in own.dims]
-            spread[row] = np.broadcast_to(np.expand_dims(own.values, missing), shape)[picked]
+            spread[row] = np.broadcast_to(np.expand_dims(own.values, missing), shape)
     # where a quantity is known anywhere its other places stand as missing, so that all keep their
     # order; a quantity of which nothing is known is not there
     known = np.isfinite(values)

@@ -15,7 +15,7 @@ from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import plain, short, table_of
 from reduction.compare.product import Calibration
 from reduction.compare.verdict import verdict_words
-from reduction.ingest.source import hash_source, source_of
+from reduction.ingest.source import hash_source
 from reduction.report.page import write_report
 from reduction.tables.write import write_tables
 from reduction.units import UnitSystem, display_unit
@@ -50,7 +50,7 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, output: Comman
             attributes={"title": f"Test {named.test} against hose {hose.name}"},
             sources=[
                 hash_source(spec, spec.name),
-                source_of(measured.read_bytes(), measured.name),
+                hash_source(measured, measured.name),
             ],
             command=f"reduction compare {measured.name} {spec.name}",
         )

@@ -221,7 +221,8 @@ def _median(rates: Floats) -> Floats:
     """Median of each row, what is missing left out; NaN where all is."""
     missing = np.isnan(rates)
     if not missing.any():
-        return np.asarray(np.median(rates, axis=1))
+        ordered, middle = np.sort(rates, axis=1), rates.shape[1] // 2  # faster than np.median
+        return np.asarray((ordered[:, middle] + ordered[:, ~middle]) / 2)
     median = np.full(rates.shape[0], np.nan)
     known = ~missing.all(axis=1)
     median[known] = np.nanmedian(rates[known], axis=1)

@@ -71,6 +71,11 @@ class BranchMoments:
         """Moments of the curves from start to stop, stop not included."""
         return BranchMoments(self.sums[:, start:stop], self.grid, self.tension_reference)
 
+    def followed_by(self, other: BranchMoments) -> BranchMoments:
+        """Curves of both, one after the other, of one grid and reference."""
+        both = np.concatenate([self.sums, other.sums], axis=1)
+        return BranchMoments(both, self.grid, self.tension_reference)
+
 
 @dataclass(frozen=True)
 class LocalFits:

@@ -87,25 +87,25 @@ def _reduce_block(
         grid=grid,
         tension_reference=reference,
     )
-    shape = (n_groups, 2, grid.n_bins)
+    shape = (2, n_groups, 2, grid.n_bins)
     trimmed = moments.curves(0, 2 * n_groups)
     whole = trimmed + moments.curves(2 * n_groups, 4 * n_groups)
-    # one after the other: arrays of half the size stay in the cache
-    fits, untrimmed = (fit_windows(one, minimum_count=minimum_count) for one in (trimmed, whole))
+    fits = fit_windows(trimmed.followed_by(whole), minimum_count=minimum_count)
+    slope, slope_variance = fits.slope.reshape(shape), fits.slope_variance.reshape(shape)
 
-    def statistics(values: Floats, variance: Floats) -> RunningStatistics:
+    def statistics(values: Floats, variance: Floats, which: int) -> RunningStatistics:
         return RunningStatistics.of(
-            values.reshape(shape)[n_break_in:],
-            variance.reshape(shape)[n_break_in:],
+            values.reshape(shape)[which, n_break_in:],
+            variance.reshape(shape)[which, n_break_in:],
             weight=weight[n_break_in:],
         )
 
     return SpecimenCurves(
-        trimmed=statistics(fits.slope, fits.slope_variance),
-        untrimmed=statistics(untrimmed.slope, untrimmed.slope_variance),
-        tension=statistics(fits.tension, fits.tension_variance),
-        selected=fits.slope.reshape(shape)[chosen],
-        selected_variance=fits.slope_variance.reshape(shape)[chosen],
+        trimmed=statistics(slope, slope_variance, 0),
+        untrimmed=statistics(slope, slope_variance, 1),
+        tension=statistics(fits.tension, fits.tension_variance, 0),
+        selected=slope[0, chosen],
+        selected_variance=slope_variance[0, chosen],
         n_outside=n_outside,
     )
 

@@ -15,6 +15,8 @@ from reduction.units import UnitSystem
 
 __all__ = ["Status", "TestView", "all_specimens", "any_synthetic", "natural_order"]
 
+_REACHED = ("mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
+
 
 @dataclass(frozen=True)
 class Status:
@@ -168,8 +170,21 @@ class TestView:
         return {word: int(number) for word, number in zip(words, np.ravel(numbers), strict=True)}
 
     def without_samples(self) -> TestView:
-        """Return the same test without its record, all in memory: what campaign figures use."""
-        return replace(self, data=self.data.drop_dims("sample", errors="ignore").load())
+        """Return the same test without its record, all in memory: what campaign figures use.
+
+        Of single cycles only what the cycles of a test reach together is found from is left.
+        """
+        data = self.data.drop_dims("sample", errors="ignore")
+        single = [
+            name
+            for name, variable in data.data_vars.items()
+            if "cycle" in variable.dims and name not in _REACHED
+        ]
+        return replace(self, data=data.drop_vars(single).load())
+
+    def at_cycles(self, places: Integers) -> TestView:
+        """Return the same test with some of its cycles, counted from 0."""
+        return replace(self, data=self.data.isel(cycle=places))
 
 
 def all_specimens(tests: Sequence[TestView]) -> list[str]:

@@ -10,18 +10,20 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 
-import numpy as np
 from numpy.typing import NDArray
 
 from reduction.archive.variable import TEXT, Variable
+from reduction.tables.digits import number_texts
 
-__all__ = ["Cell", "Column", "cells_of", "csv_text", "uncertainty_of"]
+__all__ = ["Cell", "Column", "csv_field", "csv_lines", "csv_text", "texts_of", "uncertainty_of"]
 
 Cell = str | int | float | None
+_Label = TypeVar("_Label", int, str)
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
@@ -55,20 +57,65 @@ def uncertainty_of(column: Column) -> Column:
     )
 
 
-def cells_of(values: NDArray[Any], variable: Variable) -> list[Cell]:
-    """Return the values of a column as cells; flags as their meanings."""
+def texts_of(values: NDArray[Any], variable: Variable) -> list[str]:
+    """Return the values of a column as fields of a CSV file; flags as their meanings.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_rows,)
+        Of the variable. [its unit]
+    variable : Variable
+        What they are.
+
+    Returns
+    -------
+    texts : list of str
+        A field a row, quoted where it has to be.
+    """
     if variable.flags:
-        return [_flag_text(int(value), variable) for value in values]
+        return _labels([int(value) for value in values], partial(_flag_text, variable=variable))
     if variable.dtype == TEXT:
-        return [str(value) for value in values]
-    cells: list[Cell] = np.asarray(values).tolist()
-    return [None if cell != cell else cell for cell in cells]  # NaN alone is not itself
+        return _labels([str(value) for value in values], str)
+    if values.dtype.kind == "f":
+        return number_texts(values)
+    return [repr(value) for value in values.tolist()]
+
+
+def _labels(labels: Sequence[_Label], worded: Callable[[_Label], str]) -> list[str]:
+    """Put labels, most of which repeat, in fields."""
+    field = {label: csv_field(worded(label)) for label in set(labels)}
+    return [field[label] for label in labels]
 
 
 def _flag_text(value: int, variable: Variable) -> str:
     if variable.is_mask:
         return " ".join(name for name, bit in variable.flags.items() if value & bit)
     return next((name for name, number in variable.flags.items() if number == value), str(value))
+
+
+def csv_field(cell: Cell) -> str:
+    """Return a cell as a field of a CSV file, quoted where it has to be.
+
+    Examples
+    --------
+    >>> print(csv_field(0.1), csv_field("=a, b"))
+    0.1 "'=a, b"
+    """
+    line = io.StringIO()
+    # a second field keeps an empty one from being quoted; ends of lines are, with this terminator
+    csv.writer(line, lineterminator="\r\n").writerow([_written(cell), ""])
+    return line.getvalue().removesuffix(",\r\n")
+
+
+def csv_lines(columns: Iterable[Sequence[str]]) -> str:
+    """Return columns of fields, two at least, as lines of a CSV file.
+
+    Raises
+    ------
+    ValueError
+        If the columns differ in length.
+    """
+    return "".join(f"{line}\r\n" for line in map(",".join, zip(*columns, strict=True)))
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from itertools import pairwise
 
 from reduction.tables.column import Cell, Column
 from reduction.tables.outcomes import GroupColumn
 
-__all__ = ["column_descriptions"]
+__all__ = ["column_descriptions", "lonely_numbers"]
 
 _U = "_standard_uncertainty"
 _ONE_READING = "there is one reading, and nothing is stated of it"
@@ -37,9 +38,36 @@ _SILENT = (
 _UNKNOWN = "nothing is known of its scatter"
 
 
+def lonely_numbers(
+    columns: Sequence[Column | GroupColumn], fields: Sequence[Sequence[str]]
+) -> set[int]:
+    """Find the uncertainties that are empty where a number stands beside.
+
+    Parameters
+    ----------
+    columns : sequence of Column or GroupColumn
+        Of a table.
+    fields : sequence of sequence of str
+        Rows of it, by column.
+
+    Returns
+    -------
+    lonely : set of int
+        Places of such columns. [1]
+    """
+    return {
+        place
+        for place, _ in _uncertainties(columns)
+        if "" in fields[place]
+        and any(
+            not own and number for own, number in zip(fields[place], fields[place - 1], strict=True)
+        )
+    }
+
+
 def column_descriptions(
     columns: Sequence[Column | GroupColumn],
-    rows: Sequence[Sequence[Cell]],
+    lonely: Collection[int] = (),
     silent: Collection[str] = (),
 ) -> Iterator[list[Cell]]:
     """Return the rows of columns.csv of one table.
@@ -48,8 +76,8 @@ def column_descriptions(
     ----------
     columns : sequence of Column or GroupColumn
         Of the table.
-    rows : sequence of sequence
-        Of it.
+    lonely : collection of int
+        From `lonely_numbers`, of all its rows. [1]
     silent : collection of str
         Quantities that a test has without uncertainty, since it does not keep what it shares.
 
@@ -58,14 +86,20 @@ def column_descriptions(
     description : list
         Of each column; that of an uncertainty says why it is empty where a number stands beside.
     """
-    names = ["", *(column.header.partition(" [")[0] for column in columns)]
+    quantities = dict(_uncertainties(columns))
     for place, column in enumerate(columns):
         *about, reason = column.description
-        name, own = names[place : place + 2]
-        if own == f"{name}{_U}" and any(
-            row[place] is None and row[place - 1] is not None for row in rows
-        ):
+        if place in lonely:
+            name = quantities[place]
             known = [_WHY[name]] if name in _WHY else []
             why = [*known, *([_SILENT] if name in silent else [])] or [_UNKNOWN]
             reason = f"{reason}; empty where {', or '.join(why)}"
         yield [*about, reason]
+
+
+def _uncertainties(columns: Sequence[Column | GroupColumn]) -> Iterator[tuple[int, str]]:
+    """Places of the uncertainties, and of which quantity each is."""
+    names = [column.header.partition(" [")[0] for column in columns]
+    for place, (name, own) in enumerate(pairwise(names), start=1):
+        if own == f"{name}{_U}":
+            yield place, name

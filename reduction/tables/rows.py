@@ -1,7 +1,9 @@
-"""Rows of a table out of one archive."""
+"""Rows of a table out of one archive, block by block."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -9,55 +11,85 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.record import Bools
-from reduction.tables.column import Cell, cells_of
+from reduction.tables.column import csv_field, texts_of
 from reduction.tables.table import SYNTHETIC, TEST, Table
 
-__all__ = ["table_rows"]
+__all__ = ["BLOCK_ROWS", "table_blocks"]
+
+BLOCK_ROWS = 1 << 12
+"""Rows of a block: three megabytes of text where a table is as wide as that of the cycles. [1]"""
 
 
-def table_rows(archive: xr.Dataset, table: Table) -> list[list[Cell]]:
-    """Return the rows that an archive gives to a table; none where it lacks the subject.
+def table_blocks(
+    archive: xr.Dataset, table: Table, *, block_rows: int = BLOCK_ROWS
+) -> Iterator[list[list[str]]]:
+    """Give the rows that an archive gives to a table; none where it lacks the subject.
 
     Parameters
     ----------
     archive : xarray.Dataset
-        From `reduction.archive.open.open_archive`.
+        From `reduction.archive.open.open_archive`; of what is as long as the table no more than a
+        block is read at a time.
     table : Table
         What to lay out.
+    block_rows : int
+        Most rows of a block. [1]
 
-    Returns
-    -------
-    rows : list of list
-        In the order of ``table.dims``, last dimension fastest.
+    Yields
+    ------
+    fields : list of list of str
+        Rows of a block by column, each field as it stands in a CSV file; rows in the order of
+        ``table.dims``, last dimension fastest.
     """
     needed = [name for name in table.needs if name in archive]
     if not needed or not set(table.dims) <= set(archive.sizes):
-        return []
+        return
     dataset = table.prepare(archive)
-    known = np.any([_is_known(_laid_out(dataset, name, table.dims)) for name in needed], axis=0)
-    global_cells = {
-        TEST.name: archive.attrs.get("test", ""),
-        SYNTHETIC.name: archive.attrs.get("synthetic", "no"),
+    variables = {str(name): variable for name, variable in dataset.variables.items()}
+    sizes = {dim: dataset.sizes[dim] for dim in table.dims}
+    global_fields = {
+        TEST.name: csv_field(archive.attrs.get("test", "")),
+        SYNTHETIC.name: csv_field(archive.attrs.get("synthetic", "no")),
     }
-    columns: list[list[Cell]] = []
-    for column in table.columns:
-        source = column.variable.name
-        if column.name in global_cells:
-            columns.append([global_cells[column.name]] * int(known.sum()))
-        elif source in dataset.variables:
-            values = _laid_out(dataset, source, table.dims)[known]
-            columns.append(cells_of(values, column.variable))
-        else:
-            columns.append([None] * int(known.sum()))
-    return [list(row) for row in zip(*columns, strict=True)]
+    columns = table.columns
+    for block in _blocks(sizes, block_rows):
+        laid_out = [_laid_out(variables[name], block) for name in needed]
+        known = np.any([_is_known(values) for values in laid_out], axis=0)
+        n_rows = int(known.sum())
+        fields = []
+        for column in columns:
+            source = column.variable.name
+            if column.name in global_fields:
+                fields.append([global_fields[column.name]] * n_rows)
+            elif source in variables:
+                values = _laid_out(variables[source], block)[known]
+                fields.append(texts_of(values, column.variable))
+            else:
+                fields.append([""] * n_rows)
+        if n_rows:
+            yield fields
 
 
-def _laid_out(dataset: xr.Dataset, name: str, dims: tuple[str, ...]) -> NDArray[Any]:
+def _blocks(sizes: Mapping[str, int], most: int) -> Iterator[dict[str, range]]:
+    """Cut the combinations of entries of dimensions, the last fastest, in blocks."""
+    shape = list(sizes.values())
+    # whole along the last dimensions, one entry at a time along the first
+    cut = next(axis for axis in range(len(shape)) if prod(shape[axis + 1 :]) <= most)
+    step = max(1, most // max(1, prod(shape[cut + 1 :])))
+    for outer in np.ndindex(*shape[:cut]):
+        for start in range(0, shape[cut], step):
+            part = range(start, min(start + step, shape[cut]))
+            ranges = [*(range(at, at + 1) for at in outer), part, *map(range, shape[cut + 1 :])]
+            yield dict(zip(sizes, ranges, strict=True))
+
+
+def _laid_out(variable: xr.Variable, block: Mapping[str, range]) -> NDArray[Any]:
     """Repeat a variable over the dimensions it lacks, and unroll it."""
-    variable = dataset[name].variable
-    values = variable.transpose(*(dim for dim in dims if dim in variable.dims)).values
-    axes = tuple(slice(None) if dim in variable.dims else np.newaxis for dim in dims)
-    return np.broadcast_to(values[axes], [dataset.sizes[dim] for dim in dims]).ravel()
+    own = [dim for dim in block if dim in variable.dims]
+    part = variable.isel({dim: slice(block[dim].start, block[dim].stop) for dim in own})
+    values = part.values.transpose([part.dims.index(dim) for dim in own])
+    axes = tuple(slice(None) if dim in own else np.newaxis for dim in block)
+    return np.broadcast_to(values[axes], [len(entries) for entries in block.values()]).ravel()
 
 
 def _is_known(values: NDArray[Any]) -> Bools:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import numpy as np
 import xarray as xr
 
 from reduction.archive.statederrors import says_what_is_shared
@@ -45,6 +46,10 @@ def as_silent(archive: xr.Dataset, kept: Iterable[str]) -> xr.Dataset:
         return archive
     known = set(kept)
     names = known | {one for one, mean in _ALIKE.items() if mean in known}
-    empty = {f"{name}{_U}": archive[f"{name}{_U}"] * float("nan") for name in names
-             if f"{name}{_U}" in archive}  # fmt: skip
-    return archive.assign(empty)
+    uncertain = [f"{name}{_U}" for name in names if f"{name}{_U}" in archive]
+    return archive.assign({name: _without_numbers(archive[name]) for name in uncertain})
+
+
+def _without_numbers(found: xr.DataArray) -> xr.DataArray:
+    """NaN in the shape of a variable, which is not read, and takes no memory."""
+    return found.copy(data=np.broadcast_to(np.float64(np.nan), found.shape))

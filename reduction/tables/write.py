@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
+
+import xarray as xr
 
 from reduction.archive.open import open_archive
 from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.variable import label
-from reduction.archive.write import write_whole
-from reduction.tables.column import Cell, Column, csv_text
+from reduction.tables.column import Column
 from reduction.tables.comparisons import COMPARISON_TABLES
 from reduction.tables.definitions import TABLES
 from reduction.tables.envelope import ENVELOPE_COLUMNS, Curve, curves_of, envelope_rows
 from reduction.tables.experiments import EXPERIMENT_TABLES
+from reduction.tables.file import TableFile
 from reduction.tables.holes import column_descriptions
 from reduction.tables.outcomes import OUTCOME_TABLES, GroupColumn, outcome_table_rows
 from reduction.tables.predictions import PREDICTION_TABLES
 from reduction.tables.properties import PROPERTY_TABLES
 from reduction.tables.responses import by_response
-from reduction.tables.rows import table_rows
+from reduction.tables.rows import table_blocks
 from reduction.tables.silent import as_silent, quantities_kept
 from reduction.tables.static_dynamic import (
     STATIC_DYNAMIC_COLUMNS,
@@ -88,28 +91,30 @@ def write_tables(
         table.name: table.columns for table in _ALL
     }
     columns |= {"envelope": ENVELOPE_COLUMNS, "static_dynamic": STATIC_DYNAMIC_COLUMNS}
-    columns |= OUTCOME_TABLES
-    of_tests, silent = _all_rows(archives)
-    rows = of_tests | _experiment_rows(surfaces) | _outcome_rows(outcomes)
-    rows |= _rows_as_they_are(predictions, PREDICTION_TABLES)
-    rows |= _rows_as_they_are(comparisons, COMPARISON_TABLES)
-    rows |= _rows_as_they_are(change_in_length, PROPERTY_TABLES)
-    filled = [name for name in columns if rows[name]]
-    rows["columns"] = [
-        [f"{name}.csv", *described]
-        for name, listed in [*((name, columns[name]) for name in filled), ("columns", _ABOUT)]
-        for described in column_descriptions(listed, rows.get(name, ()), silent)
-    ]
-    columns["columns"] = _ABOUT
-    paths = []
-    for name in [*filled, "columns"]:
-        path = folder / f"{name}.csv"
-        write_whole(path, csv_text([column.header for column in columns[name]], rows[name]))
-        paths.append(path)
+    columns |= OUTCOME_TABLES | {"columns": _ABOUT}
+    with ExitStack() as whole:
+        files = {
+            name: TableFile(folder / f"{name}.csv", listed, whole)
+            for name, listed in columns.items()
+        }
+        silent = _add_tests(files, archives)
+        _add_experiments(files, surfaces)
+        _add_outcomes(files, outcomes)
+        _add_as_it_is(files, predictions, PREDICTION_TABLES)
+        _add_as_it_is(files, comparisons, COMPARISON_TABLES)
+        _add_as_it_is(files, change_in_length, PROPERTY_TABLES)
+        filled = [name for name in columns if files[name].is_filled] + ["columns"]
+        files["columns"].add_rows(
+            [
+                [f"{name}.csv", *described]
+                for name in filled
+                for described in column_descriptions(columns[name], files[name].lonely, silent)
+            ]
+        )
     for name in columns:
-        if folder / f"{name}.csv" not in paths:
-            (folder / f"{name}.csv").unlink(missing_ok=True)
-    return paths
+        if name not in filled:
+            files[name].path.unlink(missing_ok=True)
+    return [files[name].path for name in filled]
 
 
 def _place(attributes: dict[str, Any]) -> _Place:
@@ -119,51 +124,56 @@ def _place(attributes: dict[str, Any]) -> _Place:
     return float(attributes.get("test_order", "inf")), digits
 
 
-def _all_rows(archives: Sequence[Path]) -> tuple[dict[str, list[list[Cell]]], set[str]]:
-    """Rows of every table of tests, and what some have no uncertainty of for being silent."""
+def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path]) -> set[str]:
+    """Write the rows of tests; what some have no uncertainty of for being silent."""
     kept, says = set[str](), set[bool]()
+    places: dict[Path, _Place] = {}
     for path in archives:
         with open_archive(path) as archive:
             kept |= quantities_kept(archive)
             says.add(says_what_is_shared(archive))
-    tests: list[tuple[_Place, dict[str, list[list[Cell]]], list[Curve], list[Slope]]] = []
-    for path in archives:
+            places[path] = _place(archive.attrs)
+    curves: list[Curve] = []
+    slopes: list[Slope] = []
+    for path in sorted(archives, key=places.__getitem__):
         with open_archive(path) as whole:
             archive = as_silent(whole, kept)
-            of_test = {table.name: table_rows(archive, table) for table in TABLES}
-            curves, slopes = list(curves_of(archive)), list(slopes_of(archive))
-            tests.append((_place(archive.attrs), of_test, curves, slopes))
-    tests.sort(key=lambda entry: entry[0])
-    rows = {
-        table.name: [row for _, of_test, *_ in tests for row in of_test[table.name]]
-        for table in TABLES
-    }
-    curves = [curve for _, _, own, _ in tests for curve in own]
-    slopes = [slope for *_, own in tests for slope in own]
-    rows |= {
-        "envelope": envelope_rows(curves),
-        "static_dynamic": static_dynamic_rows(slopes, curves),
-    }
-    return rows, kept if False in says else set()
+            for table in TABLES:
+                _add(files[table.name], archive, table)
+            curves += curves_of(archive)
+            slopes += slopes_of(archive)
+    files["envelope"].add_rows(envelope_rows(curves))
+    files["static_dynamic"].add_rows(static_dynamic_rows(slopes, curves))
+    return kept if False in says else set()
 
 
-def _experiment_rows(surfaces: Path | None) -> dict[str, list[list[Cell]]]:
+def _add_experiments(files: Mapping[str, TableFile], surfaces: Path | None) -> None:
     if surfaces is None:
-        return {table.name: [] for table in EXPERIMENT_TABLES}
+        return
     with open_archive(surfaces) as archive:
         dataset = by_response(archive)
-        return {table.name: table_rows(dataset, table) for table in EXPERIMENT_TABLES}
+        for table in EXPERIMENT_TABLES:
+            _add(files[table.name], dataset, table)
 
 
-def _rows_as_they_are(path: Path | None, tables: Sequence[Table]) -> dict[str, list[list[Cell]]]:
+def _add_as_it_is(
+    files: Mapping[str, TableFile], path: Path | None, tables: Sequence[Table]
+) -> None:
     if path is None:
-        return {table.name: [] for table in tables}
+        return
     with open_archive(path) as archive:
-        return {table.name: table_rows(archive, table) for table in tables}
+        for table in tables:
+            _add(files[table.name], archive, table)
 
 
-def _outcome_rows(outcomes: Path | None) -> dict[str, list[list[Cell]]]:
+def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None) -> None:
     if outcomes is None:
-        return {name: [] for name in OUTCOME_TABLES}
+        return
     with open_archive(outcomes) as archive:
-        return outcome_table_rows(archive)
+        for name, rows in outcome_table_rows(archive).items():
+            files[name].add_rows(rows)
+
+
+def _add(file: TableFile, archive: xr.Dataset, table: Table) -> None:
+    for fields in table_blocks(archive, table):
+        file.add(fields)

@@ -15,7 +15,8 @@ from reduction.archive.samples import row_account
 from reduction.archive.schema import SCHEMA
 from reduction.archive.values import pad
 from reduction.record import Record
-from reduction.tables.column import cells_of, csv_text
+from reduction.tables.column import csv_field, csv_lines, csv_text, texts_of
+from reduction.tables.digits import number_texts
 from reduction.tables.envelope import Curve, envelope_rows
 
 TEXT = st.text(st.characters(codec="utf-8", exclude_characters="\x00"), max_size=20)
@@ -23,9 +24,21 @@ TEXT = st.text(st.characters(codec="utf-8", exclude_characters="\x00"), max_size
 
 @given(st.lists(st.floats(allow_nan=False), min_size=1))
 def test_every_float_comes_back_from_a_table(numbers):
-    text = csv_text(["x"], [[cell] for cell in cells_of(np.array(numbers), SCHEMA["tension"])])
-    rows = list(csv.reader(io.StringIO(text, newline="")))[1:]
+    fields = texts_of(np.array(numbers), SCHEMA["tension"])
+    rows = csv.reader(io.StringIO(csv_lines([fields, fields]), newline=""))
     assert [float(row[0]) for row in rows] == numbers
+
+
+@given(st.lists(st.floats(allow_nan=False), min_size=1))
+def test_a_number_is_written_as_python_writes_it(numbers):
+    assert number_texts(np.array(numbers)) == [repr(number) for number in numbers]
+
+
+@given(st.lists(TEXT, min_size=1, max_size=5))
+def test_a_text_is_the_same_field_in_columns_and_in_rows(labels):
+    columns = [[csv_field(label) for label in labels], ["1"] * len(labels)]
+    header = csv_text(["x", "y"], ())
+    assert header + csv_lines(columns) == csv_text(["x", "y"], [[label, 1] for label in labels])
 
 
 @given(st.lists(TEXT, min_size=1, max_size=5))

@@ -35,3 +35,9 @@ def test_another_schema_is_refused(tmp_path, version, found):
             file.schema_version = version
     with pytest.raises(ArchiveError, match=rf"has another schema; found {found}; needed version 1"):
         open_archive(path)
+
+
+def test_the_cache_of_other_files_is_left_as_it_was(rich_test, write):
+    before = netCDF4.get_chunk_cache()
+    with open_archive(write(rich_test)):
+        assert netCDF4.get_chunk_cache() == before

@@ -2,15 +2,18 @@
 
 import os
 import shutil
+import tracemalloc
 
 import netCDF4
 import numpy as np
 import pyarrow.csv
 import pyarrow.parquet
 import pytest
+import xarray as xr
 
 from reduction.archive.open import open_archive
 from reduction.archive.schema import SCHEMA, schema_of
+from reduction.archive.version import SCHEMA_VERSION
 from reduction.catalogue.changes import changes_since
 from reduction.catalogue.columns import CONDITIONS, LEFT_OUT
 from reduction.catalogue.condition import condition_of
@@ -530,3 +533,24 @@ def test_every_column_has_a_row_in_the_vocabulary(index):
 
 def test_an_index_of_nothing_has_no_quantity():
     assert quantities_there(Index.empty()) == {}
+
+
+def test_of_many_cycles_those_that_are_not_kept_are_not_read(tmp_path):
+    n_cycles, names = 60_000, ("loss_factor", "hysteresis_energy", "secant_modulus")
+    numbers = np.arange(2.0 * n_cycles).reshape(2, n_cycles)
+    data = xr.Dataset(
+        {name: (("specimen", "cycle"), numbers + place) for place, name in enumerate(names)},
+        coords={"specimen": ["new", "used"], "cycle": np.arange(1, n_cycles + 1)},
+        attrs={"schema_version": SCHEMA_VERSION, "test": "long"},
+    )
+    path = tmp_path / "long.nc"
+    data.to_netcdf(path, engine="netcdf4")
+    read_entry(path, "one/long.nc")  # what stays is made before it is measured
+    tracemalloc.start()
+    entry = read_entry(path, "one/long.nc")
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < len(names) * numbers.nbytes
+    (block,) = entry.blocks
+    last = block.value[(block.specimen == 1) & (block.place["cycle"] == n_cycles)]
+    assert last.tolist() == [2 * n_cycles - 1, 2 * n_cycles, 2 * n_cycles + 1]

@@ -5,7 +5,7 @@ import pytest
 
 from reduction.archive.schema import SCHEMA
 from reduction.archive.variable import label
-from reduction.tables.column import Column, cells_of, csv_text, uncertainty_of
+from reduction.tables.column import Column, csv_lines, csv_text, texts_of, uncertainty_of
 
 
 def test_a_real_has_its_unit_in_the_header_and_a_label_or_count_has_none():
@@ -25,19 +25,25 @@ def test_a_number_comes_back_from_its_digits_exactly():
     assert [float(line) for line in text.split("\r\n")[1:-1]] == numbers
 
 
-def test_what_is_not_known_is_an_empty_cell():
-    cells = cells_of(np.array([1.5, np.nan]), SCHEMA["tension"])
-    assert csv_text(["a", "b"], [cells]) == "a,b\r\n1.5,\r\n"
+def test_what_is_not_known_is_an_empty_field():
+    assert texts_of(np.array([1.5, np.nan]), SCHEMA["tension"]) == ["1.5", ""]
 
 
 def test_a_count_is_written_without_a_point():
-    cells = cells_of(np.array([3], dtype=np.int32), SCHEMA["cycle"])
-    assert csv_text(["cycle"], [cells]) == "cycle\r\n3\r\n"
+    assert texts_of(np.array([3], dtype=np.int32), SCHEMA["cycle"]) == ["3"]
 
 
 def test_flags_are_written_in_words():
-    assert cells_of(np.array([1, 2, 7]), SCHEMA["branch"]) == ["ascending", "descending", "7"]
-    assert cells_of(np.array([0, 33]), SCHEMA["quality_flag"]) == ["", "missing spike"]
+    assert texts_of(np.array([1, 2, 7]), SCHEMA["branch"]) == ["ascending", "descending", "7"]
+    assert texts_of(np.array([0, 33]), SCHEMA["quality_flag"]) == ["", "missing spike"]
+
+
+def test_columns_of_fields_are_the_lines_of_a_table_of_cells():
+    labels = ["=1+1", 'a "b", c', "d\ne", "f\rg", "", " h", "größe", "'i"]
+    rows = [[label, 0.1 * place, None] for place, label in enumerate(labels)]
+    numbers = texts_of(np.array([row[1] for row in rows]), SCHEMA["tension"])
+    columns = [texts_of(np.array(labels), label("test")[0]), numbers, [""] * len(rows)]
+    assert csv_text(["a", "b", "c"], rows) == "a,b,c\r\n" + csv_lines(columns)
 
 
 @pytest.mark.parametrize("start", ["=", "+", "-", "@", "\t", "\r"])

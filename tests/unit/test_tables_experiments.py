@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from experiments import ABOUT, UNITS, screening_experiment, surface_experiment
+from table_cells import table_rows
 
 from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.surfaces import surfaces_to_dataset
@@ -10,7 +11,6 @@ from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.canonical import ridge_path
 from reduction.tables.experiments import EXPERIMENT_TABLES
 from reduction.tables.responses import by_response
-from reduction.tables.rows import table_rows
 from reduction.uncertainty.surfacepoints import with_shared_at_points
 from reduction.vocabulary import RESPONSE_PATTERNS, RESPONSES, SURFACE_NAMES
 
@@ -275,9 +275,3 @@ def test_every_number_of_an_archive_of_experiments_is_in_a_table():
     }  # fmt: skip
     whats = {pattern.name.replace("<response>", "response") for pattern in RESPONSE_PATTERNS}
     assert whats - sources == {"response_covariance_factor"}
-
-
-def test_numbers_are_plain_numbers(dataset):
-    for table in EXPERIMENT_TABLES:
-        for row in table_rows(dataset, table):
-            assert not any(isinstance(cell, np.generic) for cell in row)

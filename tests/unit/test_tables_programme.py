@@ -2,9 +2,9 @@
 
 import numpy as np
 import xarray as xr
+from table_cells import table_rows
 
 from reduction.tables.definitions import TABLES
-from reduction.tables.rows import table_rows
 
 (PROGRAMME,) = (table for table in TABLES if table.name == "rope_programme")
 

