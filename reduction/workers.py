@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from numpy.typing import NDArray
 
-from reduction.samples import give_back, let_go
+from reduction.samples.scratch import give_back, let_go
 
 __all__ = ["run_blocks"]
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from reduction.archive.values import Values
 from reduction.archive.variable import Variable
 from reduction.errors import ArchiveError
-from reduction.samples import let_go
+from reduction.samples.scratch import let_go
 
 __all__ = ["build_dataset"]
 

@@ -20,7 +20,8 @@ from reduction.cycles.product import Cycles
 from reduction.moduli.groups import select_cycles
 from reduction.product import ReducedTest
 from reduction.record import UNUSABLE, Floats, Integers, freeze_arrays
-from reduction.samples import let_go, sample_blocks
+from reduction.samples.blocks import sample_blocks
+from reduction.samples.scratch import let_go
 from reduction.settings import ReductionSettings
 
 __all__ = ["KeptSamples", "SamplePlaces", "kept_samples", "select_places", "stored_cycles"]

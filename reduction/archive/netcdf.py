@@ -16,7 +16,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from reduction.samples import let_go, sample_blocks
+from reduction.samples.blocks import sample_blocks
+from reduction.samples.scratch import let_go
 
 __all__ = ["write_netcdf"]
 

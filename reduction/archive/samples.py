@@ -12,7 +12,8 @@ from reduction.archive.schema import QUALITY_MASKS
 from reduction.archive.values import Values, texts
 from reduction.product import ReducedTest
 from reduction.record import UNUSABLE, Floats, Integers, Record, Specimen
-from reduction.samples import empty_like, full_like, sample_blocks
+from reduction.samples.blocks import full_like, sample_blocks
+from reduction.samples.scratch import empty_like
 from reduction.strain.stress import nominal_stress
 
 __all__ = ["row_account", "sample_values"]

@@ -17,7 +17,7 @@ from reduction.archive.values import Values, texts
 from reduction.archive.variable import Variable, companion, count, label, stated
 from reduction.errors import ArchiveError
 from reduction.record import Floats
-from reduction.samples import beside, let_go
+from reduction.samples.scratch import beside, let_go
 from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.uncertainty.product import Component, Contributions
 

@@ -10,7 +10,7 @@ from reduction.batch.lock import RunLock
 from reduction.batch.progress import Progress, Silent
 from reduction.batch.survey import Survey, survey_log
 from reduction.campaign.plan import Campaign
-from reduction.samples import is_on_disk
+from reduction.samples.scratch import is_on_disk
 
 __all__ = ["FirstPass", "survey_campaign", "with_record"]
 

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from reduction.errors import DataError
 from reduction.record import Floats, Integers
-from reduction.samples import let_go, sample_blocks, take_samples
+from reduction.samples.blocks import sample_blocks, take_samples
+from reduction.samples.scratch import let_go
 
 __all__ = ["changes_of_count", "counted_cycles"]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from reduction.phases.standstill import Standstills
 from reduction.record import Bools, Floats
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 
 __all__ = ["dwells_of_cycles"]
 

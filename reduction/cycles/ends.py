@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from reduction.cycles.runs import DIFFERENT, Edge, Run
 from reduction.record import Floats
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 
 __all__ = ["FittedRun", "fit_ends", "without_stands"]
 

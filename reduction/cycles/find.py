@@ -26,7 +26,8 @@ from reduction.errors import DataError
 from reduction.phases.noise import estimate_noise
 from reduction.phases.standstill import Standstills
 from reduction.record import Floats, Integers
-from reduction.samples import finite_extremes, interval_labels, mean_of_rows, take_samples
+from reduction.samples.blocks import finite_extremes, mean_of_rows, take_samples
+from reduction.samples.intervals import interval_labels
 from reduction.settings import CycleSettings
 from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
 

@@ -21,7 +21,7 @@ from reduction.phases.intervals import median_step
 from reduction.phases.noise import noise_range
 from reduction.phases.standstill import Standstills
 from reduction.record import Bools, Floats, Integers
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 
 __all__ = ["HalfCycles", "find_half_cycles"]
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record import Floats
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 
 __all__ = ["drop_jumps"]
 

@@ -16,7 +16,8 @@ from reduction.cycles.product import Cycles
 from reduction.errors import DataError
 from reduction.phases.standstill import Standstills
 from reduction.record import Floats
-from reduction.samples import empty_like, sample_blocks
+from reduction.samples.blocks import sample_blocks
+from reduction.samples.scratch import empty_like
 from reduction.vocabulary import PHASE_VALUES
 
 __all__ = ["label_phases"]

@@ -23,7 +23,8 @@ from reduction.cycles.product import Cycles, Loops
 from reduction.cycles.quantities import MEASURED, Waveform, quantities_of_cycles
 from reduction.cycles.readings import bridge_gaps, reading_noise
 from reduction.record import Floats, Integers
-from reduction.samples import empty_like, let_go, take_samples
+from reduction.samples.blocks import take_samples
+from reduction.samples.scratch import empty_like, let_go
 from reduction.workers import run_blocks
 
 __all__ = ["close_loops"]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record import Bools, Floats, Integers, freeze_arrays
-from reduction.samples import give_back, let_go
+from reduction.samples.scratch import give_back, let_go
 
 __all__ = ["Cycles", "Loops"]
 

@@ -15,7 +15,7 @@ from reduction.checks import as_positive
 from reduction.errors import DataError
 from reduction.phases.noise import noise_range
 from reduction.record import Floats
-from reduction.samples import sample_blocks, take_samples
+from reduction.samples.blocks import sample_blocks, take_samples
 
 __all__ = ["find_reversals", "first_pass", "typical_range"]
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record import Floats
-from reduction.samples import BLOCK, sample_blocks, take_samples
+from reduction.samples.blocks import BLOCK, sample_blocks, take_samples
 
 __all__ = ["DIFFERENT", "Edge", "Run", "gaps_of_record", "runs_that_cycle"]
 

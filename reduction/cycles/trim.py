@@ -20,7 +20,7 @@ from reduction.errors import SettingsError
 from reduction.phases.intervals import median_step
 from reduction.phases.noise import estimate_noise
 from reduction.record import Bools, Floats
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 
 __all__ = ["constant_rate_span", "plateau_rates", "stroke_span"]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from reduction.cycles.halves import HalfCycles
 from reduction.record import Bools, Floats
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 
 __all__ = ["whole_cycles"]
 

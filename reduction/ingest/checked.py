@@ -12,7 +12,7 @@ from reduction.errors import LogError
 from reduction.ingest.columns import Wanted, without_marks
 from reduction.ingest.layout import CLOCK, Layout
 from reduction.record import Bools, Floats
-from reduction.samples import ColumnWriter
+from reduction.samples.scratch import ColumnWriter
 
 __all__ = ["CheckedColumn"]
 

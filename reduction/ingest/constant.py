@@ -11,14 +11,8 @@ import numpy as np
 
 from reduction.ingest.quality import noise_of
 from reduction.record import Bools, Floats, Integers
-from reduction.samples import (
-    BLOCK,
-    finite_extremes,
-    interval_labels,
-    over_intervals,
-    sample_blocks,
-    take_samples,
-)
+from reduction.samples.blocks import BLOCK, finite_extremes, sample_blocks, take_samples
+from reduction.samples.intervals import interval_labels, over_intervals
 
 __all__ = ["Runs", "constant_runs", "find_saturated", "find_stuck", "find_stuck_position", "moves"]
 

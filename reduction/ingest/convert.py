@@ -14,7 +14,8 @@ from reduction.ingest.layout import Layout
 from reduction.ingest.piece import Piece, to_piece
 from reduction.ingest.rawlog import RawLog
 from reduction.record import Floats, Integers, Record
-from reduction.samples import empty_like, finite_extremes, join_columns, sample_blocks, zeros_like
+from reduction.samples.blocks import finite_extremes, join_columns, sample_blocks
+from reduction.samples.scratch import empty_like, zeros_like
 from reduction.settings import QualitySettings
 from reduction.units import Dimension, parse_quantity
 

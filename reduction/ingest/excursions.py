@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from reduction.record import Bools, Floats, Integers
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 
 __all__ = ["find_excursions", "usual_step"]
 

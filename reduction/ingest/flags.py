@@ -20,14 +20,9 @@ from reduction.ingest.quality import (
 )
 from reduction.ingest.stamps import bridge_stamps
 from reduction.record import Bools, Floats, Quality, Record
-from reduction.samples import (
-    any_sample,
-    count_samples,
-    finite_extremes,
-    first_sample,
-    sample_blocks,
-    zeros_like,
-)
+from reduction.samples.blocks import count_samples, finite_extremes, sample_blocks
+from reduction.samples.scratch import zeros_like
+from reduction.samples.search import any_sample, first_sample
 from reduction.settings import QualitySettings
 from reduction.workers import run_blocks
 

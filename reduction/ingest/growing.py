@@ -16,7 +16,8 @@ from reduction.ingest.fields import Fields
 from reduction.ingest.layout import CLOCK, Layout
 from reduction.ingest.textrows import TextRows
 from reduction.record import Floats, Integers
-from reduction.samples import BLOCK, ColumnWriter
+from reduction.samples.blocks import BLOCK
+from reduction.samples.scratch import ColumnWriter
 
 __all__ = ["AT_A_TIME", "GrowingLog", "in_order"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from reduction.samples import scratch_folder
+from reduction.samples.scratch import scratch_folder
 
 __all__ = ["Parts"]
 

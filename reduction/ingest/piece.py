@@ -11,7 +11,8 @@ from reduction.ingest.layout import CLOCK, Channel, Layout
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.resample import on_common_time
 from reduction.record import Floats
-from reduction.samples import empty_like, finite_extremes, sample_blocks
+from reduction.samples.blocks import finite_extremes, sample_blocks
+from reduction.samples.scratch import empty_like
 from reduction.units import Dimension, parse_quantity, scale_to_si
 
 __all__ = ["Piece", "to_piece"]

@@ -14,7 +14,8 @@ import numpy as np
 
 from reduction.ingest.excursions import find_excursions, usual_step
 from reduction.record import Bools, Floats, Integers, Quality, Record
-from reduction.samples import sample_blocks, take_samples, zeros_like
+from reduction.samples.blocks import sample_blocks, take_samples
+from reduction.samples.scratch import zeros_like
 
 __all__ = [
     "RowAccount",

@@ -11,7 +11,7 @@ from reduction.ingest.parts import Parts
 from reduction.ingest.read import read_log
 from reduction.provenance import Source
 from reduction.record import Record
-from reduction.samples import give_back
+from reduction.samples.scratch import give_back
 from reduction.settings import QualitySettings
 
 __all__ = ["read_record"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from reduction.record import Bools, Floats
-from reduction.samples import copied, sample_blocks, take_samples
+from reduction.samples.blocks import copied, sample_blocks, take_samples
 
 __all__ = ["bridge_stamps"]
 

@@ -23,7 +23,7 @@ from reduction.ingest.layout import Layout
 from reduction.ingest.parts import Parts
 from reduction.ingest.preamble import check_units
 from reduction.record import Floats
-from reduction.samples import ColumnWriter
+from reduction.samples.scratch import ColumnWriter
 
 __all__ = ["ColumnTable", "Matrix", "matrix_table", "read_columns", "row_parts"]
 

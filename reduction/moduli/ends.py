@@ -17,7 +17,7 @@ from reduction.cycles.readings import reading_noise
 from reduction.moduli.product import EndModuli
 from reduction.moduli.secant import chord_modulus, secant_modulus
 from reduction.moduli.tangent import pair_specimens
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 
 __all__ = ["end_moduli"]
 

@@ -27,7 +27,9 @@ from reduction.moduli.running import RunningStatistics
 from reduction.moduli.tangent import pair_specimens
 from reduction.phases.standstill import Standstills
 from reduction.record import Bools, Floats, Integers
-from reduction.samples import first_sample, let_go, sample_blocks, take_samples
+from reduction.samples.blocks import sample_blocks, take_samples
+from reduction.samples.scratch import let_go
+from reduction.samples.search import first_sample
 from reduction.settings import ModulusSettings
 from reduction.workers import run_blocks
 

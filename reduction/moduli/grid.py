@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from reduction.cycles.product import Cycles
 from reduction.errors import DataError, SettingsError
 from reduction.record import Floats
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 from reduction.settings import ModulusSettings
 
 __all__ = ["StrainGrid", "strain_grid"]

@@ -17,7 +17,7 @@ from reduction.moduli.cells import sums_by_cell
 from reduction.moduli.product import CycleIdentity
 from reduction.moduli.tangent import pair_specimens
 from reduction.record import Floats
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 from reduction.workers import run_blocks
 
 __all__ = ["check_identity"]

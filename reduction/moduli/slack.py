@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_positive, as_same_shape
 from reduction.errors import DataError
 from reduction.record import Bools, Floats, freeze_arrays
-from reduction.samples import first_sample, last_sample
+from reduction.samples.search import first_sample, last_sample
 
 __all__ = [
     "SlackCrossings",

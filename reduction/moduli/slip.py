@@ -24,7 +24,8 @@ from reduction.moduli.steps import find_steps
 from reduction.moduli.stepscan import ramp_of
 from reduction.moduli.stepsize import Step, step_sizes
 from reduction.record import Bools, Floats, Integers
-from reduction.samples import BLOCK, count_samples, sample_blocks, take_samples, thinned
+from reduction.samples.blocks import BLOCK, count_samples, sample_blocks, take_samples
+from reduction.samples.search import thinned
 from reduction.settings import SlipSettings
 from reduction.workers import run_blocks
 

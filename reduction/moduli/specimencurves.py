@@ -17,7 +17,7 @@ from reduction.moduli.groups import CycleGroups
 from reduction.moduli.moments import accumulate_moments, fit_windows
 from reduction.moduli.running import RunningStatistics
 from reduction.record import Floats, Integers
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 from reduction.workers import run_blocks
 
 __all__ = ["SpecimenCurves"]

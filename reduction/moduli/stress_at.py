@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_positive, as_same_shape
 from reduction.record import Bools, Floats, Integers
-from reduction.samples import first_sample, last_sample
+from reduction.samples.search import first_sample, last_sample
 
 __all__ = ["stress_at_strain"]
 

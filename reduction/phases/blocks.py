@@ -12,7 +12,9 @@ from __future__ import annotations
 import numpy as np
 
 from reduction.record import Bools, Floats, Integers
-from reduction.samples import BLOCK, empty_like, over_intervals, sample_blocks
+from reduction.samples.blocks import BLOCK, sample_blocks
+from reduction.samples.intervals import over_intervals
+from reduction.samples.scratch import empty_like
 
 __all__ = ["block_extremes", "still_blocks"]
 

@@ -16,7 +16,7 @@ from reduction.checks import as_same_shape
 from reduction.phases.intervals import still_intervals
 from reduction.phases.noise import noise_range
 from reduction.phases.standstill import Standstills, describe_standstills, find_standstills
-from reduction.samples import mean_of_rows
+from reduction.samples.blocks import mean_of_rows
 from reduction.settings import PhaseSettings
 
 __all__ = ["find_tension_stands"]

@@ -16,7 +16,8 @@ import numpy as np
 from reduction.errors import DataError
 from reduction.phases.blocks import block_extremes, still_blocks
 from reduction.record import Floats, Integers
-from reduction.samples import over_intervals, sample_blocks, take_samples
+from reduction.samples.blocks import sample_blocks, take_samples
+from reduction.samples.intervals import over_intervals
 
 __all__ = ["FEWEST_SAMPLES", "interval_means", "median_step", "still_intervals"]
 

@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
 from reduction.record import Floats
-from reduction.samples import empty_like, sample_blocks, take_samples
+from reduction.samples.blocks import sample_blocks, take_samples
+from reduction.samples.scratch import empty_like
 
 __all__ = ["estimate_noise", "noise_range"]
 

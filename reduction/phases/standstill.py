@@ -19,7 +19,7 @@ from reduction.errors import DataError
 from reduction.phases.intervals import FEWEST_SAMPLES, interval_means, still_intervals
 from reduction.phases.noise import noise_range
 from reduction.record import Bools, Floats, Integers, freeze_arrays
-from reduction.samples import sample_blocks, take_samples
+from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.settings import PhaseSettings
 
 __all__ = ["Standstills", "describe_standstills", "find_standstills"]

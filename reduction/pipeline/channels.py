@@ -10,7 +10,8 @@ import numpy as np
 
 from reduction.pipeline.locate import Located
 from reduction.record import Floats, Quality, Record, Specimen, areas_of
-from reduction.samples import copied, empty_like, let_go, sample_blocks
+from reduction.samples.blocks import copied, sample_blocks
+from reduction.samples.scratch import empty_like, let_go
 from reduction.strain.evaluate import extrapolated, strain_by_model
 from reduction.strain.model import StrainModel
 from reduction.workers import run_blocks

@@ -14,7 +14,8 @@ from reduction.moduli.slack import slack_crossings
 from reduction.moduli.stepwise import greatest_step_strain
 from reduction.pipeline.locate import Located
 from reduction.record import Floats, StepReadings
-from reduction.samples import finite_extremes, first_sample, take_samples, thinned
+from reduction.samples.blocks import finite_extremes, take_samples
+from reduction.samples.search import first_sample, thinned
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
 

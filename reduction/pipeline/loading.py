@@ -15,7 +15,7 @@ from reduction.moduli.stress_at import stress_at_strain
 from reduction.pipeline.locate import Located
 from reduction.product import History
 from reduction.record import Bools, Floats, Specimen, areas_of
-from reduction.samples import first_sample
+from reduction.samples.search import first_sample
 from reduction.settings import ReductionSettings
 from reduction.workers import run_blocks
 

@@ -13,7 +13,8 @@ from reduction.errors import DataError
 from reduction.phases.constant_tension import find_tension_stands
 from reduction.phases.standstill import Standstills, find_standstills
 from reduction.record import UNUSABLE, Floats, Quality, Record
-from reduction.samples import copied, empty_like, sample_blocks
+from reduction.samples.blocks import copied, sample_blocks
+from reduction.samples.scratch import empty_like
 from reduction.settings import ReductionSettings
 
 __all__ = ["HELD", "PULLED", "Located", "locate", "usable"]

@@ -12,7 +12,8 @@ import numpy as np
 from reduction.cycles.product import Cycles, Loops
 from reduction.moduli.product import ModulusCurves
 from reduction.record import Floats
-from reduction.samples import count_samples, finite_extremes, over_intervals
+from reduction.samples.blocks import count_samples, finite_extremes
+from reduction.samples.intervals import over_intervals
 
 __all__ = ["plausibility_notes"]
 

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from reduction.pipeline.locate import Located
 from reduction.record import Floats, Integers, Record, Specimen
-from reduction.samples import take_samples, thinned
+from reduction.samples.blocks import take_samples
+from reduction.samples.search import thinned
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import error_field

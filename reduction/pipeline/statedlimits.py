@@ -15,7 +15,7 @@ import numpy as np
 from reduction.errors import SettingsError
 from reduction.pipeline.locate import Located
 from reduction.record import Floats
-from reduction.samples import finite_extremes, take_samples
+from reduction.samples.blocks import finite_extremes, take_samples
 from reduction.uncertainty.product import InstrumentErrors
 
 __all__ = ["check_stated_errors"]

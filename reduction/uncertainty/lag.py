@@ -37,7 +37,7 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.phases.intervals import median_step
 from reduction.record import Floats, Integers, freeze_arrays
-from reduction.samples import take_samples
+from reduction.samples.blocks import take_samples
 
 __all__ = ["LAG_REFUSALS", "LagEstimate", "lag_by_turns"]
 

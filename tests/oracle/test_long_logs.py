@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction import samples
 from reduction.batch.models import fit_strain_models
 from reduction.batch.reduce import reduce_survey
 from reduction.batch.survey import survey_log
@@ -18,7 +17,8 @@ from reduction.cycles import runs
 from reduction.ingest import constant
 from reduction.ingest.parts import Parts
 from reduction.moduli import slip
-from reduction.phases import blocks
+from reduction.phases import blocks as still_blocks
+from reduction.samples import blocks, intervals, scratch, search
 
 RAW = Path(__file__).parents[2] / "raw"
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
@@ -92,7 +92,7 @@ def on_disk(monkeypatch, tmp_path):
     def set_up(part):
         monkeypatch.setattr(Parts, "folder_of", lambda self, n_bytes: tmp_path)
         monkeypatch.setattr(Parts, "length_of", lambda self, n_bytes: part)
-        monkeypatch.setattr(samples, "_ON_DISK_FROM", 1)
+        monkeypatch.setattr(scratch, "_ON_DISK_FROM", 1)
 
     return set_up
 
@@ -101,11 +101,11 @@ def on_disk(monkeypatch, tmp_path):
 @pytest.mark.parametrize(("campaign", "name"), TESTS)
 def test_a_log_on_disk_gives_the_numbers_of_one_in_memory(on_disk, campaign, name, part):
     in_memory = reduced(campaign, name)
-    assert not any(samples.is_on_disk(test.record.tension) for test in in_memory)
+    assert not any(scratch.is_on_disk(test.record.tension) for test in in_memory)
     on_disk(part)
     found = reduced(campaign, name)
-    assert all(samples.is_on_disk(test.record.tension) for test in found)
-    assert all(samples.is_on_disk(test.strain) for test in found)
+    assert all(scratch.is_on_disk(test.record.tension) for test in found)
+    assert all(scratch.is_on_disk(test.strain) for test in found)
     assert_same(found, in_memory)
 
 
@@ -113,9 +113,9 @@ def test_a_log_on_disk_gives_the_numbers_of_one_in_memory(on_disk, campaign, nam
 @pytest.mark.parametrize(("campaign", "name"), TESTS)
 def test_the_length_of_the_blocks_is_in_no_number(monkeypatch, campaign, name, length):
     expected = reduced(campaign, name)
-    for module in (samples, runs, constant, slip, blocks):
+    for module in (blocks, intervals, search, runs, constant, slip, still_blocks):
         monkeypatch.setattr(module, "BLOCK", length)
-    monkeypatch.setitem(samples.sample_blocks.__kwdefaults__, "size", length)
+    monkeypatch.setitem(blocks.sample_blocks.__kwdefaults__, "size", length)
     assert_same(reduced(campaign, name), expected, relative=1e-12)
 
 

@@ -8,7 +8,7 @@ from long_records import long_test
 from reduction.archive import netcdf
 from reduction.archive.dataset import to_dataset
 from reduction.archive.netcdf import write_netcdf
-from reduction.samples import ColumnWriter, empty_like, is_on_disk
+from reduction.samples.scratch import ColumnWriter, empty_like, is_on_disk
 
 
 def opened(path):

@@ -48,9 +48,7 @@ def test_runs_are_those_that_a_plain_search_finds(minimum, seed):
     values = np.repeat(source.integers(0, 3, 300), source.integers(1, 120, 300)).astype(float)
     runs = constant_runs(values, minimum)
     assert list(zip(runs.start.tolist(), runs.stop.tolist(), strict=True)) == brute(values, minimum)
-    assert runs.mask(values).sum() == sum(
-        stop - start for start, stop in brute(values, minimum)
-    )
+    assert runs.mask(values).sum() == sum(stop - start for start, stop in brute(values, minimum))
 
 
 def test_a_series_shorter_than_a_run_has_none():

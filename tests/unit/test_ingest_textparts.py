@@ -3,12 +3,12 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from reduction import samples
 from reduction.errors import DataError, LogError
 from reduction.ingest.layout import Layout
 from reduction.ingest.parts import Parts
 from reduction.ingest.read import read_log
 from reduction.ingest.textparts import open_text
+from reduction.samples import scratch
 
 CHANNELS = {
     "time": {"column": "t", "unit": "s"},
@@ -146,7 +146,7 @@ def test_columns_of_a_long_log_lie_on_disk_and_those_of_a_short_one_do_not(tmp_p
     content = "t,F\n" + "0,1\n" * 1000
     for in_memory, on_disk in ((0, True), (1 << 20, False)):
         log = read(tmp_path, content, 512, in_memory)
-        assert [samples.is_on_disk(values) for values in log.columns.values()] == [on_disk] * 2
+        assert [scratch.is_on_disk(values) for values in log.columns.values()] == [on_disk] * 2
 
 
 @pytest.mark.parametrize("content", ["t,F\n" + "0,1\n" * 200, "t,F\n" + "0,1\n\n" * 200])
@@ -154,7 +154,7 @@ def test_a_disk_that_fills_while_a_log_is_read_is_told(tmp_path, monkeypatch, co
     def full(writer, values):
         raise DataError("the scratch files of a long log do not fit on the disk")
 
-    monkeypatch.setattr(samples.ColumnWriter, "append", full)
+    monkeypatch.setattr(scratch.ColumnWriter, "append", full)
     with pytest.raises(DataError, match="do not fit on the disk"):
         read(tmp_path, content)
 

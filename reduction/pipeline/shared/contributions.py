@@ -22,7 +22,8 @@ from reduction.pipeline.shared.pulls import PullOrigin, of_pull, of_rest
 from reduction.pipeline.shared.ratio import of_ratios
 from reduction.product import ReducedTest
 from reduction.record import Floats, areas_of
-from reduction.samples import full_like, let_go
+from reduction.samples.blocks import full_like
+from reduction.samples.scratch import let_go
 from reduction.settings import CycleSettings
 from reduction.uncertainty.join import merged, renamed, stacked
 from reduction.uncertainty.product import Contributions, InstrumentErrors

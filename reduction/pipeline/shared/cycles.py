@@ -20,7 +20,7 @@ from reduction.pipeline.shared.blocks import blocks_of_cycles, cycles_of_test
 from reduction.pipeline.shared.loops import of_loops
 from reduction.product import ReducedTest
 from reduction.record import Floats
-from reduction.samples import empty_like
+from reduction.samples.scratch import empty_like
 from reduction.settings import CycleSettings
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import error_field

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction import samples
 from reduction.errors import DataError
-from reduction.samples import ColumnWriter, empty_like, is_on_disk
+from reduction.samples import scratch
+from reduction.samples.scratch import ColumnWriter, empty_like, is_on_disk
 
 
 @pytest.mark.parametrize("kind", [np.float64, np.int64, np.uint16])
@@ -48,7 +48,7 @@ def test_a_disk_that_fills_takes_what_it_can(tmp_path, monkeypatch):
         def write(self, data):
             return super().write(data[:5])
 
-    monkeypatch.setattr(samples, "_scratch_file", lambda folder: Slow(folder / "x", "w+"))
+    monkeypatch.setattr(scratch, "_scratch_file", lambda folder: Slow(folder / "x", "w+"))
     writer = ColumnWriter(tmp_path)
     writer.append(np.arange(4.0))
     assert writer.finish().tolist() == [0, 1, 2, 3]
@@ -56,7 +56,7 @@ def test_a_disk_that_fills_takes_what_it_can(tmp_path, monkeypatch):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 def test_a_full_disk_is_told_with_what_to_do(tmp_path, monkeypatch):
-    monkeypatch.setattr(samples, "_scratch_file", lambda _: FileIO("/dev/full", "w"))
+    monkeypatch.setattr(scratch, "_scratch_file", lambda _: FileIO("/dev/full", "w"))
     with pytest.raises(
         DataError,
         match=r"scratch files of a long log do not fit on the disk; found no room for 8 MB in "
