@@ -13,8 +13,9 @@ from reduction.moduli.compare import compare_cycles
 from reduction.moduli.ends import end_moduli
 from reduction.moduli.identity import check_identity
 from reduction.moduli.segments import find_segments
-from reduction.moduli.slip import cycle_tension_level, find_slips
+from reduction.moduli.slip import find_slips
 from reduction.moduli.tangent import tangent_curves
+from reduction.moduli.tensionlevel import cycle_tension_level
 from reduction.moduli.trend import fit_peak_trend
 from reduction.pipeline.comparison import compare_specimens
 from reduction.pipeline.locate import Located

@@ -16,7 +16,7 @@ from reduction.campaign.load import load_campaign
 from reduction.cycles import runs
 from reduction.ingest import constant
 from reduction.ingest.parts import Parts
-from reduction.moduli import slip
+from reduction.moduli import tensionlevel
 from reduction.phases import blocks as still_blocks
 from reduction.samples import blocks, intervals, scratch, search
 
@@ -113,7 +113,7 @@ def test_a_log_on_disk_gives_the_numbers_of_one_in_memory(on_disk, campaign, nam
 @pytest.mark.parametrize(("campaign", "name"), TESTS)
 def test_the_length_of_the_blocks_is_in_no_number(monkeypatch, campaign, name, length):
     expected = reduced(campaign, name)
-    for module in (blocks, intervals, search, runs, constant, slip, still_blocks):
+    for module in (blocks, intervals, search, runs, constant, tensionlevel, still_blocks):
         monkeypatch.setattr(module, "BLOCK", length)
     monkeypatch.setitem(blocks.sample_blocks.__kwdefaults__, "size", length)
     assert_same(reduced(campaign, name), expected, relative=1e-12)

@@ -13,7 +13,8 @@ import pytest
 from reduction.cycles.find import find_cycles
 from reduction.cycles.loops import close_loops
 from reduction.holds.reduce import reduce_holds
-from reduction.moduli.slip import cycle_tension_level, find_slips
+from reduction.moduli.slip import find_slips
+from reduction.moduli.tensionlevel import cycle_tension_level
 from reduction.phases.standstill import find_standstills
 from reduction.settings import CycleSettings, HoldSettings, PhaseSettings, SlipSettings
 

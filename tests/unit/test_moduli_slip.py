@@ -7,7 +7,8 @@ import pytest
 
 from reduction.cycles.product import Loops
 from reduction.errors import DataError
-from reduction.moduli.slip import cycle_tension_level, find_slips
+from reduction.moduli.slip import find_slips
+from reduction.moduli.tensionlevel import cycle_tension_level
 from reduction.settings import SlipSettings
 
 SLOPE = 200.0  # N/m
