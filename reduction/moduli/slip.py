@@ -74,8 +74,8 @@ def find_slips(
     settings : SlipSettings
         Shortest run of cycles and the false-alarm rate of one specimen. [1]
     tension_level : array_like, shape (n_specimens, n_cycles), optional
-        Series in which steps are looked for, from `reduction.moduli.tensionlevel.cycle_tension_level`; the peaks where
-        it is not given. [N]
+        Series in which steps are looked for, from
+        `reduction.moduli.tensionlevel.cycle_tension_level`; the peaks where it is not given. [N]
     tension_slope : array_like, shape (n_specimens,), optional
         Slope of tension on position at the top of the loop; without it the length of a
         slip is NaN. [N m-1]
