@@ -2,10 +2,9 @@
 
 import os
 import signal
-import sys
 import time
+from pathlib import Path
 
-import cloudpickle
 import pytest
 from distributed import LocalCluster
 
@@ -15,8 +14,13 @@ from reduction.batch.clusters import local_cluster, users_cluster
 from reduction.batch.executor import Serial
 from reduction.errors import DataError, LogError, SettingsError, WorkerError
 
-# the workers cannot import this file
-cloudpickle.register_pickle_by_value(sys.modules[__name__])
+
+@pytest.fixture(scope="module", autouse=True)
+def importable():
+    """Let the workers, which are processes of their own, import the functions of this file."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", str(Path(__file__).parents[2]))
+        yield
 
 
 @pytest.fixture(scope="module")
