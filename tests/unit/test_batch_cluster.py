@@ -3,8 +3,8 @@
 import os
 import signal
 import time
-from pathlib import Path
 
+import cloudpickle
 import pytest
 from distributed import LocalCluster
 
@@ -13,14 +13,6 @@ from reduction.batch import clusters
 from reduction.batch.clusters import local_cluster, users_cluster
 from reduction.batch.executor import Serial
 from reduction.errors import DataError, LogError, SettingsError, WorkerError
-
-
-@pytest.fixture(scope="module", autouse=True)
-def importable():
-    """Let the workers, which are processes of their own, import the functions of this file."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PYTHONPATH", str(Path(__file__).parents[2]))
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +45,11 @@ def die_in_good_company(folder, value):
         mark.touch()
         os.kill(os.getpid(), signal.SIGKILL)
     return value
+
+
+# the workers cannot import this file: what stands in the main program is sent to them whole
+for sent in (double, raise_data_error, wait_a_little, variables, die_in_good_company):
+    sent.__module__ = "__main__"
 
 
 @pytest.mark.parametrize("kind", ["serial", "cluster"])
@@ -148,6 +145,9 @@ def test_a_worker_that_dies_costs_its_tasks_a_retry(cluster, tmp_path):
 def slow_pid():
     time.sleep(0.5)
     return os.getpid()
+
+
+slow_pid.__module__ = "__main__"
 
 
 def test_a_result_that_is_lost_with_its_worker_is_made_again(cluster, monkeypatch):
