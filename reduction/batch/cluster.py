@@ -106,47 +106,38 @@ class Cluster:
         """Give what the tasks gave, as they end; those at which workers died come last."""
         deadly: list[_Sent[Result]] = []
         for task in self._as_they_end(tasks):
-            if isinstance(self._error_of(task), KilledWorker):
+            outcome = self._outcome(task)
+            if isinstance(outcome, KilledWorker):
                 deadly.append(task)
             else:
-                yield self._told(task)
+                yield _ended(task, outcome)
         for task in deadly:
             # by itself: it may only have been beside another at which they died
             task.again()
             for one in self._as_they_end([task]):
-                yield self._told(one)
+                yield _ended(one, self._outcome(one))
 
-    def _told(self, task: _Sent[Result]) -> Ended[Result]:
-        error = self._error_of(task)
-        if error is None:
-            try:
-                told = self._fetched(task)
-                task.let_go()
-                return Ended(task.test, told.value, worker=told.worker)
-            except KilledWorker as gone:
-                error = gone
-        task.let_go()
-        if not isinstance(error, KilledWorker):
-            raise error
-        died = WorkerError(
-            "every worker that began this test died at it",
-            found=f"{DEATHS + 1} workers or more lost, also with no other test beside it",
-            needed="workers that live as long as a test takes",
-            hint="Most often the memory did not suffice: take fewer workers (--jobs), or workers "
-            "with more memory.",
-        )
-        return Ended(task.test, None, died)
+    def _outcome(self, task: _Sent[Result]) -> _Told[Result] | BaseException:
+        """Give a result, or what came instead; what was lost with its worker is waited for again.
 
-    def _fetched(self, task: _Sent[Result]) -> _Told[Result]:
-        """Result of a task that ended; one that was lost with its worker is waited for again."""
+        A worker may die with results that ended and were not fetched yet. The scheduler has them
+        made once more, so that a task that had ended has not, at any line of this method.
+        """
         last_seen = time.monotonic()
         while True:
             try:
+                error = task.future.exception(timeout=_LOOK)
+                if error is not None:
+                    return _in_words(error)
                 return task.future.result(timeout=_LOOK)
             except TimeoutError:
                 last_seen = self._look(last_seen)
-            except (OSError, CancelledError) as gone:
-                raise _scheduler_lost() from gone
+            except Exception as gone:
+                if task.future.status == "error":
+                    continue
+                if isinstance(gone, (OSError, CancelledError)):
+                    return _scheduler_lost()
+                raise
 
     def _as_they_end(self, tasks: Iterable[Task[Result]]) -> Iterator[_Sent[Result]]:
         ended: SimpleQueue[_Sent[Result]] = SimpleQueue()
@@ -181,24 +172,31 @@ class Cluster:
             )
         return last_seen
 
-    def _error_of(self, task: _Sent[Any]) -> BaseException | None:
-        """What a task ended with, where it is no result."""
-        status = task.future.status
-        if status == "finished":
-            return None
-        if status != "error":  # the client gives up what a lost scheduler knew
-            return _scheduler_lost()
-        try:
-            error = task.future.exception()
-        except (OSError, CancelledError):
-            return _scheduler_lost()
-        if error is None or isinstance(error, (ReductionError, KilledWorker)):
-            return error
-        return WorkerError(
-            "a worker could not do what it was asked",
-            found=f"{type(error).__name__}: {error}",
-            needed=f"workers with reduction {__version__} and the packages of this environment",
-        )
+
+def _ended(task: _Sent[Result], outcome: _Told[Result] | BaseException) -> Ended[Result]:
+    task.let_go()
+    if isinstance(outcome, _Told):
+        return Ended(task.test, outcome.value, worker=outcome.worker)
+    if not isinstance(outcome, KilledWorker):
+        raise outcome
+    died = WorkerError(
+        "every worker that began this test died at it",
+        found=f"{DEATHS + 1} workers or more lost, also with no other test beside it",
+        needed="workers that live as long as a test takes",
+        hint="Most often the memory did not suffice: take fewer workers (--jobs), or workers "
+        "with more memory.",
+    )
+    return Ended(task.test, None, died)
+
+
+def _in_words(error: BaseException) -> BaseException:
+    if isinstance(error, (ReductionError, KilledWorker)):
+        return error
+    return WorkerError(
+        "a worker could not do what it was asked",
+        found=f"{type(error).__name__}: {error}",
+        needed=f"workers with reduction {__version__} and the packages of this environment",
+    )
 
 
 def _work(

@@ -198,7 +198,7 @@ def _check_usable(record: Record) -> None:
     for name, load, flags in zip(
         record.specimens, record.tension, record.quality_flag, strict=True
     ):
-        if not any_sample(lambda part: load[part] != 0, load.size, load):  # noqa: B023
+        if not count_samples(load):
             raise DataError(
                 f"tension of '{name}' is zero throughout",
                 found=f"{load.size} samples of 0 N",

@@ -86,17 +86,16 @@ def stress_at_strain(
         found: Bools = np.isfinite(stretch[part]) & np.isfinite(load[part])
         return found if is_still is None else found & ~is_still(part)
 
+    def first_at(level: float) -> int | None:
+        return first_sample(
+            lambda part: known(part) & (stretch[part] >= level), 0, stretch.size, stretch, load
+        )
+
     begin = first_sample(known, 0, stretch.size, stretch, load)
     stress, uncertainty = np.full((2, len(levels)), np.nan)
     reasons = [""] * len(levels)
     for index, level in enumerate(levels):
-        reached = first_sample(
-            lambda part: known(part) & (stretch[part] >= level),  # noqa: B023
-            0,
-            stretch.size,
-            stretch,
-            load,
-        )
+        reached = first_at(level)
         if reached is None or reached == begin:
             continue
         used = _last_of(known, reached + 1)

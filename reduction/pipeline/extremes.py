@@ -259,12 +259,16 @@ def _at_greatest_position(located: Located) -> dict[str, Samples]:
     }
 
 
+def _first_above(series: Floats, level: float) -> int | None:
+    return first_sample(lambda part: series[part] > level, 0, series.size, series)
+
+
 def _first_rise(located: Located) -> dict[str, Samples]:
     """Samples up to the first that is over half of the greatest tension; of many, the last."""
     found = {}
     for name, tension in zip(located.record.specimens, located.tension, strict=True):
         taut = _FIRST_RISE * max(finite_extremes(tension)[1], 0.0)
-        over = first_sample(lambda part: tension[part] > taut, 0, tension.size, tension)  # noqa: B023
+        over = _first_above(tension, taut)
         stop = 0 if over is None else over + 1
         rise = slice(max(stop - _MOST_KEPT, 0), stop)
         # copies, lest the whole record is kept with its first part

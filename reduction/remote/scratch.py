@@ -42,7 +42,7 @@ def in_words(text: str, names: Mapping[str, str]) -> str:
 
     Examples
     --------
-    >>> in_words("/tmp/x/0/T-1.csv:5 [time]: a gap", {"/tmp/x/0/T-1.csv": "s3://bucket/T-1.csv"})
+    >>> in_words("copies/0/T-1.csv:5 [time]: a gap", {"copies/0/T-1.csv": "s3://bucket/T-1.csv"})
     's3://bucket/T-1.csv:5 [time]: a gap'
     """
     for path in sorted(names, key=len, reverse=True):

@@ -150,16 +150,36 @@ def slow_pid():
 slow_pid.__module__ = "__main__"
 
 
-def test_a_result_that_is_lost_with_its_worker_is_made_again(cluster, monkeypatch):
-    monkeypatch.setattr(module, "_LOOK", 0.1)
-    task = cluster.start(slow_pid, stage="reduce", test="a")
+def kill_holder(cluster, task):
     end = time.monotonic() + 20
     while task.future.status != "finished" and time.monotonic() < end:
         time.sleep(0.01)
     (holder,) = next(iter(cluster._client.who_has([task.future]).values()))
     pid = cluster._client.run(os.getpid)[holder]
     os.kill(pid, signal.SIGKILL)
+    return pid
+
+
+def test_a_result_that_is_lost_with_its_worker_is_made_again(cluster, monkeypatch):
+    monkeypatch.setattr(module, "_LOOK", 0.1)
+    task = cluster.start(slow_pid, stage="reduce", test="a")
+    pid = kill_holder(cluster, task)
     (ended,) = cluster.ended([task])
+    assert ended.error is None and ended.value != pid
+
+
+def test_a_result_that_is_lost_after_it_was_said_to_have_ended_is_made_again(cluster, monkeypatch):
+    monkeypatch.setattr(module, "_LOOK", 0.1)
+    tasks = {name: cluster.start(slow_pid, stage="reduce", test=name) for name in "ab"}
+    ending = cluster.ended(tasks.values())
+    first = next(ending)
+    (other,) = (task for name, task in tasks.items() if name != first.test)
+    pid = kill_holder(cluster, other)
+    end = time.monotonic() + 20
+    while other.future.status == "finished" and time.monotonic() < end:
+        time.sleep(0.001)
+    assert other.future.status in ("lost", "pending")
+    (ended,) = ending
     assert ended.error is None and ended.value != pid
 
 
