@@ -10,69 +10,27 @@ clock starts. The log is generated (synthetic) in the folder BENCHMARK_DATA, or 
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
-import sys
-import tempfile
 from pathlib import Path
 from statistics import median
-from typing import Any
 
 from figures import Figure, hand_on
+from programs import PARSE, REDUCE, run, seconds_of, sizes, synthetic_log
 
-HERE = Path(__file__).parent
 WANTED = 5.0  # times parsing, with the default archive
-PARSE = """
-import time, json, resource, sys
-import pandas
-start = time.perf_counter()
-table = pandas.read_csv(sys.argv[1])
-print(json.dumps({"seconds": time.perf_counter() - start,
-    "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}))
-"""
-STORE = """
-import time, json, resource, sys
-from pathlib import Path
+STORE = f"""
 import netCDF4, xarray
 from reduction.archive.dataset import to_dataset
 from reduction.archive.kept import kept_samples
 from reduction.archive.write import write_archive
-from reduction.batch.models import fit_strain_models
-from reduction.batch.reduce import reduce_survey
-from reduction.batch.survey import survey_log
-from reduction.campaign.load import load_campaign
-campaign = load_campaign(Path(sys.argv[1]))
-start = time.perf_counter()
-surveys = survey_log(campaign, "long")
-models, errors = fit_strain_models(campaign, surveys)
-survey = surveys[0]
-if survey.error is not None:
-    raise survey.error
-of_test = [models[survey.plan.id, name] for name in survey.plan.specimens]
-test = reduce_survey(campaign, survey, of_test, None, "{}")
-reduced = time.perf_counter()
+{REDUCE}
 kept = kept_samples(test, survey.plan.settings)
 archive = Path(sys.argv[2])
 write_archive(to_dataset(test, version="0", command="benchmark", kept=kept), archive)
 done = time.perf_counter()
-print(json.dumps({"seconds": done - start, "archive": done - reduced,
-    "cycles": test.cycles.n_cycles,
-    "stored": test.record.n_samples if kept is None else kept.index.size,
-    "size": archive.stat().st_size,
-    "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}))
+say(seconds=done - start, archive=done - reduced, cycles=test.cycles.n_cycles,
+    stored=test.record.n_samples if kept is None else kept.index.size, size=archive.stat().st_size)
 """
-
-
-def run(code: str, *arguments: Path) -> dict[str, Any]:
-    """Run one program in a process of its own."""
-    done = subprocess.run(
-        [sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True,
-        check=False,
-    )  # fmt: skip
-    if done.returncode:
-        sys.exit(done.stderr)
-    return dict(json.loads(done.stdout))
 
 
 def keeping_all(campaign: Path) -> Path:
@@ -88,13 +46,8 @@ def keeping_all(campaign: Path) -> Path:
 
 def main(n_rows: int, repeats: int) -> list[Figure]:
     """Print a Markdown table of the three and their ratios."""
-    sys.path.insert(0, str(HERE))
-    from generate import write_campaign
-
-    folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
-    campaign = write_campaign(folder, n_rows=n_rows)
-    whole = keeping_all(campaign)
-    log, archive = folder / f"long_{n_rows}.csv", folder / "archive.nc"
+    campaign, log = synthetic_log(n_rows)
+    whole, archive = keeping_all(campaign), log.with_name("archive.nc")
     turns = [
         (run(PARSE, log), run(STORE, campaign, archive), run(STORE, whole, archive))
         for _ in range(repeats + 1)
@@ -122,33 +75,29 @@ def main(n_rows: int, repeats: int) -> list[Figure]:
         print(f"| {' | '.join(cells)} |")
     found = []
     for name, place in (("default archive", 1), ("whole record in the archive", 2)):
+        own = [turn[place] for turn in turns]
         found += [
             Figure(
                 what=f"reduction of {n_rows:,} rows, {name}",
-                values=tuple(turn[place]["seconds"] for turn in turns),
+                values=seconds_of(own),
                 against="times `pandas.read_csv`",
                 ratios=tuple(turn[place]["seconds"] / turn[0]["seconds"] for turn in turns),
                 at_most=WANTED if place == 1 else None,
             ),
             Figure(
                 what=f"its {name} alone",
-                values=tuple(turn[place]["archive"] for turn in turns),
+                values=seconds_of(own, "archive"),
                 against="times `pandas.read_csv`",
                 ratios=tuple(turn[place]["archive"] / turn[0]["seconds"] for turn in turns),
             ),
             Figure(
                 what=f"its peak memory, {name}",
                 unit="MB",
-                values=tuple(turn[place]["peak_mb"] for turn in turns),
+                values=tuple(one["peak_mb"] for one in own),
             ),
         ]
     return found
 
 
 if __name__ == "__main__":
-    hand_on(
-        main(
-            int(sys.argv[1]) if len(sys.argv) > 1 else 5_760_000,
-            int(sys.argv[2]) if len(sys.argv) > 2 else 3,
-        )
-    )
+    hand_on(main(*sizes()))

@@ -8,18 +8,16 @@ it, in the folder BENCHMARK_DATA, or a temporary one.
 
 from __future__ import annotations
 
-import os
 import resource
 import statistics
 import sys
-import tempfile
 from pathlib import Path
 from time import perf_counter
 
 import xarray as xr
-from archive_cost import STORE, keeping_all, run
+from archive_cost import STORE, keeping_all
 from figures import Figure, hand_on
-from generate import write_campaign
+from programs import run, synthetic_log
 
 import reduction
 
@@ -44,9 +42,9 @@ def of_cycle(test: xr.Dataset, cycle: int) -> tuple[float, int]:
 
 def made(n_rows: int) -> Path:
     """Make an archive of a generated log, with every sample in it."""
-    folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
-    archive = folder / f"whole_{n_rows}.nc"
-    run(STORE, keeping_all(write_campaign(folder, n_rows=n_rows)), archive)
+    campaign, log = synthetic_log(n_rows)
+    archive = log.with_name(f"whole_{n_rows}.nc")
+    run(STORE, keeping_all(campaign), archive)
     return archive
 
 

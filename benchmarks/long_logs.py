@@ -10,61 +10,24 @@ one, and in TMPDIR.
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
-from pathlib import Path
 
 from figures import Figure, hand_on
+from programs import REDUCE, run, synthetic_log
 
-HERE = Path(__file__).parent
 MOST_MB, MOST_OVER_MEMORY = 600.0, 1.2
 SIZES = (100_000, 1_000_000, 10_000_000, 100_000_000)
 MOST_IN_MEMORY = 10_000_000
 LINEAR_FROM = 100_000_000
 PLACES = {"memory": "in memory", "disk": "on disk"}
-REDUCE = """
-import hashlib, json, resource, sys, time
-from pathlib import Path
-from reduction.batch.models import fit_strain_models
-from reduction.batch.reduce import reduce_survey
-from reduction.batch.survey import survey_log
-from reduction.campaign.load import load_campaign
-from reduction.ingest.parts import Parts
-on_disk = sys.argv[2] == "disk"
-Parts.folder_of = lambda self, n_bytes: self.folder if on_disk else None
-imported = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-campaign = load_campaign(Path(sys.argv[1]))
-start = time.perf_counter()
-[survey] = survey_log(campaign, "long")
-if survey.error is not None:
-    raise survey.error
-models, _ = fit_strain_models(campaign, [survey])
-test = reduce_survey(
-    campaign, survey, [models["long", name] for name in survey.plan.specimens], None, "{}"
-)
-seconds = time.perf_counter() - start
+END = """
+import hashlib
 digest = hashlib.sha256(test.curves.tangent_modulus.tobytes())
 for name in ("peak_tension", "hysteresis_energy", "apparent_spring_constant"):
     digest.update(getattr(test.loops, name).tobytes())
-print(json.dumps({
-    "seconds": seconds, "cycles": test.cycles.n_cycles, "imported_mb": imported,
-    "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
-    "digest": digest.hexdigest()[:16],
-}))
+say(seconds=reduced - start, cycles=test.cycles.n_cycles, digest=digest.hexdigest()[:16])
 """
-
-
-def reduced(campaign: Path, where: str) -> dict[str, float]:
-    """Reduce the log of a campaign in a process of its own; ``where`` is memory or disk."""
-    done = subprocess.run(
-        [sys.executable, "-c", REDUCE, str(campaign), where],
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    return dict(json.loads(done.stdout))
 
 
 def figures(found: dict[tuple[int, str], dict[str, float]]) -> Iterator[Figure]:
@@ -103,17 +66,13 @@ def figures(found: dict[tuple[int, str], dict[str, float]]) -> Iterator[Figure]:
 
 def main(sizes: tuple[int, ...]) -> list[Figure]:
     """Print a Markdown table: seconds, seconds a million rows, peak memory."""
-    sys.path.insert(0, str(HERE))
-    from generate import write_campaign
-
-    folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
     print("| rows | cycles | columns in | s | s a million rows | peak MB | numbers |")
     print("|---|---|---|---|---|---|---|")
     all_found: dict[tuple[int, str], dict[str, float]] = {}
     for n_rows in sizes:
-        campaign = write_campaign(folder, n_rows=n_rows)
+        campaign, _ = synthetic_log(n_rows)
         for where in ("memory", "disk") if n_rows <= MOST_IN_MEMORY else ("disk",):
-            found = all_found[n_rows, where] = reduced(campaign, where)
+            found = all_found[n_rows, where] = run(REDUCE + END, campaign, where)
             print(
                 f"| {n_rows:,} | {found['cycles']:,} | {where} | {found['seconds']:.2f} "
                 f"| {found['seconds'] / n_rows * 1e6:.2f} | {found['peak_mb']:.0f} "

@@ -65,6 +65,7 @@ NOT_IN_SUITE = {
     "figures": "what the others hand on",
     "machine": "the words at the top",
     "generate": "the logs that the others take",
+    "programs": "what runs in processes of its own",
     "accuracy": "errors against a truth, not cost; docs/method.md",
     "coverage_ropes": "coverage of intervals, not cost; docs/uncertainty.md",
     "coverage_tethers": "coverage of intervals, not cost; docs/uncertainty.md",

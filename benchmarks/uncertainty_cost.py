@@ -9,14 +9,13 @@ and hashing included, is timed with and without the propagation, in turn, every 
 from __future__ import annotations
 
 import os
-import sys
-import tempfile
 import time
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
 
 from figures import Figure, hand_on
+from programs import sizes, synthetic_log
 
 from reduction.batch.basis import basis_of
 from reduction.batch.describe import describe
@@ -57,11 +56,7 @@ def seconds(path: Path, *, propagated: bool) -> tuple[float, int]:
 
 def main(n_rows: int, repeats: int) -> list[Figure]:
     """Print both times and their ratio."""
-    sys.path.insert(0, str(Path(__file__).parent))
-    from generate import write_campaign
-
-    folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
-    path = write_campaign(folder, n_rows=n_rows)
+    path, _ = synthetic_log(n_rows)
     seconds(path, propagated=True)
     pairs = [
         (seconds(path, propagated=False)[0], *seconds(path, propagated=True))
@@ -83,9 +78,4 @@ def main(n_rows: int, repeats: int) -> list[Figure]:
 
 
 if __name__ == "__main__":
-    hand_on(
-        main(
-            int(sys.argv[1]) if len(sys.argv) > 1 else 5_760_000,
-            int(sys.argv[2]) if len(sys.argv) > 2 else 3,
-        )
-    )
+    hand_on(main(*sizes()))

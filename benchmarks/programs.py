@@ -1,0 +1,101 @@
+"""Programs that benchmarks run beside each other, each in a process of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from generate import write_campaign
+
+__all__ = ["PARSE", "REDUCE", "print_sides", "run", "seconds_of", "sizes", "synthetic_log"]
+
+_BEGIN = """
+import json, resource, sys, time
+from pathlib import Path
+def say(**found):
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(json.dumps({"peak_mb": peak, **found}))
+"""
+
+PARSE = """
+import pandas
+start = time.perf_counter()
+table = pandas.read_csv(sys.argv[1])
+say(seconds=time.perf_counter() - start, rows=len(table))
+"""
+"""A log is parsed: the file is the argument."""
+
+REDUCE = """
+from reduction.batch.models import fit_strain_models
+from reduction.batch.reduce import reduce_survey
+from reduction.batch.survey import survey_log
+from reduction.campaign.load import load_campaign
+from reduction.ingest.parts import Parts
+if sys.argv[2:] in (["memory"], ["disk"]):
+    Parts.folder_of = lambda self, n_bytes: {"memory": None, "disk": self.folder}[sys.argv[2]]
+campaign = load_campaign(Path(sys.argv[1]))
+start = time.perf_counter()
+[survey] = survey_log(campaign, "long")
+if survey.error is not None:
+    raise survey.error
+located = time.perf_counter()
+models, _ = fit_strain_models(campaign, [survey])
+test = reduce_survey(
+    campaign, survey, [models["long", name] for name in survey.plan.specimens], None, "{}"
+)
+reduced = time.perf_counter()
+"""
+"""A log is reduced, and what becomes of ``test`` follows: the arguments are its campaign, and
+``memory`` or ``disk`` where the columns lie elsewhere than usual."""
+
+
+def run(code: str, *arguments: object) -> dict[str, Any]:
+    """Run a program to its end; it has ``say``, and gives what it says."""
+    done = subprocess.run(
+        [sys.executable, "-c", _BEGIN + code, *map(str, arguments)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if done.returncode:
+        sys.exit(done.stderr)
+    return dict(json.loads(done.stdout))
+
+
+def synthetic_log(n_rows: int) -> tuple[Path, Path]:
+    """Write a log and its campaign, in the folder BENCHMARK_DATA or a temporary one."""
+    folder = Path(os.environ.get("BENCHMARK_DATA", tempfile.gettempdir())) / "reduction-benchmark"
+    return write_campaign(folder, n_rows=n_rows), folder / f"long_{n_rows}.csv"
+
+
+def sizes(n_rows: int = 5_760_000, repeats: int = 3) -> tuple[int, int]:
+    """Rows and repeats of the command line."""
+    told = [int(one) for one in sys.argv[1:3]]
+    return (*told, *(n_rows, repeats)[len(told) :])  # type: ignore[return-value]
+
+
+def seconds_of(side: Sequence[Mapping[str, Any]], key: str = "seconds") -> tuple[float, ...]:
+    """Seconds of all runs of a side."""
+    return tuple(one[key] for one in side)
+
+
+def print_sides(sides: Mapping[str, Sequence[Mapping[str, Any]]]) -> tuple[float, ...]:
+    """Print seconds and memory of both sides, and give the ratios of the first to the second."""
+    print("| | median s | min | max | peak MB |\n|---|---|---|---|---|")
+    for name, side in sides.items():
+        taken = seconds_of(side)
+        peak = max(one["peak_mb"] for one in side)
+        print(f"| {name} | {_spread(taken)} | {peak:.0f} |")
+    first, second = map(seconds_of, sides.values())
+    ratios = tuple(ours / theirs for ours, theirs in zip(first, second, strict=True))
+    print(f"| ratio | {_spread(ratios)} | |")
+    return ratios
+
+
+def _spread(numbers: Sequence[float]) -> str:
+    return f"{median(numbers):.2f} | {min(numbers):.2f} | {max(numbers):.2f}"
