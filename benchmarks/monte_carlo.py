@@ -24,6 +24,7 @@ import numpy as np
 from coverage_tethers import numbers_of, one_test
 
 from reduction.batch.basis import basis_of
+from reduction.batch.history import past_of
 from reduction.batch.models import fit_strain_models
 from reduction.batch.reduce import reduce_survey
 from reduction.batch.survey import Survey, read_test
@@ -94,7 +95,7 @@ def t_1(draw: int) -> Numbers:
         ]  # fmt: skip
         surveys = [survey, *others]
         models, _ = fit_strain_models(campaign, surveys)
-        basis = basis_of(campaign, survey, surveys, models=models, pulls={}, failed=())
+        basis = basis_of(campaign, survey, past_of(surveys, models), pulls={}, failed=())
         return dict(_numbers(reduce_survey(campaign, survey, basis.models, None, "{}")))
 
 

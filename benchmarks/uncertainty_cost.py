@@ -19,6 +19,7 @@ from programs import sizes, synthetic_log
 
 from reduction.batch.basis import basis_of
 from reduction.batch.describe import describe
+from reduction.batch.history import past_of
 from reduction.batch.instruments import instruments_of
 from reduction.batch.models import fit_strain_models
 from reduction.batch.survey import located_again, read_test
@@ -39,7 +40,7 @@ def seconds(path: Path, *, propagated: bool) -> tuple[float, int]:
     surveys = [one for plan in campaign.tests.values() for one in read_test(campaign, plan)]
     models, _ = fit_strain_models(campaign, surveys)
     (survey,) = surveys
-    basis = basis_of(campaign, survey, surveys, models=models, pulls={}, failed=())
+    basis = basis_of(campaign, survey, past_of(surveys, models), pulls={}, failed=())
     test = reduce_test(
         located_again(campaign, survey),
         description=describe(campaign, survey),

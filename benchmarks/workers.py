@@ -26,6 +26,7 @@ from reduction.batch.basis import basis_of
 from reduction.batch.clusters import local_cluster
 from reduction.batch.executor import Executor, Serial
 from reduction.batch.firstpass import survey_campaign
+from reduction.batch.history import past_of
 from reduction.batch.lock import run_lock
 from reduction.batch.models import fit_strain_models
 from reduction.batch.progress import Silent
@@ -87,7 +88,7 @@ def reduce_all(campaign: Campaign, folder: Path, executor: Executor | None = Non
         statuses = reduce_campaign(
             campaign, first, first.surveys, errors=errors, folder=folder, executor=executor,
             basis=partial(
-                basis_of, campaign, surveys=first.surveys, models=models, pulls={}, failed=()
+                basis_of, campaign, past=past_of(first.surveys, models), pulls={}, failed=()
             ),
             lock=lock, progress=progress, clock=time.perf_counter, force=True, command="benchmark",
         )  # fmt: skip

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from reduction.batch.describe import settings_json
-from reduction.batch.history import history_of, history_remarks
+from reduction.batch.history import Past, history_of, history_remarks
 from reduction.batch.pulls import origins_of, pulls_of
 from reduction.batch.standing import failed_beside
 from reduction.batch.survey import Survey
@@ -39,9 +39,8 @@ class Basis:
 def basis_of(
     campaign: Campaign,
     survey: Survey,
-    surveys: Sequence[Survey],
+    past: Past,
     *,
-    models: Mapping[tuple[str, str], StrainModel],
     pulls: Mapping[tuple[str, str], SlowPull],
     failed: Sequence[str],
 ) -> Basis:
@@ -53,10 +52,8 @@ def basis_of(
         As loaded.
     survey : Survey
         The test.
-    surveys : sequence of Survey
-        All tests of the campaign.
-    models : mapping of (test, specimen) to StrainModel
-        How position becomes strain.
+    past : Past
+        All tests of the campaign, with their models.
     pulls : mapping of (test, specimen) to SlowPull
         Every slow pull that an experiment names.
     failed : sequence of str
@@ -67,17 +64,17 @@ def basis_of(
     basis : Basis
         As it stands in this run.
     """
-    history = history_of(survey, surveys, models, campaign)
+    history = history_of(survey, past, campaign)
     of_run = pulls_of(campaign, survey, pulls)
-    origins = () if of_run is None else origins_of(campaign, survey, surveys, models)
+    origins = () if of_run is None else origins_of(campaign, survey, past.surveys, past.models)
     names = [(survey.plan.id, specimen) for specimen in survey.plan.specimens]
-    of_test = tuple(models[name] for name in names if name in models)
+    of_test = tuple(past.models[name] for name in names if name in past.models)
     return Basis(
         history=history,
         models=of_test,
         pulls=of_run,
         pull_origins=origins,
         settings=settings_json(campaign, survey, of_test, history, of_run, origins),
-        remarks=tuple(history_remarks(survey, surveys, models, campaign)),
-        failed=failed_beside(survey, surveys, failed),
+        remarks=history_remarks(survey, past, campaign),
+        failed=failed_beside(survey, past.surveys, failed),
     )

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 
@@ -12,14 +15,58 @@ from reduction.pipeline.extremes import greatest_strain, growth_of_slack_length
 from reduction.product import History
 from reduction.strain.model import StrainModel
 
-__all__ = ["history_of", "history_remarks"]
+__all__ = ["Past", "history_of", "history_remarks", "past_of"]
 
 Models = Mapping[tuple[str, str], StrainModel]
+Place = tuple[int, int]
 
 
-def _greatest_strain(survey: Survey, name: str, models: Models) -> float:
-    """Greatest strain of a specimen in a test; NaN where it failed, or has no number of it."""
-    return greatest_strain(survey.extremes, name, models.get((survey.plan.id, name)))
+@dataclass(frozen=True)
+class Past:
+    """All tests of a campaign, in order.
+
+    Each test asks what came before it, so that what can be answered once is.  ``placed`` holds
+    the tests of each specimen that have a place in its order, oldest first; ``greatest_strain``
+    is by test and specimen [1], NaN where a test failed or has no number of it; ``of_log`` the
+    first test of each log.
+    """
+
+    surveys: Sequence[Survey]
+    models: Models
+    placed: Mapping[str, Sequence[tuple[Place, Survey]]]
+    greatest_strain: Mapping[tuple[str, str], float]
+    of_log: Mapping[str, Survey]
+
+
+def past_of(surveys: Sequence[Survey], models: Models) -> Past:
+    """Put the tests of a campaign in order.
+
+    Parameters
+    ----------
+    surveys : sequence of Survey
+        All tests of the campaign.
+    models : mapping of (test, specimen) to StrainModel
+        How position becomes strain.
+
+    Returns
+    -------
+    past : Past
+        What `history_of` and `history_remarks` ask.
+    """
+    placed: dict[str, list[tuple[Place, Survey]]] = {}
+    strain: dict[tuple[str, str], float] = {}
+    of_log: dict[str, Survey] = {}
+    for entry in surveys:
+        plan = entry.plan
+        of_log.setdefault(plan.log, entry)
+        for name in plan.specimens:
+            model = models.get((plan.id, name))
+            strain[plan.id, name] = greatest_strain(entry.extremes, name, model)
+            if plan.order is not None and plan.part_of is None:
+                placed.setdefault(name, []).append(((plan.order, plan.step_place), entry))
+    for before in placed.values():
+        before.sort(key=itemgetter(0))
+    return Past(surveys, models, placed, strain, of_log)
 
 
 def _set_after_rest(
@@ -33,35 +80,24 @@ def _set_after_rest(
     )
 
 
-def _whole(survey: Survey, surveys: Sequence[Survey]) -> Survey:
+def _whole(survey: Survey, past: Past) -> Survey:
     """The test itself, or that of which it repeats a part."""
-    for entry in surveys:
-        if entry.plan.log == survey.plan.part_of:
-            return entry
-    return survey
+    return past.of_log.get(survey.plan.part_of or "", survey)
 
 
-def _place(survey: Survey, surveys: Sequence[Survey]) -> tuple[int, int] | None:
+def _place(survey: Survey, past: Past) -> Place | None:
     """Place in the order of tests; a test that is a part of another has the place of that one."""
-    order = _whole(survey, surveys).plan.order
+    order = _whole(survey, past).plan.order
     return None if order is None else (order, survey.plan.step_place)
 
 
-def _earlier(survey: Survey, surveys: Sequence[Survey], name: str) -> list[Survey]:
+def _earlier(survey: Survey, past: Past, name: str) -> list[Survey]:
     """Tests of a specimen before a test, oldest first."""
-    place = _place(survey, surveys)
-    before = [
-        ((entry.plan.order, entry.plan.step_place), entry)
-        for entry in surveys
-        if entry.plan.order is not None
-        and entry.plan.part_of is None
-        and name in entry.plan.specimens
-    ]
-    return [
-        entry
-        for at, entry in sorted(before, key=lambda pair: pair[0])
-        if place is not None and at < place
-    ]
+    place = _place(survey, past)
+    if place is None:
+        return []
+    placed = past.placed.get(name, ())
+    return [entry for _, entry in placed[: bisect_left(placed, place, key=itemgetter(0))]]
 
 
 def _earlier_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) -> float:
@@ -93,19 +129,15 @@ def _earlier_flex_cycles(
     return float((before or 0) + sum(flexed.values()))
 
 
-def history_of(
-    survey: Survey, surveys: Sequence[Survey], models: Models, campaign: Campaign
-) -> History | None:
+def history_of(survey: Survey, past: Past, campaign: Campaign) -> History | None:
     """Earlier maximum strain and tension and cumulative cycles of each specimen.
 
     Parameters
     ----------
     survey : Survey
         The test; one that is a part of another has the history of that one.
-    surveys : sequence of Survey
+    past : Past
         All tests of the campaign.
-    models : mapping of (test, specimen) to StrainModel
-        How position becomes strain.
     campaign : Campaign
         What its specimens had seen before.
 
@@ -115,24 +147,24 @@ def history_of(
         None where the test has no place in the order.  A number is NaN where an earlier test
         failed or has none of it: a part of a sum, or of a maximum, would pass for the whole.
     """
-    if _place(survey, surveys) is None:
+    if _place(survey, past) is None:
         return None
     nothing = float("nan")
     tests: list[tuple[str, ...]] = []
     strain, tension, cycles, flex, left = [], [], [], [], []
-    own = _whole(survey, surveys)
+    own = _whole(survey, past)
     for name in survey.plan.specimens:
-        earlier = _earlier(survey, surveys, name)
+        earlier = _earlier(survey, past, name)
         tests.append(tuple(entry.plan.id for entry in earlier))
-        strain.append(_greatest([_greatest_strain(entry, name, models) for entry in earlier]))
+        strain.append(_greatest([past.greatest_strain[entry.plan.id, name] for entry in earlier]))
         tension.append(
             _greatest([entry.extremes.greatest_tension.get(name, nothing) for entry in earlier])
         )
         specimen = campaign.specimens[name]
         cycles.append(_earlier_cycles(earlier, own, specimen.earlier_cycles))
-        of_name = [entry for entry in surveys if name in entry.plan.specimens]
+        of_name = [entry for entry in past.surveys if name in entry.plan.specimens]
         flex.append(_earlier_flex_cycles(earlier, survey, specimen.earlier_flex_cycles, of_name))
-        model = models.get((survey.plan.id, name))
+        model = past.models.get((survey.plan.id, name))
         free = nothing if model is None else model.relaxed_length
         left.append(_set_after_rest(survey, earlier, name, free))
     return History(
@@ -152,19 +184,15 @@ def _greatest(values: Sequence[float]) -> float:
     return float(np.max(values)) if values else float("nan")
 
 
-def history_remarks(
-    survey: Survey, surveys: Sequence[Survey], models: Models, campaign: Campaign
-) -> tuple[str, ...]:
+def history_remarks(survey: Survey, past: Past, campaign: Campaign) -> tuple[str, ...]:
     """What the campaign leaves open about the place of a test in its specimens' history.
 
     Parameters
     ----------
     survey : Survey
         The test.
-    surveys : sequence of Survey
+    past : Past
         All tests of the campaign.
-    models : mapping of (test, specimen) to StrainModel
-        How position becomes strain.
     campaign : Campaign
         What its specimens had seen before.
 
@@ -174,7 +202,7 @@ def history_remarks(
         Sentences for a reader of the product; empty where nothing is open.
     """
     plan = survey.plan
-    remarks = (*_unknown(survey, surveys, models), *_unlogged(survey, surveys, campaign))
+    remarks = (*_unknown(survey, past), *_unlogged(survey, past, campaign))
     if plan.part_of is not None:
         return (
             f"a part of {plan.part_of}: its history is that of the whole; cycles of the whole "
@@ -184,7 +212,7 @@ def history_remarks(
     shared = [
         name
         for name in plan.specimens
-        if any(name in other.plan.specimens for other in surveys if other.plan.log != plan.log)
+        if any(name in other.plan.specimens for other in past.surveys if other.plan.log != plan.log)
     ]
     if plan.order is None and shared:
         return (
@@ -194,15 +222,15 @@ def history_remarks(
     return remarks
 
 
-def _unlogged(survey: Survey, surveys: Sequence[Survey], campaign: Campaign) -> tuple[str, ...]:
+def _unlogged(survey: Survey, past: Past, campaign: Campaign) -> tuple[str, ...]:
     """Earlier cycles of which the campaign has the number alone."""
-    if _place(survey, surveys) is None:
+    if _place(survey, past) is None:
         return ()
     remarks = []
-    own = _whole(survey, surveys)
+    own = _whole(survey, past)
     for name in survey.plan.specimens:
         before = campaign.specimens[name].earlier_cycles
-        count = _unlogged_cycles(_earlier(survey, surveys, name), own, before)
+        count = _unlogged_cycles(_earlier(survey, past, name), own, before)
         if count:
             remarks.append(
                 f"{name}: {count} earlier cycles are in no log: earlier_maximum_strain and "
@@ -211,15 +239,15 @@ def _unlogged(survey: Survey, surveys: Sequence[Survey], campaign: Campaign) -> 
     return tuple(remarks)
 
 
-def _unknown(survey: Survey, surveys: Sequence[Survey], models: Models) -> tuple[str, ...]:
+def _unknown(survey: Survey, past: Past) -> tuple[str, ...]:
     """Earlier tests of which a number is lacking, and what has none for it here."""
     failed: dict[str, list[str]] = {}
     bare: dict[str, list[str]] = {}
     for name in survey.plan.specimens:
-        for entry in _earlier(survey, surveys, name):
+        for entry in _earlier(survey, past, name):
             if entry.error is not None:
                 failed.setdefault(entry.plan.id, []).append(name)
-            elif np.isnan(_greatest_strain(entry, name, models)):
+            elif np.isnan(past.greatest_strain[entry.plan.id, name]):
                 bare.setdefault(entry.plan.id, []).append(name)
     return (
         *(

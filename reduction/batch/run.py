@@ -16,6 +16,7 @@ from reduction.batch.comparisons import write_comparisons
 from reduction.batch.executor import Executor, Serial
 from reduction.batch.experiments import write_experiments
 from reduction.batch.firstpass import survey_campaign
+from reduction.batch.history import past_of
 from reduction.batch.lock import RunLock, run_lock
 from reduction.batch.models import fit_strain_models
 from reduction.batch.part import PartStatus
@@ -151,8 +152,7 @@ def _run(
     basis = partial(
         basis_of,
         campaign,
-        surveys=surveys,
-        models=models,
+        past=past_of(surveys, models),
         pulls=pulls,
         failed=failed,
     )
