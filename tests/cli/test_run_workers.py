@@ -161,11 +161,14 @@ def test_a_run_that_was_killed_goes_on_where_it_was(campaign, serial, tmp_path):
 def test_an_interrupt_ends_the_workers_and_gives_back_the_lock(campaign, tmp_path):
     process = start(campaign, tmp_path, "--jobs", "2")
     wait_for(is_at_work(tmp_path, made=1))
+    os.killpg(process.pid, signal.SIGSTOP)  # or it may end while this looks
     children = psutil.Process(process.pid).children(recursive=True)
     assert len(children) >= 2
+    assert len(archives(tmp_path)) < len(SOUND), "it was stopped too late to show anything"
     began = time.monotonic()
     # as a terminal does, to every process of the group
     os.killpg(process.pid, signal.SIGINT)
+    os.killpg(process.pid, signal.SIGCONT)
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 130
     assert errors.splitlines()[-1] == "interrupted; products that were finished are kept"
