@@ -104,7 +104,12 @@
   plots.forEach((plot) => near.observe(plot));
 
   dark.addEventListener("change", () => drawn.forEach(draw));
-  document.getElementById("draw-all").addEventListener("click", drawAll);
+  document.getElementById("draw-all")?.addEventListener("click", drawAll);
+  // a page whose figures come later, or change, says so
+  document.addEventListener("figure", ({ target }) => {
+    if (drawn.has(target)) draw(target);
+    else near.observe(target);
+  });
 
   // paper is white and narrower than the screen, whatever the screen is
   addEventListener("beforeprint", () => {
