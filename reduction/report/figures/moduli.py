@@ -111,9 +111,10 @@ def draw_cycle_curves(view: TestView) -> list[Figure]:
                 mean = modulus[index, kept, place] * in_stress.factor
                 half = spread[index, kept, place] * in_stress.factor
                 words = f"cycle {cycles[kept]:.0f}, {branch}"
+                of = {"cycle": int(cycles[kept])}
                 data += [
-                    band(x, mean - half, mean + half, name=words, colour=tint, alpha=0.25),
-                    line(x, mean, name=words, colour=tint, dash=DASHES[branch]),
+                    band(x, mean - half, mean + half, name=words, colour=tint, alpha=0.25, meta=of),
+                    line(x, mean, name=words, colour=tint, dash=DASHES[branch], meta=of),
                 ]
         found.append(
             make_figure(
