@@ -17,8 +17,8 @@ from reduction.report.style import shorten, shown
 from reduction.report.view import Status, TestView, all_specimens, any_synthetic
 
 __all__ = [
-    "Finding", "Severity", "Tile", "all_notes", "brief", "find_faults", "grouped_notes", "summary_sentence",
-    "test_table", "tiles",
+    "Finding", "Severity", "Tile", "all_notes", "brief", "find_faults", "grouped_notes",
+    "summary_sentence", "test_table", "tiles",
 ]  # fmt: skip
 
 Severity = Literal["failure", "warning", "note", "refusal"]
