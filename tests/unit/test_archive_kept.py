@@ -222,9 +222,8 @@ TAKE = """
 import sys
 from pathlib import Path
 import numpy as np
-import pytest
 from reduction.archive.kept import KeptSamples
-from reduction.samples.scratch import ColumnWriter, let_go
+from reduction.samples.scratch import ColumnWriter
 
 def memory(key):
     with open("/proc/self/status") as lines:
