@@ -21,6 +21,7 @@ from reduction.report.figures.loops import draw_loops
 from reduction.report.figures.moduli import draw_cycle_curves, draw_moduli
 from reduction.report.figures.pull import draw_pull
 from reduction.report.figures.record import draw_record, draw_tension_position
+from reduction.report.figures.splices import draw_splices
 from reduction.report.figures.stepwise import draw_steps
 from reduction.report.figures.trends import draw_trends
 from reduction.report.holdtables import hold_table, prony_table, refusals
@@ -124,7 +125,7 @@ def make_section(view: TestView) -> Section:
             refusals=refusals(view),
         ),
         make_part(
-            "Strain and splices" if view.is_rubber else "Strain", (),
+            "Strain and splices" if view.is_rubber else "Strain", draw_splices(view),
             [coefficient_table(view), mark_table(view)], slope_sentences(view),
         ),
         make_part("First loading", draw_mooney(view), [stress_table(view), elastomer_table(view)]),
