@@ -47,7 +47,7 @@ class RunTable:
     rated_break_strength : ndarray, shape (n_runs,)
         Of the specimen; NaN where not stated. [N]
     remark : tuple of str, length n_runs
-        Why a run has no number, and what its cycles do to the model; several end with ``; ``.
+        Why a run has no number, and what its cycles do to the model; semicolons between several.
     shared : Contributions or None
         Of errors that runs share, to responses and levels by name, shape (n_components, n_runs);
         None where nothing is known of any.

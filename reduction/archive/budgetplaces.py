@@ -11,11 +11,13 @@ import xarray as xr
 from reduction.errors import SettingsError
 from reduction.moduli.interpolation import curve_at
 from reduction.record import Floats
+from reduction.units import parse_quantity
 
 __all__ = [
     "ON_AN_AXIS",
     "find_place",
     "label_of",
+    "parse_place",
     "place_name",
     "read_at",
     "where_known",
@@ -47,6 +49,37 @@ _JOINED = {"comparison": " over "}
 def place_name(dim: str) -> str:
     """What a dimension is called where a place along it is asked for: ``branch``, ``strain``."""
     return _CALLED.get(dim, dim)
+
+
+def parse_place(name: str, text: str) -> str:
+    """Label of a place as `find_place` takes it: a strain as a number, a tension in newton.
+
+    Parameters
+    ----------
+    name : str
+        What the place is called: ``branch``, ``strain``.
+    text : str
+        As written, with a unit or a percent sign where it is a strain or a tension.
+
+    Returns
+    -------
+    label : str
+        In SI.
+
+    Raises
+    ------
+    SettingsError
+        If a strain or a tension cannot be read.
+
+    Examples
+    --------
+    >>> parse_place("strain", "125 %"), parse_place("branch", " ascending")
+    ('1.25', 'ascending')
+    """
+    key, label = name.strip(), text.strip()
+    if key.endswith(("strain", "strain_bin")):
+        return str(parse_quantity(label, "strain"))
+    return str(parse_quantity(label, "force")) if key in ("tension", "tension_grid") else label
 
 
 def label_of(archive: xr.Dataset, dim: str, index: int) -> Any:

@@ -20,8 +20,7 @@ from reduction.cycles.product import Cycles
 from reduction.moduli.groups import select_cycles
 from reduction.product import ReducedTest
 from reduction.record import UNUSABLE, Floats, Integers, freeze_arrays
-from reduction.samples.blocks import sample_blocks
-from reduction.samples.scratch import let_go
+from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.settings import ReductionSettings
 
 __all__ = ["KeptSamples", "SamplePlaces", "kept_samples", "select_places", "stored_cycles"]
@@ -77,9 +76,7 @@ class KeptSamples:
 
     def of(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return the stored samples of a series, shape (..., n_stored)."""
-        stored = np.asarray(np.take(values, self.index, axis=-1))
-        let_go(values)
-        return stored
+        return take_samples(values, self.index)
 
 
 def kept_samples(test: ReducedTest, settings: ReductionSettings) -> KeptSamples | None:

@@ -236,7 +236,8 @@ def components_of(archive: xr.Dataset, experiment: int | None = None) -> list[Co
     names = ("uncertainty_source", "uncertainty_source_of", "uncertainty_source_number")
     columns = [archive[name].values for name in names]
     own = columns if experiment is None else [column[experiment] for column in columns]
-    kept = archive.get(FREEDOM)
+    # asked for by its name alone, a variable that is not there is sought among all of like names
+    kept = archive[FREEDOM] if FREEDOM in archive else None
     known = np.full(len(own[0]), np.inf)
     if kept is not None:
         known = kept.values if experiment is None else kept.values[experiment]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 from reduction.batch.executor import Executor, Serial, Task
@@ -80,10 +81,13 @@ def survey_campaign(
 
 
 def _n_bytes(campaign: Campaign, log: str) -> int:
-    """Size of the files of a log, as far as they are there."""
-    names = [name for name, _ in campaign.tests[log].files if name not in campaign.unread]
-    paths = [campaign.file(name) for name in names]
-    return sum(path.stat().st_size for path in paths if path.exists())
+    """Size of the files of a log, as far as they can be looked at."""
+    n_bytes = 0
+    for name, _ in campaign.tests[log].files:
+        if name not in campaign.unread:
+            with suppress(OSError):  # what is wrong with it is said by the test, when it is read
+                n_bytes += campaign.file(name).stat().st_size
+    return n_bytes
 
 
 def _survey(campaign: Campaign, log: str, lock: RunLock | None, is_elsewhere: bool) -> list[Survey]:

@@ -8,7 +8,7 @@ import platform
 import shlex
 import sys
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
@@ -96,8 +96,9 @@ def run_lock(folder: Path, *, remark: Callable[[str], None]) -> Iterator[RunLock
     """
     path = folder / LOCK_NAME
     own = _own()
-    new = [one for one in (folder, *folder.parents) if not one.exists()]
+    new: list[Path] = []
     try:
+        new += [one for one in (folder, *folder.parents) if not one.exists()]
         folder.mkdir(parents=True, exist_ok=True)
         _take(path, own, remark)
         for part in folder.rglob(".*.part"):
@@ -105,6 +106,7 @@ def run_lock(folder: Path, *, remark: Callable[[str], None]) -> Iterator[RunLock
     except ArchiveError:
         raise
     except OSError as error:
+        _remove_empty(new)
         raise ArchiveError(
             f"{path} cannot be written",
             found=error.strerror or str(error),
@@ -117,8 +119,14 @@ def run_lock(folder: Path, *, remark: Callable[[str], None]) -> Iterator[RunLock
         with suppress(OSError):  # a disk that is gone keeps its lock, and the next run says so
             if holder is not None and holder.token == own.token:
                 path.unlink()
-            for one in new:
-                one.rmdir()  # goes only where nothing was written
+        _remove_empty(new)
+
+
+def _remove_empty(folders: Sequence[Path]) -> None:
+    """Take folders away that were made for products, where nothing was written."""
+    with suppress(OSError):
+        for one in folders:
+            one.rmdir()
 
 
 def _take(path: Path, own: _Holder, remark: Callable[[str], None]) -> None:
@@ -129,10 +137,15 @@ def _take(path: Path, own: _Holder, remark: Callable[[str], None]) -> None:
         except FileExistsError:
             pass
         else:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                json.dump(asdict(own), file, indent=1)
-                file.flush()
-                os.fsync(file.fileno())
+            try:
+                with os.fdopen(handle, "w", encoding="utf-8") as file:
+                    json.dump(asdict(own), file, indent=1)
+                    file.flush()
+                    os.fsync(file.fileno())
+            except BaseException:
+                # without its text it would hold the folder for ever
+                path.unlink(missing_ok=True)
+                raise
             return
         text = _text_of(path)
         if text is None:

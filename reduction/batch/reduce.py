@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import xarray as xr
+
 from reduction import __version__
 from reduction.archive.dataset import to_dataset
 from reduction.archive.kept import kept_samples
@@ -26,7 +28,7 @@ from reduction.pipeline.statedlimits import check_stated_errors
 from reduction.product import History, ReducedTest
 from reduction.strain.model import StrainModel
 
-__all__ = ["bring_up_to_date", "reduce_survey"]
+__all__ = ["bring_up_to_date", "dataset_of", "reduce_survey"]
 
 
 def reduce_survey(
@@ -101,6 +103,45 @@ def reduce_survey(
     return replace(reduced, notes=(*reduced.notes, *notes))
 
 
+def dataset_of(
+    campaign: Campaign, survey: Survey, basis: Basis, *, command: str
+) -> tuple[xr.Dataset, tuple[tuple[str, str], ...]]:
+    """Reduce one surveyed test to all that its archive is to hold.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        Where its files, layouts and specimens are.
+    survey : Survey
+        The test after the first pass.
+    basis : Basis
+        What its product rests on beside its own log.
+    command : str
+        For the product's ``command`` attribute, without paths.
+
+    Returns
+    -------
+    dataset : xarray.Dataset
+        The archive, not written.
+    notes : tuple of (stage, text)
+        That it holds.
+
+    Raises
+    ------
+    ReductionError
+        If the record cannot support a stage that its kind needs.
+    """
+    product = reduce_survey(
+        campaign, survey, basis.models, basis.history, basis.settings, basis.pulls,
+        basis.pull_origins,
+    )  # fmt: skip
+    kept = kept_samples(product, survey.plan.settings)
+    of_archive = () if kept is None else (kept.note,)
+    product = replace(product, notes=(*product.notes, *basis.remarks, *of_archive))
+    dataset = to_dataset(product, version=__version__, command=command, kept=kept)
+    return dataset, product.all_notes()
+
+
 def bring_up_to_date(
     campaign: Campaign,
     survey: Survey,
@@ -149,15 +190,7 @@ def bring_up_to_date(
         if standing is not None:
             said = filter(None, [standing.remark, note_message(standing.notes)])
             return "unchanged", "; ".join(said)
-    product = reduce_survey(
-        campaign, survey, basis.models, basis.history, basis.settings, basis.pulls,
-        basis.pull_origins,
-    )  # fmt: skip
-    kept = kept_samples(product, survey.plan.settings)
-    of_archive = () if kept is None else (kept.note,)
-    product = replace(product, notes=(*product.notes, *basis.remarks, *of_archive))
-    dataset = to_dataset(product, version=__version__, command=command, kept=kept)
+    dataset, notes = dataset_of(campaign, survey, basis, command=command)
     before_writing()
     write_archive(dataset, path)
-    notes = product.all_notes()
     return "reduced_with_notes" if notes else "reduced", note_message(notes)

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+from reduction.archive.laboratory import keep_details
 from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.write import write_whole
 from reduction.batch.basis import Basis, basis_of
@@ -173,6 +174,7 @@ def _run(
     rows = _all_rows(folder / "status.csv", surveys, statuses)
     if statuses:
         write_whole(folder / "status.csv", status_csv(rows))
+    keep_details(folder, campaign.report)
     products = _products_of_campaign(campaign, folder, has_lengths=parts.has_lengths)
     if archives or products:
         tables = write_tables(archives, folder / "tables", **products)

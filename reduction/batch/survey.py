@@ -6,6 +6,7 @@ before it; so every log is read and located once, and only then reduced.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -23,7 +24,10 @@ from reduction.provenance import Source
 from reduction.record import Floats, Record, SpliceMarks, StepReadings
 from reduction.strain.fit import zero_strain_position
 
-__all__ = ["Survey", "as_reduction_error", "located_again", "read_test", "survey_log"]
+__all__ = ["Reader", "Survey", "as_reduction_error", "located_again", "read_test", "survey_log"]
+
+Reader = Callable[..., tuple[Record, tuple[Source, ...]]]
+"""Gives the record of a log, as `reduction.ingest.record_of_test.read_record` does."""
 
 
 @dataclass
@@ -50,7 +54,7 @@ class Survey:
     error: ReductionError | None = None
 
 
-def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
+def read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_record) -> list[Survey]:
     """Read one log and locate what it holds: one survey a test, or one a step.
 
     Parameters
@@ -59,6 +63,8 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
         Where the files, layouts and specimens are.
     plan : TestPlan
         The test.
+    reader : callable
+        What reads its record; one that keeps records reads a log once.
 
     Returns
     -------
@@ -86,7 +92,7 @@ def read_test(campaign: Campaign, plan: TestPlan) -> list[Survey]:
                 extremes=extremes,
             )
         ]
-    record, sources = read_record(
+    record, sources = reader(
         files,
         test_id=plan.id,
         specimens=plan.specimens,
@@ -154,11 +160,11 @@ def _measure_marks(survey: Survey, located: Located | None, marks: dict[str, Spl
         survey.mark_tension, survey.mark_tension_at_start = at["end"], at["start"]
 
 
-def survey_log(campaign: Campaign, name: str) -> list[Survey]:
+def survey_log(campaign: Campaign, name: str, *, reader: Reader = read_record) -> list[Survey]:
     """Read and locate one log; a log that cannot be read has one survey, with its error."""
     plan = campaign.tests[name]
     try:
-        return read_test(campaign, plan)
+        return read_test(campaign, plan, reader=reader)
     except Exception as error:
         return [Survey(plan, error=as_reduction_error(error))]
 

@@ -20,6 +20,7 @@ from reduction.campaign.model import (
 )
 from reduction.campaign.outcomes import outcomes_of
 from reduction.campaign.plan import Campaign
+from reduction.campaign.reportspec import report_details
 from reduction.campaign.specimens import specimen_of
 from reduction.campaign.testplans import plan_test
 from reduction.campaign.testtable import merge_tests, read_test_table
@@ -39,10 +40,11 @@ def _hint(path: Path) -> str | None:
     return None
 
 
-def _parse(path: Path) -> CampaignFile:
+def _parse(path: Path, text: str | None) -> CampaignFile:
     return read_toml(
         path,
         CampaignFile,
+        text=text,
         what="the campaign",
         needed="a campaign.toml; `reduction init FOLDER` writes a first one",
         keys="`reduction schema` prints every key that is known",
@@ -77,7 +79,7 @@ def _addresses(path: Path, tests: Mapping[str, TestSection]) -> dict[str, str]:
     return found
 
 
-def load_campaign(path: Path, *, allow_remote: bool = False) -> Campaign:
+def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = None) -> Campaign:
     """Read campaign.toml, its tables and its marks, and check that they fit together.
 
     Parameters
@@ -87,6 +89,8 @@ def load_campaign(path: Path, *, allow_remote: bool = False) -> Campaign:
     allow_remote : bool
         Whether the log of a test may be an address on the net. Nothing is fetched here:
         `reduction.campaign.staged.staged_campaign` does.
+    text : str, optional
+        What campaign.toml is to hold; what it does hold where left out.
 
     Returns
     -------
@@ -101,7 +105,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False) -> Campaign:
     LogError
         If a file that it names is missing or cannot be read.
     """
-    file = _parse(path)
+    file = _parse(path, text)
     tests: dict[str, TestSection] = {}
     table = file.tests if isinstance(file.tests, str) else file.campaign.tests
     if table:
@@ -176,5 +180,6 @@ def load_campaign(path: Path, *, allow_remote: bool = False) -> Campaign:
         hoses=hoses,
         comparisons=comparisons,
         uncertainty=stated_errors(path, file.uncertainty, specimens.values()),
+        report=report_details(path, file.report, specimens=specimens, tests=plans),
         addresses=_addresses(path, tests),
     )

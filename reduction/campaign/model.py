@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, field_validator
 
 from reduction.campaign.hosemodel import ComparisonSection, HoseSection
+from reduction.campaign.reportspec import ReportSection
 from reduction.campaign.uncertaintyspec import UncertaintySection
 from reduction.errors import SettingsError
 from reduction.ingest.layout import Layout
@@ -245,3 +246,4 @@ class CampaignFile(_Section):
     hoses: dict[Identifier, HoseSection] = Field(default_factory=dict)
     comparisons: dict[Identifier, ComparisonSection] = Field(default_factory=dict)
     uncertainty: UncertaintySection = UncertaintySection()
+    report: ReportSection | None = None

@@ -15,7 +15,7 @@ from reduction.errors import SettingsError
 from reduction.settings import ReductionSettings, StoredSamples
 from reduction.units import Dimension, parse_quantity
 
-__all__ = ["apply_numbers"]
+__all__ = ["apply_numbers", "dimension_of", "limits_of"]
 
 _DIMENSION: dict[tuple[str, str], Dimension] = {
     ("phases", "minimum_duration"): "time",
@@ -61,6 +61,18 @@ _ELSEWHERE = {("strain", "method"), ("cycles", "control"), ("cycles", "waveform"
               ("cycles", "expected_cycles")}  # fmt: skip
 
 
+def dimension_of(group: str, name: str, *, control: str) -> Dimension | None:
+    """Dimension of a number, with which its unit is written; None where it has none."""
+    if (group, name) == ("cycles", "band"):
+        return "force" if control == "load" else "length"
+    return _DIMENSION.get((group, name))
+
+
+def limits_of(group: str, name: str) -> tuple[float, float]:
+    """Least and greatest value that a number may have, in SI."""
+    return _LIMITS.get((group, name), (0.0, math.inf))
+
+
 def _value(group: str, name: str, value: object, default: object, control: str) -> object:
     where = f"reduction.{group}.{name}"
     words = _WORDS.get((group, name))
@@ -69,9 +81,7 @@ def _value(group: str, name: str, value: object, default: object, control: str) 
             needed = " or ".join(f'"{word}"' for word in words)
             raise SettingsError(f"{where} is unknown", found=repr(value), needed=needed)
         return value
-    dimension = _DIMENSION.get((group, name))
-    if (group, name) == ("cycles", "band"):
-        dimension = "force" if control == "load" else "length"
+    dimension = dimension_of(group, name, control=control)
     if isinstance(default, tuple):
         if not isinstance(value, (list, tuple)):
             raise SettingsError(f"{where} is not a list", found=repr(value), needed="a list")
@@ -84,7 +94,7 @@ def _value(group: str, name: str, value: object, default: object, control: str) 
         number = float(value)
     else:
         raise SettingsError(f"{where} is not a number", found=repr(value), needed="a number")
-    least, greatest = _LIMITS.get((group, name), (0.0, math.inf))
+    least, greatest = limits_of(group, name)
     if not least <= number <= greatest:
         upper = "" if math.isinf(greatest) else f" and at most {greatest:g}"
         raise SettingsError(

@@ -10,6 +10,7 @@ from typing import Literal
 from reduction.address import is_address
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
+from reduction.laboratory import ReportDetails
 from reduction.outcomes.product import Outcome
 from reduction.prediction import HosePlan
 from reduction.provenance import Source
@@ -123,7 +124,8 @@ class Campaign:
     """One campaign.toml with everything that it names, resolved.
 
     ``outcomes`` are the rows of the table ``results``, with what the sheets of their
-    specimens say; ``uncertainty`` is what is stated of the instruments.
+    specimens say; ``uncertainty`` is what is stated of the instruments, ``report`` what the
+    laboratory states for its client.
 
     ``addresses`` are whole addresses of logs on the net by their names, until there are
     ``copies`` of them, or ``unread`` says why there is none; ``names`` are what may be shown
@@ -143,6 +145,7 @@ class Campaign:
     hoses: dict[str, HosePlan] = field(default_factory=dict)
     comparisons: dict[str, ComparisonPlan] = field(default_factory=dict)
     uncertainty: StatedErrors = field(default_factory=StatedErrors)
+    report: ReportDetails | None = None
     addresses: dict[str, str] = field(default_factory=dict, repr=False)
     copies: dict[str, Path] = field(default_factory=dict)
     unread: dict[str, LogError] = field(default_factory=dict)

@@ -23,6 +23,7 @@ def read_toml(
     what: str,
     needed: str,
     keys: str,
+    text: str | None = None,
     hint: Callable[[Path], str | None] = lambda path: None,
 ) -> _Model:
     """Read and validate.
@@ -36,6 +37,8 @@ def read_toml(
     what, needed, keys : str
         For the messages: ``the campaign``; what would do where there is no file; where the
         keys are listed.
+    text : str, optional
+        What the file is to hold; it is read where left out.
     hint : callable
         What to do about a file that is not TOML.
 
@@ -51,8 +54,7 @@ def read_toml(
         up to ten places, one a line.
     """
     try:
-        with path.open("rb") as lines:
-            table = tomllib.load(lines)
+        table = tomllib.loads(path.read_bytes().decode("utf-8") if text is None else text)
     except OSError as error:
         raise in_toml(
             path, f"{what} cannot be read", found=error.strerror or str(error), needed=needed

@@ -57,12 +57,13 @@ def archives_below(folder: Path) -> dict[str, Path]:
     -------
     archives : dict of str to pathlib.Path
         By what is shown of the path below ``folder``, in order; files and folders whose names
-        begin with a dot are left out, since a part of a file that is being written has one.
+        begin with a dot are left out, since a part of a file that is being written has one. A
+        folder that is closed to this user stands for its archives.
 
     Raises
     ------
     SettingsError
-        If there is no such folder, or it is that of one campaign.
+        If there is no such folder, it cannot be read, or it is that of one campaign.
     """
     if not folder.is_dir():
         raise SettingsError(
@@ -71,21 +72,39 @@ def archives_below(folder: Path) -> dict[str, Path]:
             hint="Run a campaign first, or name the folder of its products.",
         )
     found: dict[str, Path] = {}
-    with os.scandir(folder) as entries:
-        campaigns = [one for one in entries if not one.name.startswith(".")]
+    try:
+        with os.scandir(folder) as entries:
+            campaigns = [one for one in entries if not one.name.startswith(".")]
+    except OSError as error:
+        raise SettingsError(
+            f"the folder {shown_path(str(folder))} cannot be read",
+            found=error.strerror or str(error),
+            needed="a folder of processed campaigns",
+        ) from error
     for campaign in campaigns:
-        if campaign.is_file() and campaign.name.endswith(".nc"):
+        if campaign.name.endswith(".nc") and Path(campaign.path).is_file():
             raise SettingsError(
                 f"{shown_path(str(folder))} is the folder of one campaign",
                 found=f"the archive {shown_path(campaign.name)}",
                 needed="the folder above it, which holds the campaigns",
                 hint="To see one of them, use --campaign.",
             )
-        if campaign.is_dir():
-            with os.scandir(campaign) as entries:
-                found |= {
-                    shown_path(f"{campaign.name}/{one.name}"): Path(one.path)
-                    for one in entries
-                    if one.name.endswith(".nc") and not one.name.startswith(".")
-                }
+        found |= _archives_of(campaign)
     return dict(sorted(found.items()))
+
+
+def _archives_of(campaign: os.DirEntry[str]) -> dict[str, Path]:
+    """Archives of one folder; the folder itself where this user may not look into it."""
+    try:
+        if not campaign.is_dir():
+            return {}
+        with os.scandir(campaign) as entries:
+            return {
+                shown_path(f"{campaign.name}/{one.name}"): Path(one.path)
+                for one in entries
+                if one.name.endswith(".nc") and not one.name.startswith(".")
+            }
+    except PermissionError:
+        return {shown_path(campaign.name): Path(campaign.path)}
+    except OSError:
+        return {}  # went away since its name was read, or is a link to itself

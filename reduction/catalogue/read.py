@@ -84,6 +84,9 @@ def read_entry(path: Path, name: str) -> ArchiveEntry:
     # campaign and test of a broken archive are those of its path
     folder, _, stem = name.rpartition("/")
     known = {"archive": name, "campaign": folder, "test": stem.removesuffix(".nc")}
+    if path.is_dir():
+        fault = f"{name} is a folder that is no archive, or one that this user may not look into"
+        return ArchiveEntry("", dict(known), fault=fault)
     try:
         with open_archive(path) as archive:
             return _entry(archive, known)

@@ -10,7 +10,7 @@ from typing import cast
 import xarray as xr
 
 from reduction.archive.budget import budget_from_archive, quantities_with_budget
-from reduction.archive.budgetplaces import place_name
+from reduction.archive.budgetplaces import parse_place, place_name
 from reduction.archive.open import open_archive
 from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.lookupsource import name_of_quantity
@@ -19,7 +19,7 @@ from reduction.errors import SettingsError
 from reduction.uncertainty.budget import Budget
 from reduction.uncertainty.montecarlo import PARAMETERS
 from reduction.uncertainty.product import LINE_METHODS
-from reduction.units import UnitSystem, display_unit, parse_quantity
+from reduction.units import UnitSystem, display_unit
 
 __all__ = ["list_budgets", "show_budget"]
 
@@ -122,13 +122,7 @@ def _places(texts: Sequence[str]) -> dict[str, str]:
             raise SettingsError(
                 "--at is no place", found=repr(text), needed='such as "branch=ascending"'
             )
-        key = name.strip()
-        if key.endswith(("strain", "strain_bin")):
-            found[key] = str(parse_quantity(label, "strain"))
-        elif key in ("tension", "tension_grid"):
-            found[key] = str(parse_quantity(label, "force"))
-        else:
-            found[key] = label.strip()
+        found[name.strip()] = parse_place(name, label)
     return found
 
 

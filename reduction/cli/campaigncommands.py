@@ -102,12 +102,15 @@ def report(
         str, typer.Argument(help="processed/CAMPAIGN, or processed/ for all.", show_default=False)
     ],
     reports: Annotated[str, typer.Option(help="Where the report goes.")] = "reports",
+    pdf: Annotated[
+        bool, typer.Option("--pdf", help="Print the report to the client to PDF, by a browser.")
+    ] = False,
     allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Make the HTML report again, from the archives alone."""
+    """Make the reports again, from the archives alone."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.remote import local_sources, report_folder
         from reduction.cli.runs import report_again
@@ -116,7 +119,7 @@ def report(
             local_sources([processed_dir], allow_remote=allow_remote, output=output) as (here,),
             report_folder(reports, allow_remote=allow_remote, output=output) as pages,
         ):
-            report_again(Path(here), reports=pages, output=output)
+            report_again(Path(here), reports=pages, is_printed=pdf, output=output)
 
 
 def schema(

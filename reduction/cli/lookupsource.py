@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
-from reduction.archive.linecurves import CURVES
-from reduction.archive.linesource import (
-    Facts,
-    facts_of_specimens,
-    line_source_of_experiment,
-    line_source_of_test,
-    specimens_of,
-)
-from reduction.archive.open import open_archive
-from reduction.archive.products import archives_of_tests
+from reduction.archive.campaignlines import archives_of_lines, lines_of_archive, told_apart
 from reduction.errors import ArchiveError, SettingsError
 from reduction.lookup.product import LineSource
 from reduction.published.linesource import published_sources
 from reduction.vocabulary import SINGLE_QUANTITIES
 
-__all__ = ["lines_of", "lines_of_archive", "name_of_quantity", "one_of"]
+__all__ = ["lines_of", "name_of_quantity", "one_of"]
 
 _OF_CYCLES = (
     "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
@@ -68,9 +58,7 @@ def lines_of(source: str) -> list[LineSource]:
             )  # fmt: skip
         return lines
     if path.is_dir():
-        paths = archives_of_tests(path)
-        paths += [path / "surfaces.nc"] if (path / "surfaces.nc").is_file() else []
-        lines = _told_apart([(one.stem, lines_of_archive(one)) for one in paths])
+        lines = told_apart([(one.stem, lines_of_archive(one)) for one in archives_of_lines(path)])
         if lines:
             return lines
     if _is_path(source):
@@ -109,45 +97,6 @@ def name_of_quantity(text: str) -> str:
         for name in _OF_CYCLES
     } | _OF_CURVES
     return symbols.get(text.replace("_", ""), text)
-
-
-def lines_of_archive(path: Path) -> list[LineSource]:
-    """Every line of one archive that has something to look up.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Of a reduced test, or of experiments.
-
-    Returns
-    -------
-    lines : list of LineSource
-        None where there is no surface and no curve.
-    """
-    with open_archive(path) as archive:
-        if "experiment" in archive.sizes:
-            names = archive["experiment"].values.astype(str).tolist()
-            kinds = archive["experiment_kind"].values.astype(str).tolist()
-            known = _specimens(path, {one for name in names for one in specimens_of(archive, name)})
-            return [
-                line_source_of_experiment(archive, name, specimens=known)
-                for name, kind in zip(names, kinds, strict=True)
-                if kind == "box-behnken"
-            ]
-        if not any(name in archive for name in CURVES):
-            return []
-        names = archive["specimen"].values.astype(str).tolist()
-        return [line_source_of_test(archive, name) for name in names]
-
-
-def _told_apart(found: Sequence[tuple[str, list[LineSource]]]) -> list[LineSource]:
-    """Lines of a campaign; one whose specimen is in several tests is called TEST SPECIMEN."""
-    names = [line.name for _, lines in found for line in lines]
-    return [
-        replace(line, name=f"{test} {line.name}") if names.count(line.name) > 1 else line
-        for test, lines in found
-        for line in lines
-    ]
 
 
 def _is_path(source: str) -> bool:
@@ -220,14 +169,3 @@ def one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> Line
             hint=f'Such as `--line "{having[0].name}"`.',
         )
     return having[0] if having else named[0]
-
-
-def _specimens(path: Path, names: set[str]) -> dict[str, Facts]:
-    """What the archives of tests beside an archive of experiments state of its specimens."""
-    known: dict[str, Facts] = {}
-    for one in archives_of_tests(path.parent):
-        if names <= known.keys():
-            break
-        with open_archive(one) as archive:
-            known |= facts_of_specimens(archive)
-    return known

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
-from signal import SIGTERM, default_int_handler, signal
+from signal import SIG_DFL, Signals, default_int_handler, getsignal, signal
 from threading import current_thread, main_thread
 
 from reduction.address import shown_address
@@ -23,6 +23,9 @@ from reduction.remote.place import allowed, base_name, below
 from reduction.remote.scratch import renamed, scratch_folder
 
 __all__ = ["campaign_at", "local_sources", "product_folders", "report_folder"]
+
+# a machine that is shut down or a queue that ends a job; a terminal that is closed, where there are
+_REQUESTS = [one for one in Signals if one.name in ("SIGTERM", "SIGHUP")]
 
 
 @contextmanager
@@ -44,7 +47,7 @@ def campaign_at(address: str, *, allow_remote: bool, output: CommandOutput) -> I
         Copies of its files are gone when the block ends.
     """
     with ExitStack() as opened:
-        opened.enter_context(_in_order(allow_remote))
+        opened.enter_context(_in_order())
         with campaign_progress(output) as bar:
             campaign = opened.enter_context(
                 staged_campaign(
@@ -58,16 +61,20 @@ def campaign_at(address: str, *, allow_remote: bool, output: CommandOutput) -> I
 
 
 @contextmanager
-def _in_order(allow_remote: bool) -> Iterator[None]:
-    """Take a request to end as an interruption, so that copies are taken away first."""
-    if not allow_remote or current_thread() is not main_thread():
-        yield
-        return
-    before = signal(SIGTERM, default_int_handler)
+def _in_order() -> Iterator[None]:
+    """Take a request to end as an interruption: lock, workers and copies are put away first.
+
+    One that the caller ignores, as ``nohup`` does, stays ignored.
+    """
+    before = {}
+    if current_thread() is main_thread():
+        asked = [number for number in _REQUESTS if getsignal(number) == SIG_DFL]
+        before = {number: signal(number, default_int_handler) for number in asked}
     try:
         yield
     finally:
-        signal(SIGTERM, before)
+        for number, handler in before.items():
+            signal(number, handler)
 
 
 @contextmanager
@@ -177,7 +184,7 @@ def local_sources(
         If there is no archive, or it cannot be copied.
     """
     with ExitStack() as opened:
-        opened.enter_context(_in_order(allow_remote))
+        opened.enter_context(_in_order())
         opened.enter_context(renamed(output.names))
         found = []
         for source in sources:

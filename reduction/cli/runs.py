@@ -23,7 +23,8 @@ from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.progress import campaign_progress
 from reduction.cli.remote import product_folders
 from reduction.cli.workers import chosen_executor
-from reduction.errors import ArchiveError
+from reduction.errors import ArchiveError, SettingsError
+from reduction.report.clientreport import PAGE_NAME
 from reduction.report.page import write_report
 from reduction.strain.model import StrainModel
 from reduction.units import UnitSystem, display_unit
@@ -240,12 +241,16 @@ def run_campaign(
     }
     if result.report is not None:
         output.say(f"report:   {result.report}")
+        client = _client_report(result.report, output)
+        document["client_report"] = None if client is None else str(client)
     output.answer(document)
     _report_failures(output, result.tests, result.parts)
 
 
-def report_again(processed: Path, *, reports: Path, output: CommandOutput) -> None:
-    """Make the report of one campaign, or of all below a folder, from archives alone."""
+def report_again(
+    processed: Path, *, reports: Path, is_printed: bool = False, output: CommandOutput
+) -> None:
+    """Make the reports of one campaign, or of all below a folder, from archives alone."""
     folders = [processed] if any(processed.glob("*.nc")) else sorted(processed.glob("*/"))
     folders = [folder for folder in folders if any(folder.glob("*.nc"))]
     if not folders:
@@ -254,11 +259,40 @@ def report_again(processed: Path, *, reports: Path, output: CommandOutput) -> No
             needed="a folder processed/CAMPAIGN with *.nc in it",
             hint="`reduction run CAMPAIGN.toml` makes one.",
         )
-    written = []
+    written: dict[str, list[str]] = {"reports": [], "client_reports": [], "pdfs": []}
     for folder in folders:
         page = write_report(
             folder, reports / folder.resolve().name, units=cast("UnitSystem", output.units)
         )
         output.say(f"report: {page}")
-        written.append(str(page))
-    output.answer({"reports": written})
+        written["reports"].append(str(page))
+        client = _client_report(page, output)
+        if client is not None:
+            written["client_reports"].append(str(client))
+            if is_printed:
+                written["pdfs"].append(str(_printed(client, output)))
+    if is_printed and not written["client_reports"]:
+        raise SettingsError(
+            "there is no report to a client to print", found=f"no report.json in {processed}",
+            needed="[report] in campaign.toml",
+            hint="Add it and run the campaign again: what did not change is not reduced again.",
+        )  # fmt: skip
+    output.answer(written)
+
+
+def _client_report(page: Path, output: CommandOutput) -> Path | None:
+    """Say where the report to the client is, where there is one."""
+    client = page.with_name(PAGE_NAME)
+    if not client.exists():
+        return None
+    output.say(f"report to the client: {client}")
+    return client
+
+
+def _printed(client: Path, output: CommandOutput) -> Path:
+    from reduction.cli.printing import find_browser, print_page
+
+    pdf = client.with_suffix(".pdf")
+    print_page(client, pdf, browser=find_browser())
+    output.say(f"printed: {pdf}")
+    return pdf

@@ -2,7 +2,7 @@
 
 References
 ----------
-.. [1] Dassault Systemes, "Abaqus Keywords Reference Guide": *HYPERELASTIC, *UNIAXIAL TEST DATA.
+.. [1] Dassault Systemes, "Abaqus Keywords Reference Guide": HYPERELASTIC, UNIAXIAL TEST DATA.
 """
 
 from __future__ import annotations

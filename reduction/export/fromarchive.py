@@ -24,7 +24,7 @@ from reduction.export.spread import CurveSpread
 from reduction.record import Bools, Floats
 from reduction.uncertainty.combine import combined_standard_uncertainty
 
-__all__ = ["CurveName", "line_from_archive"]
+__all__ = ["CurveName", "line_from_archive", "line_from_open_archive"]
 
 CurveName = Literal["mean", "ascending", "descending"]
 _BRANCHES = ("ascending", "descending")
@@ -71,33 +71,69 @@ def line_from_archive(
     DataError
         If there is no curve, or it falls by more than noise.
     """
+    with open_archive(path) as archive:
+        return line_from_open_archive(archive, path.stem, curve=curve, specimen=specimen, **stated)
+
+
+def line_from_open_archive(
+    archive: xr.Dataset,
+    stem: str,
+    *,
+    curve: CurveName | None = None,
+    specimen: str | None = None,
+    **stated: Any,
+) -> ExportLine:
+    """One curve of an archive that is open, as `line_from_archive`.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        As `reduction.archive.open.open_archive` gives it.
+    stem : str
+        Of the name of its file.
+    curve : {"mean", "ascending", "descending"}, optional
+        As `line_from_archive`.
+    specimen : str, optional
+        As `line_from_archive`.
+    **stated
+        As `line_from_archive`.
+
+    Returns
+    -------
+    line : ExportLine
+        With what the archive says of it.
+
+    Raises
+    ------
+    SettingsError
+        If the specimen is not there or not said, or a hose is asked for a branch.
+    DataError
+        If there is no curve, or it falls by more than noise.
+    """
     given = {
         name: value
         for name, value in stated.items()
         if value is not None and not (isinstance(value, float) and math.isnan(value))
     }
-    with open_archive(path) as archive:
-        if "hose" in archive.dims:
-            if curve is not None:
-                raise SettingsError(
-                    "a predicted hose has one curve", found=curve, needed="no --curve"
-                )
-            fields = _of_hose(archive, specimen)
-        else:
-            fields = _of_test(archive, curve or "mean", specimen)
-        attributes = archive.attrs
-        what = attributes.get("id", path.stem)
-        sources = [f"archive {what}: {attributes.get('title', 'without a title')}"]
-        if attributes.get("source"):
-            sources.append(f"data: {attributes['source']}")
-        if attributes.get("raw_file_sha256"):
-            sources.append(
-                f"raw file {attributes.get('raw_file', '')}, sha256 {attributes['raw_file_sha256']}"
-            )
-        if attributes.get("references"):
-            sources.append(f"references: {attributes['references']}")
-        sources += [f"{name.replace('_', ' ')}: stated at the export" for name in given]
-        is_synthetic = attributes.get("synthetic", "no") == "yes"
+    if "hose" in archive.dims:
+        if curve is not None:
+            raise SettingsError("a predicted hose has one curve", found=curve, needed="no --curve")
+        fields = _of_hose(archive, specimen)
+    else:
+        fields = _of_test(archive, curve or "mean", specimen)
+    attributes = archive.attrs
+    what = attributes.get("id", stem)
+    sources = [f"archive {what}: {attributes.get('title', 'without a title')}"]
+    if attributes.get("source"):
+        sources.append(f"data: {attributes['source']}")
+    if attributes.get("raw_file_sha256"):
+        sources.append(
+            f"raw file {attributes.get('raw_file', '')}, sha256 {attributes['raw_file_sha256']}"
+        )
+    if attributes.get("references"):
+        sources.append(f"references: {attributes['references']}")
+    sources += [f"{name.replace('_', ' ')}: stated at the export" for name in given]
+    is_synthetic = attributes.get("synthetic", "no") == "yes"
     return ExportLine(**fields | given, sources=tuple(sources), is_synthetic=is_synthetic)
 
 

@@ -21,7 +21,7 @@ from reduction.ingest.preamble import check_units, keep_line
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import unchanged
 from reduction.ingest.textparts import TextFile, open_text
-from reduction.ingest.textrows import TextRows, line_starts, split_line
+from reduction.ingest.textrows import TextRows, count_lines, line_starts, split_line
 
 __all__ = ["read_delimited"]
 
@@ -105,6 +105,7 @@ def _data_rows(path: Path, file: TextFile, head: _Head, layout: Layout) -> Itera
     """Data rows of each part, once the head has been read."""
     for part in file:
         text, row = _tidy(part.text, layout), part.first_row
+        below = row + (part.n_lines if text is part.text else count_lines(text))
         if not head.first_row:
             begin = _read_head(head, text, row, layout)
             if begin is None:
@@ -112,8 +113,8 @@ def _data_rows(path: Path, file: TextFile, head: _Head, layout: Layout) -> Itera
             text, row = text[begin:], head.first_row
             head.n_fields = _count_fields(path, head, layout)
             head.wanted = _find_columns(path, head, layout)
-        n_lines = part.first_row + part.n_lines - row
-        rows = TextRows(path, layout, text, row, is_open=part.is_open, n_lines=n_lines)
+        is_open = part.is_open and below == part.first_row + part.n_lines
+        rows = TextRows(path, layout, text, row, is_open=is_open, n_lines=below - row)
         yield _without_comments(rows, head.metadata)
 
 
@@ -122,11 +123,11 @@ def _fields(head: _Head, rows: TextRows) -> Fields:
 
 
 def _tidy(text: memoryview, layout: Layout) -> memoryview:
-    """One blank between fields where blanks part them."""
+    """One blank between fields where blanks part them, and no lines of blanks at the end."""
     if layout.delimiter != " ":
         return text
     single = re.sub(rb"[ \t]+", b" ", text)
-    return memoryview(re.sub(rb"(?m)^ | (?=\r?$)", b"", single))
+    return memoryview(re.sub(rb"(?m)^ | (?=\r?$)", b"", single).rstrip(b"\r\n"))
 
 
 def _read_head(head: _Head, text: memoryview, first_row: int, layout: Layout) -> int | None:

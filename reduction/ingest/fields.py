@@ -7,6 +7,7 @@ as text, column by column, so that the first offending field can be named by its
 from __future__ import annotations
 
 import re
+from codecs import BOM_UTF8
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -137,8 +138,10 @@ def _parse(
     layout = rows.layout
     names = [str(place) for place in range(n_fields)]
     types = {str(place): pa.string() if place in as_text else pa.float64() for place in set(places)}
+    # arrow drops a byte-order mark, which is none within a file; a blank line before it is no row
+    is_marked = bytes(rows.text[: len(BOM_UTF8)]) == BOM_UTF8
     return pa_csv.read_csv(
-        pa.py_buffer(rows.text),
+        pa.py_buffer(b"\n" + bytes(rows.text) if is_marked else rows.text),
         read_options=pa_csv.ReadOptions(column_names=names),
         parse_options=pa_csv.ParseOptions(
             delimiter=layout.delimiter, quote_char=layout.quote or False

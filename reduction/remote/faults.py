@@ -83,7 +83,7 @@ def said_of(
     fault : callable
         Makes the error.
     doing : str
-        What was done with the file: ``read``, ``written`` or ``removed``.
+        What was done with the file: ``read``, ``copied``, ``written`` or ``removed``.
     begun : str
         How much of it was copied when the error came; empty before a copy begins.
 

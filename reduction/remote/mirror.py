@@ -24,6 +24,8 @@ from reduction.remote.transfer import (
 
 __all__ = ["copied", "mirrored", "put_at_end"]
 
+_BESIDE = ("status.csv", "report.json")
+
 
 @contextmanager
 def mirrored(address: str, folder: Path) -> Iterator[None]:
@@ -108,7 +110,7 @@ def copied(address: str, folder: Path, *, beside: bool = False) -> Path:
     Returns
     -------
     path : pathlib.Path
-        The archive, or a folder of the same name with all archives and ``status.csv``.
+        The archive, or a folder of the same name with all archives and what is beside them.
 
     Raises
     ------
@@ -140,7 +142,7 @@ def copied(address: str, folder: Path, *, beside: bool = False) -> Path:
 
 
 def _products(address: str) -> dict[str, State]:
-    """What a run and a reader look at: archives, ``status.csv`` and tables."""
+    """What a run and a reader look at: archives, what is beside them, and tables."""
     return {
         name: state
         for name, state in listing(address).items()
@@ -152,7 +154,7 @@ def _is_product(path: PurePosixPath) -> bool:
     if path.name.startswith("."):
         return False
     folder = str(path.parent)
-    return (folder == "." and (path.suffix == ".nc" or path.name == "status.csv")) or (
+    return (folder == "." and (path.suffix == ".nc" or path.name in _BESIDE)) or (
         folder == "tables"
     )
 

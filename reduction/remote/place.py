@@ -130,8 +130,9 @@ def folder_of(address: str) -> str:
 
 
 def base_name(address: str) -> str:
-    """Name of the file or folder that an address ends with."""
-    return shown_address(address).rstrip("/").rpartition("/")[2]
+    """Name of the file or folder that an address ends with; empty where that is no name."""
+    name = shown_address(address).rstrip("/").rpartition("/")[2]
+    return "" if name in (".", "..") else name
 
 
 def below(folder: str, name: str) -> str:

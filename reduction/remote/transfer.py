@@ -12,7 +12,7 @@ from uuid import uuid4
 
 from reduction.address import shown_address
 from reduction.errors import LogError, SettingsError
-from reduction.remote.faults import Fault, attempt, product_fault
+from reduction.remote.faults import Fault, attempt, product_fault, said_of
 from reduction.remote.place import Place, connect
 
 __all__ = [
@@ -98,7 +98,7 @@ def fetch(
     """
     before = before or state_of(address, fault=fault)
     place = connect(address)
-    target.parent.mkdir(parents=True, exist_ok=True)
+    _make_room(target, address, fault)
     try:
         attempt(
             lambda: place.system.get_file(place.path, str(target)), address, fault, doing="read",
@@ -217,6 +217,22 @@ def refuse_read_only(address: str) -> None:
             f"nothing can be written to {protocol}://", found=shown_address(address),
             needed="a folder on this machine, or a store such as s3:// or gs://",
         )  # fmt: skip
+
+
+def _make_room(target: Path, address: str, fault: Fault) -> None:
+    """Begin the copy: a name that this machine refuses is no transfer that broke off."""
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.open("wb").close()
+        return
+    except (FileExistsError, NotADirectoryError, IsADirectoryError) as error:
+        told = fault(
+            shown_address(address), "its copy would lie where another file is",
+            found=error.strerror, needed="files of which none is the folder of another",
+        )  # fmt: skip
+    except OSError as error:
+        told = said_of(error, address, fault, doing="copied")
+    raise told  # out here it has no cause and no context
 
 
 def _found(place: Place) -> dict[str, dict[str, Any]]:

@@ -148,8 +148,14 @@ def band(
 
 
 def axis(label: str, **more: Any) -> dict[str, Any]:
-    """Return an axis with its title; the unit is part of the label."""
-    return {"title": {"text": label}, "hoverformat": ".4~g", **more}
+    """Return an axis with its title; the unit is part of the label.
+
+    A number on it is written out: the thousands of plotly are a k that reads like a unit.
+    """
+    return {
+        "title": {"text": label}, "hoverformat": ".4~g", "exponentformat": "none",
+        "separatethousands": True, **more,
+    }  # fmt: skip
 
 
 def named_axis(label: str, names: Sequence[str]) -> dict[str, Any]:

@@ -6,10 +6,12 @@ import csv
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from reduction.archive.laboratory import read_details
 from reduction.archive.open import open_archive
 from reduction.archive.products import archives_of_tests
 from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
+from reduction.report.clientreport import PAGE_NAME, ClientContent, render_client_report
 from reduction.report.designtables import design_tables
 from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.campaign import (
@@ -58,7 +60,8 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     Returns
     -------
     page : pathlib.Path
-        ``out/index.html``; it appears whole or not at all.
+        ``out/index.html``; it appears whole or not at all. Beside it stands the report to the
+        client, where the folder holds what the laboratory states for it.
 
     Raises
     ------
@@ -97,6 +100,16 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     content = _page_of(tests, whole, ordered, statuses, unreadable, units, processed.name)
     page = out / "index.html"
     write_whole(page, render_page(content))
+    details = read_details(processed)
+    beside = out / PAGE_NAME
+    if details is None:
+        beside.unlink(missing_ok=True)  # of an earlier run: the campaign has no such report now
+    else:
+        of_client = ClientContent(
+            details, tests, whole, ordered, statuses, content.faults, content.title,
+            content.campaign, units,
+        )  # fmt: skip
+        write_whole(beside, render_client_report(of_client))
     return page
 
 

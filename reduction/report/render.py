@@ -1,8 +1,9 @@
-"""What stands on a page, and the page made of it: one template, one style, one script for all.
+"""What stands on a page, and the page made of it: one template, one style, one program for all.
 
-Nothing is fetched: plotly stands in the page once, figures are JSON beside their captions
-and are drawn when a reader comes to them.  Names out of files are escaped wherever they
-show, in the text by the template and in the figures by `reduction.report.figure`.
+Nothing is fetched: plotly stands in the page once as text and is read when the page is there,
+figures are JSON beside their captions and are drawn when a reader comes to them.  Names out of
+files are escaped wherever they show, in the text by the template and in the figures by
+`reduction.report.figure`.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from reduction.report.summary import Finding, Tile
 from reduction.units import UnitSystem
 
 __all__ = ["Page", "about_page", "render_page"]
+
+_SCRIPTS = ("figures", "cycles", "downloads", "contents")
 
 
 @dataclass(frozen=True)
@@ -112,6 +115,6 @@ def render_page(page: Page) -> str:
     return template.render(
         **{name: getattr(page, name) for name in Page.__dataclass_fields__},
         style=(room / "static" / "page.css").read_text("utf-8"),
-        script=(room / "static" / "page.js").read_text("utf-8"),
+        script="\n".join((room / "static" / f"{name}.js").read_text("utf-8") for name in _SCRIPTS),
         plotly=get_plotlyjs(),
     )

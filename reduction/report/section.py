@@ -12,6 +12,7 @@ from reduction.report.answers import (
     budget_sentences,
     budget_table,
 )
+from reduction.report.cyclelinks import CycleLinks, cycle_links
 from reduction.report.figure import Figure
 from reduction.report.figures.budgets import draw_budgets
 from reduction.report.figures.elastomers import draw_mooney
@@ -20,6 +21,7 @@ from reduction.report.figures.loops import draw_loops
 from reduction.report.figures.moduli import draw_cycle_curves, draw_moduli
 from reduction.report.figures.pull import draw_pull
 from reduction.report.figures.record import draw_record, draw_tension_position
+from reduction.report.figures.splices import draw_splices
 from reduction.report.figures.stepwise import draw_steps
 from reduction.report.figures.trends import draw_trends
 from reduction.report.holdtables import hold_table, prony_table, refusals
@@ -33,7 +35,7 @@ from reduction.report.specimentables import (
     slope_sentences,
 )
 from reduction.report.stepwisetables import interval_table, step_table
-from reduction.report.summary import grouped_notes
+from reduction.report.summary import brief, grouped_notes
 from reduction.report.testtables import (
     elastomer_table,
     flag_table,
@@ -67,7 +69,11 @@ class Part:
 
 @dataclass(frozen=True)
 class Section:
-    """One test, or what ``noun`` says: its parts, its notes, and where its numbers come from."""
+    """One test, or what ``noun`` says: its parts, its notes, and where its numbers come from.
+
+    ``subtitle`` is what is seen of a section while it is folded; ``cycles`` are those that a
+    reader can choose in its figures.
+    """
 
     key: str
     title: str
@@ -77,6 +83,7 @@ class Section:
     provenance: tuple[tuple[str, str], ...]
     documents: tuple[tuple[str, str], ...] = field(default=())
     noun: str = "test"
+    cycles: CycleLinks | None = None
 
 
 def make_part(
@@ -118,7 +125,7 @@ def make_section(view: TestView) -> Section:
             refusals=refusals(view),
         ),
         make_part(
-            "Strain and splices" if view.is_rubber else "Strain", (),
+            "Strain and splices" if view.is_rubber else "Strain", draw_splices(view),
             [coefficient_table(view), mark_table(view)], slope_sentences(view),
         ),
         make_part("First loading", draw_mooney(view), [stress_table(view), elastomer_table(view)]),
@@ -128,11 +135,16 @@ def make_section(view: TestView) -> Section:
     return Section(
         key=view.key,
         title=view.id,
-        subtitle=f"{view.kind}; specimens: {', '.join(view.specimens)}",
+        subtitle="; ".join(
+            part
+            for part in (view.kind, f"specimens: {', '.join(view.specimens)}", brief(view))
+            if part
+        ),
         parts=tuple(part for part in parts if part.figures or part.tables or part.sentences),
         notes=tuple(grouped_notes(view)),
         provenance=provenance,
         documents=documents,
+        cycles=cycle_links(view),
     )
 
 

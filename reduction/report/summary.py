@@ -12,13 +12,13 @@ import numpy as np
 
 from reduction.notes import SEVERITIES, severity_of
 from reduction.notes import Severity as NoteSeverity
-from reduction.report.htmltable import Cell, Table, count, make_table, span, words
+from reduction.report.htmltable import NOT_GIVEN, Cell, Table, count, make_table, span, words
 from reduction.report.style import shorten, shown
 from reduction.report.view import Status, TestView, all_specimens, any_synthetic
 
 __all__ = [
-    "Finding", "Severity", "Tile", "all_notes", "find_faults", "grouped_notes", "summary_sentence",
-    "test_table", "tiles",
+    "Finding", "Severity", "Tile", "all_notes", "brief", "find_faults", "grouped_notes",
+    "summary_sentence", "test_table", "tiles",
 ]  # fmt: skip
 
 Severity = Literal["failure", "warning", "note", "refusal"]
@@ -107,6 +107,24 @@ def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
     said = list(zip(kinds, all_notes(view), strict=True))
     groups = [(_HEADINGS[kind], [text for own, text in said if own == kind]) for kind in SEVERITIES]
     return [(heading, notes) for heading, notes in groups if notes]
+
+
+def brief(view: TestView) -> str:
+    """Return what a line says of a test: its cycles, its strain, what is doubtful in it."""
+    n_cycles = view.n_cycles
+    rows = [f"{n_cycles:,} {'cycle' if n_cycles == 1 else 'cycles'}"] if n_cycles else []
+    reached = _reached(view).text
+    if reached != NOT_GIVEN:
+        rows.append(f"strain {reached} %")
+    notes = dict(grouped_notes(view))
+    doubts = len(notes.pop(_HEADINGS["doubt"], ()))
+    others = sum(len(own) for own in notes.values())
+    rows += [
+        f"{number} {noun if number == 1 else f'{noun}s'}"
+        for number, noun in ((doubts, "doubt"), (others, "note"))
+        if number
+    ]
+    return ", ".join(rows)
 
 
 def summary_sentence(tests: Sequence[TestView]) -> str:
@@ -225,27 +243,27 @@ def _tension(view: TestView) -> Cell:
     return span(*ends, shown("tension", view.units), places=0)
 
 
-def _test_row(view: TestView, *, is_by_load: bool) -> list[Cell]:
+def _reached(view: TestView) -> Cell:
+    """Return the strain of the cycles, mean least to mean greatest; without one, of the record."""
     strain = view.array("strain")
-    reached = words("")
     mean, amplitude = view.array("mean_strain"), view.array("strain_amplitude")
     percent = shown("strain", view.units)
     if mean is not None and amplitude is not None and np.isfinite(mean).any():
-        reached = span(
-            float(np.nanmean(mean - amplitude)),
-            float(np.nanmean(mean + amplitude)),
-            percent,
-            places=1,
-        )
-    elif strain is not None and np.isfinite(strain).any():
-        reached = span(float(np.nanmin(strain)), float(np.nanmax(strain)), percent, places=1)
+        ends = float(np.nanmean(mean - amplitude)), float(np.nanmean(mean + amplitude))
+        return span(*ends, percent, places=1)
+    if strain is not None and np.isfinite(strain).any():
+        return span(float(np.nanmin(strain)), float(np.nanmax(strain)), percent, places=1)
+    return words("")
+
+
+def _test_row(view: TestView, *, is_by_load: bool) -> list[Cell]:
     status = "archived" if view.status is None else _words(view.status.status)
     return [
         words(view.id),
         words(view.kind),
         words(", ".join(view.specimens)),
         _tension(view) if is_by_load else words(_target(view)),
-        reached,
+        _reached(view),
         count(float(view.n_cycles)),
         count(view.scalar("n_rows_kept")),
         words(status),

@@ -74,7 +74,7 @@ def over_intervals(
     series : ndarray, shape (n_samples,)
         In memory or on disk. [any]
     first : ndarray of int, shape (n_intervals,)
-        First sample of each, in order; intervals may overlap. [1]
+        First sample of each; intervals may overlap, in any order. [1]
     stop : ndarray of int, shape (n_intervals,)
         Sample after the last, greater than ``first``. [1]
 
@@ -94,6 +94,10 @@ def over_intervals(
     array([3., 7.])
     """
     results = np.empty(first.size, dtype=series.dtype)
+    if (np.diff(first) < 0).any():
+        order = np.argsort(first, kind="stable")
+        results[order] = over_intervals(operation, series, first[order], stop[order])
+        return results
     reached = np.maximum.accumulate(stop)
     at = 0
     while at < first.size:

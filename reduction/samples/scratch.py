@@ -43,10 +43,10 @@ class _ScratchMap(mmap.mmap):
 
 def scratch_folder() -> Path:
     """Return where scratch files lie: TMPDIR, else /var/tmp, which is on disk where /tmp is not."""
+    if stated := os.environ.get("TMPDIR"):
+        return Path(stated)  # tempfile would pass over one that is full or not there, for /tmp
     usual = Path("/var/tmp")  # noqa: S108 - files there have no name
-    if "TMPDIR" in os.environ or not os.access(usual, os.W_OK):
-        return Path(tempfile.gettempdir())
-    return usual
+    return usual if os.access(usual, os.W_OK) else Path(tempfile.gettempdir())
 
 
 def is_on_disk(array: NDArray[Any]) -> bool:
@@ -97,7 +97,7 @@ def empty_like(
     Raises
     ------
     DataError
-        If the disk is full.
+        If the disk is full, or a limit on address space is reached.
 
     Examples
     --------
@@ -175,10 +175,17 @@ class ColumnWriter:
             while left:  # a disk that fills takes what it can
                 left = left[self._file.write(left) :]
         except OSError as error:
-            raise _no_space(self._folder, part.nbytes, error) from error
+            n_bytes = self.size * self._dtype.itemsize
+            raise _no_space(self._folder, n_bytes, error) from error
 
     def finish(self) -> NDArray[Any]:
-        """Return the column, shape (size,); nothing may be added any more."""
+        """Return the column, shape (size,); nothing may be added any more.
+
+        Raises
+        ------
+        DataError
+            If a limit on address space is reached.
+        """
         if self._file is not None and self._folder is not None:
             with self._file as file:
                 return _mapped(file, self.size * self._dtype.itemsize, self._folder, self._dtype)
@@ -225,7 +232,16 @@ def _reserve(file: IO[bytes], n_bytes: int, folder: Path) -> None:
 def _mapped(file: IO[bytes], n_bytes: int, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
     if not n_bytes:
         return np.empty(0, dtype=dtype)
-    found = _ScratchMap(file.fileno(), n_bytes)
+    try:
+        found = _ScratchMap(file.fileno(), n_bytes)
+    except OSError as error:
+        raise DataError(
+            "a scratch file of a long log cannot be mapped",
+            found=f"{n_bytes / 1e6:.0f} MB: {error.strerror}",
+            needed="address space for all scratch files, about 60 bytes a row and specimen",
+            hint="Scratch files take no memory, but a limit on address space or on open files "
+            "counts them: see ulimit -v and ulimit -n.",
+        ) from error
     found.folder = folder
     return np.ndarray(n_bytes // dtype.itemsize, dtype=dtype, buffer=found)
 

@@ -7,7 +7,7 @@ by definition for the pound-force, the inch and the foot.
 from __future__ import annotations
 
 from reduction.units.display import UnitSystem, combined_unit, display_unit
-from reduction.units.parse import parse_quantity
+from reduction.units.parse import parse_in_unit, parse_quantity
 from reduction.units.scale import DIMENSIONS, Dimension, scale_of_unit, scale_to_si
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "UnitSystem",
     "combined_unit",
     "display_unit",
+    "parse_in_unit",
     "parse_quantity",
     "scale_of_unit",
     "scale_to_si",

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 from reduction.errors import SettingsError
-from reduction.units.scale import DIMENSIONS, Dimension, scale_to_si
+from reduction.units.scale import DIMENSIONS, Dimension, scale_of_unit, scale_to_si
 
-__all__ = ["parse_quantity"]
+__all__ = ["parse_in_unit", "parse_quantity"]
 
 _QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
 
@@ -76,3 +76,43 @@ def parse_quantity(
         )
     factor, offset = scale_to_si(unit, dimension)
     return factor * number + offset
+
+
+def parse_in_unit(text: str, unit: str) -> float:
+    """Value in SI of a text with a unit, for a quantity of which only the SI unit is known.
+
+    Parameters
+    ----------
+    text : str
+        A number and a unit; a bare number where the quantity is one.
+    unit : str
+        As in `reduction.vocabulary`.
+
+    Returns
+    -------
+    value : float
+        [unit]
+
+    Raises
+    ------
+    SettingsError
+        If it is no number with a unit, or the unit is one of something else.
+
+    Examples
+    --------
+    >>> parse_in_unit("200 psi", "Pa")
+    1378951.45863
+    >>> parse_in_unit("2.5 kN", "J m-1")
+    2500.0
+    """
+    match = _QUANTITY.match(text)
+    if match is None:
+        raise SettingsError(
+            "a value is not a number with a unit", found=repr(text), needed=f"a number in {unit}"
+        )
+    si_unit, factor, offset = scale_of_unit(match[2])
+    if scale_of_unit(unit)[0] != si_unit:
+        raise SettingsError(
+            "a value has the unit of something else", found=repr(text), needed=f"such as {unit}"
+        )
+    return factor * float(match[1]) + offset

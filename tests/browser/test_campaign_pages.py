@@ -8,7 +8,6 @@ CAMPAIGNS = ("tmt-synthetic", "nylon-synthetic", "hose-synthetic", "buoy-technol
 @pytest.mark.parametrize("name", CAMPAIGNS)
 def test_a_page_opens_without_an_error_or_a_request(name, campaigns, visit):
     shown = visit(campaigns(name).reports / "index.html")
-    shown.page.get_by_role("button", name="Draw all figures").click()
-    shown.page.wait_for_timeout(500)
+    shown.page.wait_for_function("window.Plotly")
     assert shown.errors == []
     assert shown.beyond == []

@@ -178,6 +178,34 @@ def test_an_interrupt_ends_the_workers_and_gives_back_the_lock(campaign, tmp_pat
     assert products(tmp_path)  # and no lock
 
 
+@pytest.mark.parametrize(("jobs", "request_"), [(1, "SIGTERM"), (1, "SIGHUP"), (2, "SIGTERM")])
+def test_a_request_to_end_is_an_interrupt(jobs, request_, campaign, tmp_path):
+    """A queue that ends a job may start the next on another machine, which cannot see it is gone."""
+    process = start(campaign, tmp_path, "--jobs", str(jobs))
+    wait_for(is_at_work(tmp_path, made=1))
+    children = psutil.Process(process.pid).children(recursive=True)
+    process.send_signal(getattr(signal, request_))
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == "interrupted; products that were finished are kept"
+    assert psutil.wait_procs(children, timeout=10)[1] == []
+    assert products(tmp_path)  # and no lock
+
+
+def test_a_request_to_end_that_is_ignored_stays_so(campaign, serial, tmp_path):
+    """As under nohup."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        process = start(campaign, tmp_path)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    wait_for(is_at_work(tmp_path, made=1))
+    process.send_signal(signal.SIGHUP)
+    process.communicate(timeout=60)
+    assert process.returncode == 3
+    assert products(tmp_path) == serial
+
+
 def test_a_second_run_on_the_same_products_is_refused(campaign, serial, tmp_path):
     first = start(campaign, tmp_path)
     wait_for((tmp_path / "processed" / "many" / "run.lock").exists)

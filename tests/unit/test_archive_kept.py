@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from long_records import AFTER, BEFORE, PER_CYCLE, cycles_of, long_test
@@ -215,3 +216,33 @@ def test_nothing_as_long_as_the_record_is_made_for_an_archive_of_a_part():
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < test.record.time.nbytes / 4
+
+
+TAKE = """
+import sys
+from pathlib import Path
+import numpy as np
+from reduction.archive.kept import KeptSamples
+from reduction.samples.scratch import ColumnWriter
+
+def memory(key):
+    with open("/proc/self/status") as lines:
+        return next(int(line.split()[1]) / 1024 for line in lines if line.startswith(key))
+
+writer = ColumnWriter(Path(sys.argv[1]))
+for _ in range(16):
+    writer.append(np.zeros(1 << 20))
+series = writer.finish()
+kept = KeptSamples(np.arange(0, series.size, 500), "", "")
+before = memory("VmHWM")
+assert kept.of(series).size == kept.index.size
+print(memory("VmHWM") - before)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no /proc to read the peak from")
+def test_a_long_thinned_stretch_is_taken_off_the_disk_piece_by_piece(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-c", TAKE, tmp_path], capture_output=True, text=True, check=True
+    )
+    assert float(done.stdout) < 40  # MB, of 128 that its samples lie in

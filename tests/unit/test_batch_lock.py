@@ -95,7 +95,9 @@ def test_a_second_run_is_told_who_holds_the_folder(tmp_path):
 
 def test_the_lock_of_a_process_that_is_no_more_is_taken_over_and_its_parts_removed(tmp_path):
     process = started(DIES, tmp_path)
-    (pid,) = process.stdout.read().split()  # it is a zombie now, until it is waited for
+    (pid,) = process.stdout.read().split()
+    # its output ends before it does; it is a zombie then, until it is waited for
+    os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
     said = []
     with run_lock(tmp_path, remark=said.append):
         assert [path.name for path in tmp_path.iterdir()] == [LOCK_NAME]
@@ -205,3 +207,29 @@ def test_work_goes_on_under_its_own_lock_alone(tmp_path):
         with pytest.raises(ArchiveError, match="found another text"):
             lock.confirm()
         lock.path.unlink()
+
+
+@pytest.mark.parametrize("step", ["fsync", "fdopen"])
+def test_a_lock_that_could_not_be_written_holds_nothing(step, tmp_path, monkeypatch):
+    def refuse(*arguments, **options):
+        raise OSError(28, "No space left on device")
+
+    folder = tmp_path / "processed" / "a"
+    with monkeypatch.context() as full:
+        full.setattr(module.os, step, refuse)
+        with (
+            pytest.raises(ArchiveError, match=r"cannot be written; found No space left on device"),
+            run_lock(folder, remark=pytest.fail),
+        ):
+            pass
+    assert list(tmp_path.iterdir()) == []
+    with run_lock(folder, remark=pytest.fail) as lock:
+        lock.confirm()
+
+
+def test_a_folder_that_no_disk_can_have_is_told(tmp_path):
+    with (
+        pytest.raises(ArchiveError, match=r"cannot be written; found File name too long"),
+        run_lock(tmp_path / ("n" * 300), remark=pytest.fail),
+    ):
+        pass

@@ -180,3 +180,13 @@ def test_nothing_is_written_where_the_lock_went_while_a_test_was_reduced(
     )  # fmt: skip
     assert "is not the lock of this run any more" in rows[0].message
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_log_with_a_name_that_no_disk_can_have_is_one_failed_test(campaign):
+    name = "n" * 300
+    plan = campaign.tests["T04"]
+    files = tuple((name, layout) for _, layout in plan.files)
+    tests = campaign.tests | {"T04": replace(plan, files=files)}
+    found = {one.plan.id: one for one in survey_campaign(replace(campaign, tests=tests)).surveys}
+    assert "the file cannot be read; found File name too long" in str(found["T04"].error)
+    assert found["T01"].error is None

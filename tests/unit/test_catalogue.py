@@ -14,6 +14,7 @@ import xarray as xr
 from reduction.archive.open import open_archive
 from reduction.archive.schema import SCHEMA, schema_of
 from reduction.archive.version import SCHEMA_VERSION
+from reduction.catalogue import files
 from reduction.catalogue.changes import changes_since
 from reduction.catalogue.columns import CONDITIONS, LEFT_OUT
 from reduction.catalogue.condition import condition_of
@@ -554,3 +555,44 @@ def test_of_many_cycles_those_that_are_not_kept_are_not_read(tmp_path):
     (block,) = entry.blocks
     last = block.value[(block.specimen == 1) & (block.place["cycle"] == n_cycles)]
     assert last.tolist() == [2 * n_cycles - 1, 2 * n_cycles, 2 * n_cycles + 1]
+
+
+def test_a_folder_that_is_closed_is_named_and_hides_no_other(folder, monkeypatch):
+    whole = files.os.scandir
+
+    def closed(path):
+        if os.fspath(path).endswith("two"):
+            raise PermissionError(13, "Permission denied", os.fspath(path))
+        return whole(path)
+
+    monkeypatch.setattr(files.os, "scandir", closed)
+    index, _ = brought_up_to_date(folder)
+    assert {row["archive"].partition("/")[0] for row in asked(index)} == {"one"}
+    assert list(index.unreadable()) == ["two"]
+    assert "one that this user may not look into" in index.unreadable()["two"]
+    monkeypatch.undo()
+    index, _ = brought_up_to_date(folder)
+    assert not index.unreadable()
+    assert {row["archive"].partition("/")[0] for row in asked(index)} == {"one", "two"}
+
+
+def test_a_folder_of_campaigns_that_is_closed_is_refused(folder, monkeypatch):
+    def closed(path):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(files.os, "scandir", closed)
+    with pytest.raises(SettingsError, match="processed cannot be read; found Permission denied"):
+        archives_below(folder)
+
+
+def test_a_link_to_itself_is_no_campaign(folder):
+    before = archives_below(folder)
+    (folder / "round").symlink_to("round")
+    (folder / "round.nc").symlink_to("round.nc")
+    assert archives_below(folder) == before
+
+
+def test_a_folder_with_the_name_of_an_archive_is_called_a_folder(folder):
+    (folder / "one" / "odd.nc").mkdir()
+    index, _ = brought_up_to_date(folder)
+    assert "one/odd.nc is a folder that is no archive" in index.unreadable()["one/odd.nc"]

@@ -75,6 +75,29 @@ def test_rows_are_counted_from_the_first_part_in_which_they_are_not_consecutive(
 
 
 @pytest.mark.parametrize("n_bytes", LENGTHS)
+@pytest.mark.parametrize("last", ["", "\n  ", "\r\n \t\r\n", "\n#\n "])
+def test_lines_of_blanks_are_no_rows_where_blanks_part_the_fields(tmp_path, n_bytes, last):
+    content = "t F\n0 1\n  \n \n1  2\n\t\n 2 3" + last
+    log = read(tmp_path, content, n_bytes=n_bytes, delimiter=" ", comment="#")
+    np.testing.assert_array_equal(log.columns["tension.1"], [1, 2, 3])
+    assert log.row.tolist() == [2, 5, 7]
+
+
+def test_a_row_that_is_cut_off_is_told_as_such_only_where_it_is_the_last_line(tmp_path):
+    with pytest.raises(LogError, match="a row has 1 fields") as found:
+        read(tmp_path, "t F\n0 1\n1\n  ", delimiter=" ")
+    assert "cut off" not in str(found.value)
+
+
+@pytest.mark.parametrize("n_bytes", LENGTHS)
+def test_a_byte_order_mark_within_a_file_is_part_of_its_field_wherever_parts_begin(
+    tmp_path, n_bytes
+):
+    with pytest.raises(LogError, match=r":4 \[t\]: a value is not a number; found .*feff2"):
+        read(tmp_path, "t,F\n0,1\n1,2\n\ufeff2,3\n3,4\n", n_bytes=n_bytes)
+
+
+@pytest.mark.parametrize("n_bytes", LENGTHS)
 def test_an_odd_field_is_told_with_the_row_of_the_file(tmp_path, n_bytes):
     rows = [f"{number},{number}" for number in range(300)]
     rows[250] = "250,ovrflw"

@@ -47,3 +47,13 @@ def test_nothing_moves_and_all_is_one_standstill():
 def test_fewer_blocks_than_a_window_hold_no_standstill():
     first, _ = still_blocks(np.zeros(2), np.zeros(2), window=3, tolerance=0.3)
     assert first.size == 0
+
+
+def test_a_long_standstill_soon_after_a_short_one_leaves_both():
+    """Looked at as long before it as it lasted, the long one goes back beyond the short one."""
+    time = np.arange(0, 600, 0.1)
+    position = np.interp(time, [0, 50, 60, 90, 300, 600], [0, 5, 5, 8, 8, 30])
+    least, greatest = block_extremes(position, 10)
+    first, last = still_blocks(least, greatest, window=3, tolerance=0.01)
+    np.testing.assert_array_equal(first, [50, 90])
+    np.testing.assert_array_equal(last, [59, 299])

@@ -293,3 +293,26 @@ def test_a_folder_that_may_not_be_looked_at(bucket, monkeypatch):
     monkeypatch.setattr(bucket, "find", closed)
     with pytest.raises(ArchiveError, match="^s3://bucket/p: there is no permission"):
         listing("s3://bucket/p")
+
+
+def test_a_name_that_this_machine_refuses_is_told_as_such(site, tmp_path):
+    name = "n" * 300
+    site.files[name] = DATA
+    with pytest.raises(LogError, match=r"it cannot be copied; found OSError: .*name too long"):
+        fetch(site.address(name), tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_is_the_folder_of_another_has_no_copy(bucket, tmp_path):
+    bucket.objects["bucket/raw/T.csv/part.csv"] = DATA
+    fetch("s3://bucket/raw/T.csv", tmp_path / "T.csv")
+    fault_of(
+        "s3://bucket/raw/T.csv/part.csv", tmp_path / "T.csv" / "part.csv",
+        r"part.csv: its copy would lie where another file is; found File exists; needed files of",
+    )  # fmt: skip
+    assert (tmp_path / "T.csv").read_bytes() == DATA
+
+
+@pytest.mark.parametrize("address", ["https://host/raw/..", "https://host/raw/./", "https://host"])
+def test_what_is_no_name_of_a_file_is_no_name_of_a_copy(address):
+    assert base_name(address) in ("", "host")

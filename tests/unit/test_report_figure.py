@@ -69,3 +69,10 @@ def test_every_kind_of_quantity_is_shown_with_a_unit_in_both_systems():
     assert [shown(kind, "si").unit for kind in kinds] == [
         "s", "m", "mm", "N", "%", "MPa", "J/m", "mm²",
     ]  # fmt: skip
+
+
+def test_numbers_on_an_axis_are_written_out_unless_it_says_otherwise():
+    plain = axis("tension [N]")
+    assert plain["exponentformat"] == "none"
+    assert plain["separatethousands"] is True
+    assert axis("cycles [1]", exponentformat="power")["exponentformat"] == "power"

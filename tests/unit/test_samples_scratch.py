@@ -8,7 +8,7 @@ import pytest
 
 from reduction.errors import DataError
 from reduction.samples import scratch
-from reduction.samples.scratch import ColumnWriter, empty_like, is_on_disk
+from reduction.samples.scratch import ColumnWriter, empty_like, is_on_disk, scratch_folder
 
 
 @pytest.mark.parametrize("kind", [np.float64, np.int64, np.uint16])
@@ -75,6 +75,25 @@ def test_a_disk_without_the_room_of_an_array_is_told(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "posix_fallocate", full)
     with pytest.raises(DataError, match="no room for 2 MB .*No space left on device"):
         empty_like(column)
+
+
+@pytest.mark.parametrize("stated", ["here", "not-there"])
+def test_the_folder_that_is_stated_is_the_one_whatever_it_is(tmp_path, monkeypatch, stated):
+    monkeypatch.setenv("TMPDIR", str(tmp_path / stated))
+    assert scratch_folder() == tmp_path / stated
+    monkeypatch.setenv("TMPDIR", "")
+    assert scratch_folder() != tmp_path / stated
+
+
+def test_a_limit_on_address_space_is_told(tmp_path, monkeypatch):
+    def refused(*_):
+        raise OSError(errno.ENOMEM, os.strerror(errno.ENOMEM))
+
+    monkeypatch.setattr(scratch, "_ScratchMap", refused)
+    writer = ColumnWriter(tmp_path)
+    writer.append(np.zeros(1 << 18))
+    with pytest.raises(DataError, match=r"cannot be mapped; found 2 MB: .*; needed .* ulimit -v"):
+        writer.finish()
 
 
 def test_a_folder_that_is_not_there_is_told(tmp_path):

@@ -53,6 +53,7 @@ def draw_loops(view: TestView) -> list[Figure]:
                         strain[index, kept] * in_strain.factor, load[index, kept] * in_load.factor,
                         name=f"cycle {cycle}, {name}", colour=COLOURS[(0, 4, 1)[order]],
                         dash=DASHES[name], width=1.6, legendgroup=f"cycle {cycle}",
+                        meta={"cycle": int(cycle)},
                     )
                 )  # fmt: skip
         found.append(

@@ -6,7 +6,15 @@ import numpy as np
 
 from reduction.archive.freedom import random_freedom
 from reduction.record import Floats
-from reduction.report.figure import Figure, Trace, axis, band, line, make_figure
+from reduction.report.figure import (
+    Figure,
+    Trace,
+    axis,
+    band,
+    line,
+    make_figure,
+    plain_numbers,
+)
 from reduction.report.style import COLOURS, DASHES, Shown, shown
 from reduction.report.uncertainty import (
     NORMAL,
@@ -27,7 +35,7 @@ BRANCH_COLOURS = {"ascending": COLOURS[0], "descending": COLOURS[1]}
 
 
 def draw_moduli(view: TestView) -> list[Figure]:
-    """Draw one figure a specimen: mean with bands, untrimmed and first loading beside.
+    """Draw one figure a specimen: mean with bands, trimmed ends and first loading beside.
 
     The inner band is what scatter alone leaves open, the outer one all that is known; least and
     greatest cycle are drawn by a click on their entry in the legend.
@@ -68,12 +76,14 @@ def draw_moduli(view: TestView) -> list[Figure]:
                     for kind, alpha in (("all", 0.2), ("scatter", 0.4))
                 ),
                 line(
-                    x, parts["untrimmed"][own], name=f"{branch}, ends not trimmed", colour=tint,
-                    dash=DASHES[branch], width=1.0, opacity=0.5,
-                ),
-                line(
                     x, mean, name=branch, colour=tint, dash=DASHES[branch], width=2.2,
                     legendgroup=branch,
+                ),
+                line(
+                    x, _trimmed_ends(mean, parts["untrimmed"][own]),
+                    name=f"{branch}, trimmed away", colour=tint, dash="dot", width=1.3,
+                    mode="lines+markers",
+                    marker={"symbol": "x-thin-open", "size": 6, "color": tint},
                 ),
             ]  # fmt: skip
             data += _first_loading(view, own, branch, in_strain, in_stress)
@@ -81,13 +91,14 @@ def draw_moduli(view: TestView) -> list[Figure]:
             make_figure(
                 f"{view.key}-modulus-{index}",
                 f"{view.id}: modulus, {specimen}",
-                "Tangent modulus against strain, mean over the cycles. Thin lines: the branches"
-                f" with their ends, where the rate is not constant. {about}",
-                [trace for trace in data if trace["y"]],
+                "Tangent modulus against strain, mean over the cycles. Dotted with crosses: what"
+                " was trimmed away at the ends of a branch, where the rate is not constant; no"
+                f" number is taken from there. {about}",
+                [trace for trace in data if any(value is not None for value in trace["y"])],
                 synthetic=view.is_synthetic,
                 height=400,
                 xaxis=axis(in_strain.label("strain")),
-                yaxis=_modulus_axis(modulus, parts["maximum"], in_stress),
+                yaxis=_modulus_axis(modulus, modulus + parts["all"], in_stress),
             )
         )
     return found
@@ -111,9 +122,10 @@ def draw_cycle_curves(view: TestView) -> list[Figure]:
                 mean = modulus[index, kept, place] * in_stress.factor
                 half = spread[index, kept, place] * in_stress.factor
                 words = f"cycle {cycles[kept]:.0f}, {branch}"
+                of = {"cycle": int(cycles[kept])}
                 data += [
-                    band(x, mean - half, mean + half, name=words, colour=tint, alpha=0.25),
-                    line(x, mean, name=words, colour=tint, dash=DASHES[branch]),
+                    band(x, mean - half, mean + half, name=words, colour=tint, alpha=0.25, meta=of),
+                    line(x, mean, name=words, colour=tint, dash=DASHES[branch], meta=of),
                 ]
         found.append(
             make_figure(
@@ -156,6 +168,15 @@ def _about_cycles(view: TestView) -> str:
     return plus_minus([NORMAL], held, left_out="", mark="Band, ±")
 
 
+def _trimmed_ends(trimmed: Floats, whole: Floats) -> Floats:
+    """Return the whole curve where the trimmed one has no value, and one bin into it to join on."""
+    is_left = np.isfinite(trimmed)
+    is_next = np.zeros_like(is_left)
+    is_next[1:] |= ~is_left[:-1] & np.isfinite(whole[:-1])
+    is_next[:-1] |= ~is_left[1:] & np.isfinite(whole[1:])
+    return np.where(~is_left | is_next, whole, np.nan)
+
+
 def _first_loading(
     view: TestView, own: tuple[int, int], branch: str, in_strain: Shown, in_stress: Shown
 ) -> list[Trace]:
@@ -172,12 +193,14 @@ def _first_loading(
     ]  # fmt: skip
 
 
-def _modulus_axis(mean: Floats, most: Floats, in_stress: Shown) -> dict[str, object]:
+def _modulus_axis(mean: Floats, upper: Floats, in_stress: Shown) -> dict[str, object]:
     """Return one axis for all specimens, scaled to what is trusted.
 
-    An untrimmed end may run off the top.
+    An end that was trimmed away may run off the top, and so may the band of a bin that few
+    cycles reach.
     """
-    trusted = np.concatenate([mean.ravel(), most.ravel()])
-    top = float(np.nanmax(trusted)) if np.isfinite(trusted).any() else 0.0
     title = in_stress.label("tangent modulus")
-    return axis(title, range=[0.0, 1.25 * top]) if top > 0 else axis(title)
+    if not np.isfinite(mean).any():
+        return axis(title)
+    usual = np.quantile(upper[np.isfinite(upper)], 0.97) if np.isfinite(upper).any() else 0.0
+    return axis(title, range=plain_numbers(1.15 * np.array([0.0, max(np.nanmax(mean), usual)])))

@@ -46,9 +46,10 @@ def draw_record(view: TestView) -> list[Figure]:
     if time is None or tension is None or view.is_stepwise:
         return []
     in_tension = shown("tension", view.units)
-    in_time = shown("time", view.units)
+    in_time, seconds = shown("time", view.units), 1.0
     if time[-1] - time[0] > LONG_RECORD:
-        time, in_time = time / SECONDS_IN_AN_HOUR, Shown("h", 1.0)
+        seconds = SECONDS_IN_AN_HOUR
+        time, in_time = time / seconds, Shown("h", 1.0)
     data: list[Trace] = []
     pieces = view.pieces
     # most of the time of a record that is stored in part has no sample to draw
@@ -87,6 +88,7 @@ def draw_record(view: TestView) -> list[Figure]:
         "yaxis": axis(in_tension.label("tension")),
         "shapes": shapes,
         "annotations": labels,
+        "meta": {"cycles": "time", "seconds": seconds},
     }
     if position is not None:
         layout["yaxis"]["domain"] = [0.0, 0.52]
@@ -215,7 +217,7 @@ def _phases(view: TestView, time: Floats) -> tuple[list[Trace], list[Trace], int
             {
                 "type": "rect", "layer": "below", "xref": "x", "yref": "paper", "x0": left,
                 "x1": right, "y0": 0, "y1": 1, "line": {"width": 0},
-                "fillcolor": PHASE_FILLS[name],
+                "fillcolor": PHASE_FILLS[name], "name": name,
             }
         )  # fmt: skip
         if duration[place] > 0.09 * whole:

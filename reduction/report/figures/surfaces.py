@@ -110,6 +110,7 @@ def draw_contours(
                              "labelfont": {"color": _INK, "size": 10}},
                 "colorbar": {
                     "title": {"text": unit.unit}, "thickness": 10, "tickfont": {"size": 10},
+                    "exponentformat": "none", "separatethousands": True,
                 },
             }
         ]  # fmt: skip

@@ -71,6 +71,7 @@ def draw_trends(view: TestView) -> list[Figure]:
             yaxis=axis(unit.label(words)),
             shapes=shapes,
             annotations=labels,
+            meta={"cycles": "number"},
         )
         if figure.has_data:
             found.append(figure)

@@ -1,0 +1,1 @@
+"""The explorer: a page on this machine that moves the settings of a test and saves them."""

@@ -1,0 +1,175 @@
+// Figures are JSON beside their captions.  One is drawn when a reader comes near it, and again
+// when the colours of the screen, its width on paper or the chosen cycle change.
+
+const plots = [...document.querySelectorAll(".plot")];
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const drawn = new Set();
+const stale = new Set(); // drawn, but not as they ought to look now
+const inSight = new Set();
+let printing = false;
+// the two blues, lighter by one step each: the darker one fades on a dark page
+const ON_DARK = [["#56B4E9", "#B3E0FF"], ["#0072B2", "#4AA3DF"]];
+const AXIS = 52; // ticks and title under a plot, in CSS pixels
+const LINE = 18; // a line of a title
+// what an A4 or Letter page with 15 mm margins holds, in CSS pixels: one figure, or two abreast
+const PAPER = { wide: 655, narrow: 318 };
+const ON_PAPER = { ink: "#000", faint: "#333", grid: "#ccc", paper: "#fff", bad: "#7a2b00" };
+
+const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+const onScreen = () => Object.fromEntries(Object.keys(ON_PAPER).map((name) => [name, ink(name)]));
+
+// the program that draws is four megabytes: the page is there before it is read
+const readProgram = () => {
+  if (window.Plotly) return;
+  const program = document.createElement("script");
+  program.textContent = document.getElementById("plotly").textContent;
+  document.head.append(program);
+};
+
+const isWide = (plot) => plot.parentElement.classList.contains("wide");
+const plain = (text) => {
+  const unbroken = String(text).replaceAll("<br>", " ");
+  return unbroken.replaceAll("&lt;", "<").replaceAll("&gt;", ">").replaceAll("&amp;", "&");
+};
+const readFigure = (plot, isDark = false) => {
+  let text = document.getElementById(plot.dataset.figure).textContent;
+  if (isDark) for (const [onWhite, onDark] of ON_DARK) text = text.replaceAll(onWhite, onDark);
+  return JSON.parse(text);
+};
+
+// plotly cuts a title that is longer than its figure
+const brokenTitle = (text, width) => {
+  const most = Math.max(16, Math.floor((width - 24) / 7.4));
+  const lines = [""];
+  for (const word of text.split(" ")) {
+    const last = lines.at(-1);
+    if (last && plain(`${last} ${word}`).length > most) lines.push(word);
+    else lines[lines.length - 1] = last ? `${last} ${word}` : word;
+  }
+  return lines;
+};
+
+const themed = (layout, legend, width, colours) => {
+  const title = brokenTitle(layout.title.text, width);
+  const above = (title.length - 1) * LINE + (layout.title.subtitle ? 62 : 44);
+  const result = {
+    ...layout,
+    autosize: true,
+    uirevision: "kept", // what a reader zoomed or switched off stays when a cycle is chosen
+    paper_bgcolor: colours.paper,
+    plot_bgcolor: colours.paper,
+    font: { family: getComputedStyle(document.body).fontFamily, size: 12, color: colours.ink },
+    margin: { l: 64, r: 16, t: above, b: AXIS + legend },
+    legend: { orientation: "h", x: 0, y: 0, yref: "container", yanchor: "bottom", tracegroupgap: 0, font: { size: 11 }, ...layout.legend },
+    hoverlabel: { namelength: 40 },
+    hovermode: "closest",
+    title: { ...layout.title, text: title.join("<br>"), x: 0.01, xanchor: "left", y: 0.98, yanchor: "top", yref: "container", font: { size: 14 } },
+  };
+  if (layout.title.subtitle) {
+    result.title.subtitle = { ...layout.title.subtitle, font: { size: 11, color: colours.bad } };
+  }
+  if (layout.scene) {
+    const scene = { ...layout.scene };
+    for (const name of ["xaxis", "yaxis", "zaxis"]) {
+      scene[name] = {
+        gridcolor: colours.grid, zerolinecolor: colours.grid, color: colours.ink,
+        showbackground: false, exponentformat: "none", tickfont: { size: 10 }, ...layout.scene[name],
+      };
+      scene[name].title = { ...scene[name].title, font: { size: 11 } };
+    }
+    result.scene = scene;
+    result.margin = { l: 0, r: 0, t: above, b: 4 };
+  }
+  for (const name of Object.keys(layout)) {
+    if (/^[xy]axis/.test(name)) {
+      result[name] = {
+        gridcolor: colours.grid, zerolinecolor: colours.grid, linecolor: colours.faint,
+        showline: true, ticks: "outside", tickcolor: colours.faint, automargin: true, ...layout[name],
+      };
+    }
+  }
+  return result;
+};
+
+// a legend under the axes takes its height from the plot unless the figure grows with it
+const legendHeight = (data, width) => {
+  const entries = data.filter((trace) => trace.showlegend !== false);
+  const longest = Math.max(0, ...entries.map((trace) => trace.name.length));
+  const columns = Math.max(1, Math.floor((width - 80) / (52 + 6.2 * longest)));
+  return entries.length > 1 ? 12 + 19 * Math.ceil(entries.length / columns) : 0;
+};
+
+/** A figure as it is drawn so wide in these colours, with what is shown of the chosen cycle. */
+const figureOf = (plot, width, colours, isDark = false) => {
+  const { data, layout } = withCycle(plot, readFigure(plot, isDark), colours);
+  const legend = legendHeight(data, width);
+  if (layout.scene && width < 420) {
+    // from farther away, or the numbers of the axes leave the figure
+    for (const axis of ["x", "y", "z"]) layout.scene.camera.eye[axis] *= 1.25;
+  }
+  const shown = themed(layout, legend, width, colours);
+  const lines = brokenTitle(layout.title.text, width).length - 1;
+  const height = Number(plot.dataset.height) + legend + lines * LINE;
+  return { data, layout: { ...shown, height, showlegend: legend > 0 } };
+};
+
+const draw = (plot) => {
+  stale.delete(plot);
+  if (!printing && !plot.clientWidth) {
+    if (drawn.has(plot)) forget(plot); // folded away since
+    return;
+  }
+  readProgram();
+  const isDark = dark.matches && !printing;
+  const onPaper = isWide(plot) ? PAPER.wide : PAPER.narrow;
+  const width = printing ? onPaper : plot.clientWidth;
+  const { data, layout } = figureOf(plot, width, printing ? ON_PAPER : onScreen(), isDark);
+  plot.style.minHeight = `${layout.height}px`;
+  if (printing) Object.assign(layout, { width, autosize: false });
+  const isNew = !drawn.has(plot);
+  drawn.add(plot);
+  Plotly.react(plot, data, layout, {
+    responsive: true, displaylogo: false, modeBarButtonsToRemove: ["toImage", "lasso2d", "select2d"],
+  });
+  if (isNew) plot.on("plotly_click", (clicked) => chooseAt(plot, clicked.points[0]));
+};
+
+const forget = (plot) => {
+  Plotly.purge(plot);
+  drawn.delete(plot);
+};
+
+const near = new IntersectionObserver((seen) => {
+  for (const { target: plot, isIntersecting } of seen) {
+    if (isIntersecting) {
+      inSight.add(plot);
+      if ((!drawn.has(plot) || stale.has(plot)) && !printing) draw(plot);
+    } else {
+      inSight.delete(plot);
+      // a browser keeps only some figures in space alive at a time: those out of sight make room
+      if (drawn.has(plot) && plot.layout?.scene && !printing) forget(plot);
+    }
+  }
+}, { rootMargin: "600px" });
+plots.forEach((plot) => near.observe(plot));
+
+// what is out of sight waits until a reader comes back to it
+const drawAgain = (plot) => {
+  if (inSight.has(plot)) draw(plot);
+  else stale.add(plot);
+};
+dark.addEventListener("change", () => drawn.forEach(drawAgain));
+
+// paper is white and narrower than the screen, whatever the screen is
+addEventListener("beforeprint", () => {
+  printing = true;
+  openForPaper();
+  plots.forEach(draw);
+});
+addEventListener("afterprint", () => {
+  printing = false;
+  foldAgain();
+  [...drawn].forEach((plot) => (inSight.has(plot) ? draw(plot) : forget(plot)));
+});
+
+addEventListener("load", () => setTimeout(readProgram, 300));

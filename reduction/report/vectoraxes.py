@@ -1,0 +1,122 @@
+"""Axes of a figure that is drawn without a script: range, ticks, and where a number stands."""
+
+from __future__ import annotations
+
+import html
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import ceil, floor, isfinite, log10
+from typing import Any
+
+__all__ = ["DrawnAxis", "Tick", "axis_of", "plain_label", "round_ticks"]
+
+_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
+_MARGIN = 0.04
+_ROUNDING = 1e-9
+_MARKUP = re.compile(r"<br\s*/?>")
+
+
+@dataclass(frozen=True)
+class Tick:
+    """A mark on an axis with its words, a line each."""
+
+    value: float
+    lines: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class DrawnAxis:
+    """One axis: ends and ticks in units of the data, and the places of the ends on the drawing."""
+
+    title: str
+    low: float
+    high: float
+    first: float
+    last: float
+    ticks: tuple[Tick, ...]
+
+    def at(self, value: float) -> float:
+        """Place of a number on the drawing."""
+        share = (value - self.low) / (self.high - self.low)
+        return self.first + share * (self.last - self.first)
+
+
+def round_ticks(low: float, high: float, most: int) -> list[float]:
+    """Return round numbers between two ends, at most so many and as many as fit.
+
+    Examples
+    --------
+    >>> print(round_ticks(0.0, 1.3, 6))
+    [0.0, 0.25, 0.5, 0.75, 1.0, 1.25]
+    """
+    least = (high - low) / max(most, 2)
+    power = 10.0 ** floor(log10(least))
+    for step in (power * one for one in _STEPS):
+        first, last = ceil(low / step - _ROUNDING), floor(high / step + _ROUNDING)
+        if last - first + 1 <= most:
+            break
+    decimals = max(0, 1 - floor(log10(step)))
+    return [round(number * step, decimals) + 0.0 for number in range(first, last + 1)]
+
+
+def plain_label(text: str) -> str:
+    """Return what plotly would show of a title or a name, on one line.
+
+    Examples
+    --------
+    >>> plain_label("&lt;b&gt; and<br>stress [MPa]")
+    '<b> and stress [MPa]'
+    """
+    return html.unescape(_MARKUP.sub(" ", text))
+
+
+def axis_of(
+    layout: Mapping[str, Any], values: Iterable[float | None], *, first: float, last: float,
+    most: int,
+) -> DrawnAxis:  # fmt: skip
+    """Return an axis as plotly would lay it out.
+
+    Parameters
+    ----------
+    layout : mapping
+        Of the axis: ``title``, ``range``, ``rangemode``, ``tickvals`` with ``ticktext``.
+    values : iterable of float or None
+        All that is drawn along it.
+    first, last : float
+        Where its ends stand on the drawing.
+    most : int
+        Ticks at most.
+    """
+    low, high = _ends(layout, [one for one in values if one is not None and isfinite(one)])
+    if "ticktext" in layout:
+        pairs = zip(layout["tickvals"], layout["ticktext"], strict=True)
+        ticks = [
+            Tick(float(value), tuple(html.unescape(line) for line in _MARKUP.split(text)))
+            for value, text in pairs
+        ]
+    else:
+        ticks = [Tick(value, (_number(value),)) for value in round_ticks(low, high, most)]
+    title = plain_label(layout.get("title", {}).get("text", ""))
+    return DrawnAxis(title, low, high, first, last, tuple(ticks))
+
+
+def _ends(layout: Mapping[str, Any], known: Sequence[float]) -> tuple[float, float]:
+    given = layout.get("range")
+    if given is not None:
+        return float(given[0]), float(given[1])
+    low, high = (min(known), max(known)) if known else (0.0, 1.0)
+    if low == high:
+        half = abs(low) / 2 or 1.0
+        return low - half, high + half
+    margin = _MARGIN * (high - low)
+    if layout.get("rangemode") == "tozero":
+        return (
+            min(0.0, low - margin if low < 0 else 0.0),
+            max(0.0, high + margin if high > 0 else 0.0),
+        )
+    return low - margin, high + margin
+
+
+def _number(value: float) -> str:
+    return f"{value:,.10g}".replace("-", "\N{MINUS SIGN}")
