@@ -21,7 +21,9 @@ from reduction.archive.open import open_archive
 from reduction.archive.products import archives_of_tests
 from reduction.lookup.product import LineSource
 
-__all__ = ["archives_of_lines", "lines_of_archive", "lines_of_open_archive", "told_apart"]
+__all__ = [
+    "archives_of_lines", "lines_of_archive", "lines_of_open_archive", "names_apart", "told_apart",
+]  # fmt: skip
 
 _SURFACES = "surfaces.nc"
 
@@ -108,12 +110,15 @@ def told_apart(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list[LineSo
     >>> [one.name for one in told_apart([("T-1", [line]), ("T-2", [line])])]
     ['T-1 new', 'T-2 new']
     """
-    count = Counter(line.name for _, lines in found for line in lines)
-    return [
-        replace(line, name=f"{test} {line.name}") if count[line.name] > 1 else line
-        for test, lines in found
-        for line in lines
-    ]
+    lines = [line for _, own in found for line in own]
+    names = names_apart([(test, line.name) for test, own in found for line in own])
+    return [replace(line, name=name) for line, name in zip(lines, names, strict=True)]
+
+
+def names_apart(named: Sequence[tuple[str, str]]) -> list[str]:
+    """Names of lines by their tests and specimens, as `told_apart` gives them."""
+    count = Counter(name for _, name in named)
+    return [f"{test} {name}" if count[name] > 1 else name for test, name in named]
 
 
 def _specimens(path: Path, names: set[str]) -> dict[str, Facts]:

@@ -20,6 +20,7 @@ from reduction.batch.run import run_campaign as run_tests
 from reduction.batch.status import TestStatus
 from reduction.campaign.plan import Campaign
 from reduction.cli.commandoutput import CommandOutput
+from reduction.cli.designvalues import refresh_design_page
 from reduction.cli.progress import campaign_progress
 from reduction.cli.remote import product_folders
 from reduction.cli.workers import chosen_executor
@@ -243,6 +244,7 @@ def run_campaign(
         output.say(f"report:   {result.report}")
         client = _client_report(result.report, output)
         document["client_report"] = None if client is None else str(client)
+    document["design_values"] = refresh_design_page(processed_here, reports_here, output)
     output.answer(document)
     _report_failures(output, result.tests, result.parts)
 
@@ -277,7 +279,8 @@ def report_again(
             needed="[report] in campaign.toml",
             hint="Add it and run the campaign again: what did not change is not reduced again.",
         )  # fmt: skip
-    output.answer(written)
+    root = processed.resolve().parent if folders == [processed] else processed
+    output.answer(written | {"design_values": refresh_design_page(root, reports, output)})
 
 
 def _client_report(page: Path, output: CommandOutput) -> Path | None:

@@ -10,8 +10,8 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
 from importlib.resources import files
 
 import numpy as np
@@ -38,9 +38,8 @@ from reduction.report.figure import Figure
 from reduction.report.figures.campaign import draw_all_moduli
 from reduction.report.htmltable import Table, factors_of, make_table, number, words
 from reduction.report.instruments import instrument_sentences, instrument_table
-from reduction.report.section import Section
+from reduction.report.section import Part, Section
 from reduction.report.specimentables import specimen_notes, specimen_table
-from reduction.report.stepwisetables import interval_table
 from reduction.report.style import shorten
 from reduction.report.summary import Finding, test_table
 from reduction.report.uncertainty import DRAWN, factor_words
@@ -56,7 +55,10 @@ _MOST_COLUMNS = 5
 _BANDS = (
     " Bands: ± expanded uncertainty, the inner of scatter alone, the outer of all that is known."
 )
-_FIGURES = ("Modulus against strain", "Loops", "Slow pull", "Stepwise readings")
+_HOLDS = "Holds"
+_OF_HOLDS = ("relaxation", "creep")
+_TABLES = ("Stepwise readings", "Slow pull", _HOLDS)
+_FIGURES = ("Modulus against strain", "Loops", "Slow pull", "Stepwise readings", _HOLDS)
 _IN_FULL = {
     "K_ap": "apparent spring constant K_ap", "H": "hysteresis energy H",
     "K_1": "dissipation spring constant K_1", "tau": "relaxation time tau",
@@ -149,13 +151,17 @@ def _results(content: ClientContent) -> list[Table]:
     """Return the numbers: moduli at round strains, answers of each test, answers of the whole."""
     found = [part for one in design_tables(content.tests) for part in _by_columns(one)]
     found += [table for view in content.tests if (table := _answers(view)) is not None]
-    found += [table for view in content.tests if (table := interval_table(view)) is not None]
+    found += [
+        replace(table, caption=f"{section.title}: {table.caption}")
+        for section, part in _parts(content, _TABLES)
+        for table in part.tables
+    ]
     return [*found, *content.whole.answers]
 
 
 def _answers(view: TestView) -> Table | None:
     answers = answer_budgets(view)
-    if not answers:
+    if not answers or view.is_stepwise:  # whose intervals stand in a table of their own
         return None
     rows = [
         [
@@ -215,15 +221,20 @@ def _by_columns(table: Table) -> list[Table]:
     return found
 
 
+def _parts(content: ClientContent, headings: Collection[str]) -> Iterator[tuple[Section, Part]]:
+    """Give parts of the sections of the tests; of holds those that a test was made for."""
+    kinds = {view.key: view.kind for view in content.tests}
+    for section in content.sections:
+        for part in section.parts:
+            is_asked = part.heading in headings
+            if is_asked and (part.heading != _HOLDS or kinds.get(section.key) in _OF_HOLDS):
+                yield section, part
+
+
 def _drawings(content: ClientContent) -> list[_Drawing]:
     wide = [one for one in draw_all_moduli(content.tests) if can_be_drawn(one)]
     narrow = [
-        one
-        for section in content.sections
-        for part in section.parts
-        if part.heading in _FIGURES
-        for one in part.figures
-        if can_be_drawn(one)
+        one for _, part in _parts(content, _FIGURES) for one in part.figures if can_be_drawn(one)
     ]
     return [
         *(_drawing(one, is_wide=True) for one in wide),
@@ -232,7 +243,7 @@ def _drawings(content: ClientContent) -> list[_Drawing]:
 
 
 def _drawing(figure: Figure, *, is_wide: bool) -> _Drawing:
-    size = {"width": 680.0, "height": 360.0} if is_wide else {"width": 440.0, "height": 290.0}
+    size = {"width": 680.0, "height": 360.0} if is_wide else {"width": 440.0, "height": 262.0}
     caption, *about = figure.caption.split(" Inner band:")
     caption += _BANDS if about else ""
     # the drawing escapes what it is given

@@ -18,8 +18,9 @@ from reduction.report.vectoraxes import DrawnAxis, axis_of, plain_label
 
 __all__ = ["can_be_drawn", "vector_of"]
 
-_LEFT, _RIGHT, _TOP, _BOTTOM = 62.0, 12.0, 34.0, 44.0
+_LEFT, _RIGHT, _TOP, _BOTTOM = 30.0, 12.0, 34.0, 44.0
 _LEGEND_ROW, _LEGEND_KEY, _LETTER = 15.0, 34.0, 5.9
+_FEWEST_LETTERS = 4
 _TICK_SPACE = (74.0, 34.0)
 _DASHES = {
     "dash": "6 3.5", "dot": "1.5 3", "dashdot": "6 3 1.5 3", "longdash": "10 4",
@@ -37,18 +38,21 @@ _SHAPES: dict[str, list[tuple[float, float]]] = {
     "star": [(0, -1.4), (0.35, -0.45), (1.35, -0.43), (0.57, 0.18), (0.83, 1.15), (0, 0.6),
              (-0.83, 1.15), (-0.57, 0.18), (-1.35, -0.43), (-0.35, -0.45)],
 }  # fmt: skip
+# half of each of two strokes
+_CROSSES = {"x": ((1, 1), (1, -1)), "cross": ((1, 0), (0, 1))}
 _KNOWN_AXES = {"xaxis", "yaxis"}
+_KNOWN_TYPES = {"linear", "log"}
 _KNOWN_MODES = {"lines", "markers", "lines+markers"}
 
 
 def can_be_drawn(figure: Figure) -> bool:
-    """Return whether a figure is lines and markers on one pair of linear axes."""
+    """Return whether a figure is lines and markers on one pair of axes of numbers or names."""
     axes = {name for name in figure.layout if name.lstrip("xy").startswith("axis")}
     return (
         figure.has_data
         and axes <= _KNOWN_AXES
         and "scene" not in figure.layout
-        and all(figure.layout[name].get("type", "linear") == "linear" for name in axes)
+        and all(figure.layout[name].get("type", "linear") in _KNOWN_TYPES for name in axes)
         and all(
             trace["type"] == "scatter" and trace.get("mode") in _KNOWN_MODES
             for trace in figure.data
@@ -69,22 +73,23 @@ def vector_of(figure: Figure, *, width: float = 680.0, height: float = 330.0) ->
         Of the drawing without its legend; on paper it is scaled to its column.
     """
     shown = [one for one in figure.data if one.get("visible", True) is True and one["y"]]
-    horizontal = axis_of(
-        figure.layout.get("xaxis", {}), (x for one in shown for x in one["x"]),
-        first=_LEFT, last=width - _RIGHT, most=int((width - _LEFT - _RIGHT) / _TICK_SPACE[0]) + 1,
-    )  # fmt: skip
     vertical = axis_of(
         figure.layout.get("yaxis", {}), (y for one in shown for y in _heights(one)),
         first=height - _BOTTOM, last=_TOP, most=int((height - _TOP - _BOTTOM) / _TICK_SPACE[1]) + 1,
     )  # fmt: skip
-    legend = list(_legend(shown, width, height))
+    left = _LEFT + _LETTER * max(vertical.longest, _FEWEST_LETTERS)
+    horizontal = axis_of(
+        figure.layout.get("xaxis", {}), (x for one in shown for x in one["x"]),
+        first=left, last=width - _RIGHT, most=int((width - left - _RIGHT) / _TICK_SPACE[0]) + 1,
+    )  # fmt: skip
+    legend = list(_legend(shown, left, width, height))
     total = height + (legend[-1][0] if legend else 0.0)
     clip = f"{figure.key}-clip"
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" viewBox="0 0 {width:g} {total:g}"'
         f' aria-label="{escape(replace(figure, data=shown).label)}">',
-        f'<clipPath id="{escape(clip)}"><rect x="{_LEFT:g}" y="{_TOP:g}"'
-        f' width="{horizontal.last - _LEFT:g}" height="{vertical.first - _TOP:g}"/></clipPath>',
+        f'<clipPath id="{escape(clip)}"><rect x="{left:g}" y="{_TOP:g}"'
+        f' width="{horizontal.last - left:g}" height="{vertical.first - _TOP:g}"/></clipPath>',
         *_frame(horizontal, vertical),
         f'<g clip-path="url(#{escape(clip)})">',
         *_levels(figure, horizontal, vertical),
@@ -136,9 +141,9 @@ def _frame(horizontal: DrawnAxis, vertical: DrawnAxis) -> Iterator[str]:
 def _titles(
     figure: Figure, width: float, height: float, horizontal: DrawnAxis, vertical: DrawnAxis
 ) -> Iterator[str]:
-    yield _text(_LEFT, 14, figure.title, kind="title")
+    yield _text(horizontal.first, 14, figure.title, kind="title")
     if figure.synthetic:
-        yield _text(_LEFT, 28, "SYNTHETIC DATA", kind="synthetic")
+        yield _text(horizontal.first, 28, "SYNTHETIC DATA", kind="synthetic")
     yield _text((horizontal.first + horizontal.last) / 2, height - 10, horizontal.title, "middle")
     middle = (vertical.first + vertical.last) / 2
     turn = f' transform="rotate(-90 14 {middle:.1f})"'
@@ -164,7 +169,9 @@ def _runs(trace: Trace, horizontal: DrawnAxis, vertical: DrawnAxis) -> list[list
             if runs[-1]:
                 runs.append([])
             continue
-        runs[-1].append(f"{horizontal.at(x):.2f} {vertical.at(y):.2f}")
+        place = horizontal.at(x), vertical.at(y)
+        if all(map(isfinite, place)):  # zero has no place on a logarithmic axis
+            runs[-1].append(f"{place[0]:.2f} {place[1]:.2f}")
     return [run for run in runs if run]
 
 
@@ -213,6 +220,10 @@ def _marker(x: float, y: float, style: dict[str, Any]) -> str:
     radius = float(style.get("size", 6)) / 2
     name = str(style.get("symbol", "circle"))
     is_open = "-open" in name
+    if "-thin" in name:
+        strokes = [(radius * dx, radius * dy) for dx, dy in _CROSSES[name.partition("-thin")[0]]]
+        ends = (f"M{x - dx:.1f} {y - dy:.1f}L{x + dx:.1f} {y + dy:.1f}" for dx, dy in strokes)
+        return f'<path d="{"".join(ends)}" fill="none" stroke="{colour}"/>'
     paint = f'fill="{"#ffffff" if is_open else colour}" stroke="{colour}"'
     corners = _SHAPES.get(name.removesuffix("-dot").removesuffix("-open"))
     if corners is None:
@@ -222,7 +233,7 @@ def _marker(x: float, y: float, style: dict[str, Any]) -> str:
 
 
 def _legend(
-    shown: Sequence[Trace], width: float, height: float
+    shown: Sequence[Trace], left: float, width: float, height: float
 ) -> Iterator[tuple[float, list[str]]]:
     """Rows below the drawing: how far down each reaches, and what it is."""
     entries: dict[str, Trace] = {}
@@ -235,14 +246,14 @@ def _legend(
     rows: list[list[str]] = [[]]
     used = 0.0
     for name in entries:
-        if rows[-1] and used + sizes[name] > width - _LEFT:
+        if rows[-1] and used + sizes[name] > width - left:
             rows.append([])
             used = 0.0
         rows[-1].append(name)
         used += sizes[name]
     for number, row in enumerate(rows):
         y = height + 8 + _LEGEND_ROW * number
-        starts = [_LEFT + sum(sizes[one] for one in row[:place]) for place in range(len(row) + 1)]
+        starts = [left + sum(sizes[one] for one in row[:place]) for place in range(len(row) + 1)]
         drawn = []
         for name, (start, _) in zip(row, pairwise(starts), strict=True):
             drawn += [*_key(entries[name], start, y), _text(start + 28, y, name)]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import ceil, floor, isfinite, log10
+from math import ceil, floor, isfinite, log10, nan
 from typing import Any
 
 __all__ = ["DrawnAxis", "Tick", "axis_of", "plain_label", "round_ticks"]
@@ -27,7 +27,10 @@ class Tick:
 
 @dataclass(frozen=True)
 class DrawnAxis:
-    """One axis: ends and ticks in units of the data, and the places of the ends on the drawing."""
+    """One axis: its ends and ticks, and the places of the ends on the drawing.
+
+    ``low`` and ``high`` of a logarithmic axis are powers of ten.
+    """
 
     title: str
     low: float
@@ -35,9 +38,17 @@ class DrawnAxis:
     first: float
     last: float
     ticks: tuple[Tick, ...]
+    is_log: bool = False
+
+    @property
+    def longest(self) -> int:
+        """Letters of the longest words at a tick."""
+        return max((len(line) for tick in self.ticks for line in tick.lines), default=0)
 
     def at(self, value: float) -> float:
-        """Place of a number on the drawing."""
+        """Place of a number on the drawing; NaN where a logarithmic axis has none."""
+        if self.is_log:
+            value = log10(value) if value > 0 else nan
         share = (value - self.low) / (self.high - self.low)
         return self.first + share * (self.last - self.first)
 
@@ -75,12 +86,12 @@ def axis_of(
     layout: Mapping[str, Any], values: Iterable[float | None], *, first: float, last: float,
     most: int,
 ) -> DrawnAxis:  # fmt: skip
-    """Return an axis as plotly would lay it out.
+    """Return an axis as plotly would lay it out, linear or logarithmic.
 
     Parameters
     ----------
     layout : mapping
-        Of the axis: ``title``, ``range``, ``rangemode``, ``tickvals`` with ``ticktext``.
+        Of the axis: ``title``, ``type``, ``range``, ``rangemode``, ``tickvals`` with ``ticktext``.
     values : iterable of float or None
         All that is drawn along it.
     first, last : float
@@ -88,17 +99,23 @@ def axis_of(
     most : int
         Ticks at most.
     """
-    low, high = _ends(layout, [one for one in values if one is not None and isfinite(one)])
+    is_log = layout.get("type") == "log"
+    known = [one for one in values if one is not None and isfinite(one)]
+    if is_log:
+        known = [log10(one) for one in known if one > 0]
+    low, high = _ends(layout, known)
     if "ticktext" in layout:
         pairs = zip(layout["tickvals"], layout["ticktext"], strict=True)
         ticks = [
             Tick(float(value), tuple(html.unescape(line) for line in _MARKUP.split(text)))
             for value, text in pairs
         ]
+    elif is_log:
+        ticks = list(_decades(low, high, most))
     else:
         ticks = [Tick(value, (_number(value),)) for value in round_ticks(low, high, most)]
     title = plain_label(layout.get("title", {}).get("text", ""))
-    return DrawnAxis(title, low, high, first, last, tuple(ticks))
+    return DrawnAxis(title, low, high, first, last, tuple(ticks), is_log)
 
 
 def _ends(layout: Mapping[str, Any], known: Sequence[float]) -> tuple[float, float]:
@@ -118,5 +135,18 @@ def _ends(layout: Mapping[str, Any], known: Sequence[float]) -> tuple[float, flo
     return low - margin, high + margin
 
 
+def _decades(low: float, high: float, most: int) -> Iterator[Tick]:
+    """Give powers of ten, with 2 and 5 between them where there is room."""
+    powers = range(floor(low), ceil(high) + 1)
+    leading = (1, 2, 5) if 3 * (high - low) <= most else (1,)
+    every = ceil((high - low) / most) if len(leading) == 1 else 1
+    for power in powers[:: max(every, 1)]:
+        for digit in leading:
+            value = digit * 10.0**power
+            if low - _ROUNDING <= log10(value) <= high + _ROUNDING:
+                yield Tick(value, (_number(value),))
+
+
 def _number(value: float) -> str:
-    return f"{value:,.10g}".replace("-", "\N{MINUS SIGN}")
+    text = f"{value:,.10g}" if 1e-4 <= abs(value) < 1e9 or value == 0 else f"{value:.4g}"
+    return text.replace("-", "\N{MINUS SIGN}")

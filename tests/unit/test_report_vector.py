@@ -44,10 +44,10 @@ def points(drawn):
 def test_a_point_stands_where_the_ticks_beside_it_say():
     drawn = vector_of(
         figure(straight(), xaxis=axis("x", range=[0, 100]), yaxis=axis("y", range=[0, 2])),
-        width=474.0, height=278.0,
+        width=465.6, height=278.0,
     )  # fmt: skip
-    # 62 and 12 beside the axes, 34 above and 44 below: 400 by 200
-    assert points(drawn) == [[62.0, 234.0], [262.0, 134.0], [462.0, 34.0]]
+    # 53.6 and 12 beside the axes, 34 above and 44 below: 400 by 200
+    assert points(drawn) == [[53.6, 234.0], [253.6, 134.0], [453.6, 34.0]]
 
 
 def test_ticks_are_round_numbers_inside_the_axis():
@@ -105,9 +105,25 @@ def test_a_band_is_filled_and_closed():
     assert re.search(r'fill="rgba\(0,114,178,0.2\)" stroke="none" d="M[^"]*Z"', drawn)
 
 
-def test_only_lines_and_markers_on_one_pair_of_linear_axes_can_be_drawn():
+def test_a_logarithmic_axis_goes_by_powers_of_ten_and_leaves_out_zero():
+    curve = line(np.array([0.0, 1.0, 10.0, 100.0]), np.arange(4.0), name="c", colour="#000000")
+    drawn = vector_of(
+        figure(curve, xaxis=axis("t", type="log", range=[0, 2]), yaxis=axis("y", range=[0, 3])),
+        width=465.6, height=344.0,
+    )  # fmt: skip
+    assert [x for x, _ in points(drawn)] == [53.6, 253.6, 453.6]
+    assert {"1", "10", "100"} <= set(texts(drawn))
+
+
+def test_the_axis_has_room_for_its_longest_number():
+    wide = figure(straight(), yaxis=axis("y", range=[0, 2e6]))
+    assert points(vector_of(wide))[0][0] > points(vector_of(figure(straight())))[0][0] + 25
+
+
+def test_only_lines_and_markers_on_one_pair_of_axes_can_be_drawn():
     assert can_be_drawn(figure(straight()))
-    assert not can_be_drawn(figure(straight(), yaxis=axis("y", type="log")))
+    assert can_be_drawn(figure(straight(), yaxis=axis("y", type="log")))
+    assert not can_be_drawn(figure(straight(), yaxis=axis("y", type="category")))
     assert not can_be_drawn(figure(straight(), yaxis2=axis("y")))
     assert not can_be_drawn(figure(straight() | {"type": "bar"}))
     assert not can_be_drawn(figure())

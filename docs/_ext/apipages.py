@@ -1,0 +1,113 @@
+"""Pages of the application programming interface: one for each room, with a section a module.
+
+Public is what a script may well import: every room of physics, what the reports print, exports, and
+the doors of the edges (one that opens, one that reads, one that runs). How an archive is laid out or
+a page put together inside is not.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+from collections.abc import Iterator
+
+__all__ = ["pages", "public_modules"]
+
+ROOMS = {
+    "phases": "standstills, rests and holds",
+    "strain": "position to strain of the splice-free length; load to stress",
+    "cycles": "reversals, cycles, loops, energy",
+    "moduli": "tangent, secant and chord moduli, segments, comparisons, slips, elastomer laws",
+    "holds": "relaxation and creep",
+    "line": "the three-parameter line, slow pulls, rope programmes",
+    "surface": "designs, response surfaces, screening, stiffness forms",
+    "outcomes": "breaks, abrasion, lives",
+    "uncertainty": "what errors that samples share do to each number",
+    "predict": "hoses, armour and waves from theory",
+    "compare": "a measured curve against a predicted one",
+    "lookup": "design values, composite curves, assemblies",
+    "published": "what the reports print",
+    "export": "line types for mooring codes",
+}
+"""Rooms of which every module is public."""
+
+DOORS = {
+    "reduction": "the package",
+    "reduction.archive.tree": "processed campaigns as trees of datasets",
+    "reduction.archive.open": "one archive",
+    "reduction.archive.surface_read": "surfaces out of their archive",
+    "reduction.archive.budget": "uncertainty budgets out of an archive",
+    "reduction.batch.run": "a campaign from its logs to its products",
+    "reduction.campaign.load": "campaign.toml",
+    "reduction.catalogue.index": "the index over campaigns",
+    "reduction.catalogue.query": "questions to the index",
+    "reduction.errors": "errors and their exit statuses",
+    "reduction.experiment": "an experiment in one piece",
+    "reduction.ingest.layout": "declared layouts of logs",
+    "reduction.ingest.rawlog": "a log as it was read",
+    "reduction.ingest.read": "readers of every format",
+    "reduction.pipeline.reduce": "a record to a reduced test",
+    "reduction.prediction": "a prediction in one piece",
+    "reduction.product": "a reduced test in one piece",
+    "reduction.record": "records, specimens, flags",
+    "reduction.reproduce.item": "a printed number beside the computed one",
+    "reduction.reproduce.reports": "every printed number again",
+    "reduction.settings": "numbers of the reduction",
+    "reduction.units.parse": "numbers with units",
+    "reduction.vocabulary": "names of quantities",
+}
+"""Single public modules."""
+
+
+def _of_room(room: str) -> list[str]:
+    package = importlib.import_module(f"reduction.{room}")
+    found = [info.name for info in pkgutil.iter_modules(package.__path__, f"reduction.{room}.")]
+    return [name for name in found if getattr(importlib.import_module(name), "__all__", ())]
+
+
+def public_modules() -> Iterator[str]:
+    """Names of all of them."""
+    yield from DOORS
+    for room in ROOMS:
+        yield from _of_room(room)
+
+
+def _first_line(name: str) -> str:
+    text = inspect.getdoc(importlib.import_module(name)) or ""
+    return " ".join(text.partition("\n\n")[0].split())
+
+
+def _titled(title: str, rule: str) -> str:
+    return f"{title}\n{rule * len(title)}\n"
+
+
+def _page(title: str, words: str, names: list[str]) -> str:
+    """A table of the modules, then each with what it offers."""
+    rows = "\n".join(f"* :py:mod:`{name}`: {_first_line(name)}" for name in names)
+    parts = "\n".join(f"{_titled(f'``{name}``', '-')}\n.. automodule:: {name}\n" for name in names)
+    return f"{_titled(title, '=')}\n{words}\n\n{rows}\n\n{parts}"
+
+
+def pages() -> dict[str, str]:
+    """Name below ``reference/`` to text: the index, the entry points, one page a room."""
+    made = {
+        f"api/{room}.rst": _page(
+            f"``reduction.{room}``", f"{words[0].upper()}{words[1:]}.", _of_room(room)
+        )
+        for room, words in ROOMS.items()
+    }
+    made["api/doors.rst"] = _page(
+        "Entry points", "Modules that open, read and run, and what they return.", list(DOORS)
+    )
+    rooms = "\n".join(f"* :doc:`{room}`: {words}" for room, words in ROOMS.items())
+    toc = "\n".join(f"   {name}" for name in ("doors", *ROOMS))
+    made["api/index.rst"] = (
+        f"{_titled('Python interface', '=')}\n"
+        "Physics functions take arrays and return arrays, in SI; nothing in them reads a file or "
+        "the clock. Most scripts need little more than "
+        ":py:func:`~reduction.archive.tree.open_campaign` and :doc:`the other entry points "
+        "<doors>`. In parameters ``[1]`` is the unit of a number without dimension.\n\n"
+        f"{rooms}\n\n.. toctree::\n   :hidden:\n   :titlesonly:\n\n{toc}\n"
+    )
+    return made

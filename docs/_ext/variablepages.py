@@ -1,0 +1,59 @@
+"""The page of the variables of archives, made from the schemas and the vocabulary."""
+
+from __future__ import annotations
+
+from reduction.archive.comparison_schema import COMPARISON_SCHEMA
+from reduction.archive.outcomes import OUTCOME_SCHEMA
+from reduction.archive.prediction_schema import PREDICTION_SCHEMA
+from reduction.archive.properties import PROPERTY_SCHEMA
+from reduction.archive.schema import SCHEMA
+from reduction.archive.surface_schema import SURFACE_SCHEMA
+from reduction.archive.variable import SUFFIXES, Variable
+
+__all__ = ["pages"]
+
+_FILES = {
+    "A reduced test: TEST.nc": SCHEMA,
+    "Response surfaces: surfaces.nc": SURFACE_SCHEMA,
+    "Predicted hoses: predictions.nc": PREDICTION_SCHEMA,
+    "Measured against predicted: comparisons.nc": COMPARISON_SCHEMA,
+    "Outcomes without a log: outcomes.nc": OUTCOME_SCHEMA,
+    "Change-in-length properties: change_in_length.nc": PROPERTY_SCHEMA,
+}
+
+
+def _rows(schema: dict[str, Variable]) -> list[str]:
+    """One row a variable; its uncertainty, count and bounds stand with it as suffixes."""
+    lines = ["| variable | dimensions | unit | what |", "|---|---|---|---|"]
+    for name, one in schema.items():
+        base = next((name.removesuffix(end) for end in SUFFIXES if name.endswith(end)), "")
+        if base in schema:
+            continue
+        beside = [end for end in SUFFIXES if f"{name}{end}" in schema]
+        words = one.long_name + (
+            f". Beside it: {', '.join(f'`{end}`' for end in beside)}" if beside else ""
+        )
+        if one.flags:
+            kind = "masks" if one.is_mask else "values"
+            meanings = ", ".join(f"{value} {flag}" for flag, value in one.flags.items())
+            words += f". {kind.capitalize()}: {meanings}"
+        unit = one.unit or "text"
+        unit = f"`{unit}`" if "<" in unit else unit
+        dims = ", ".join(one.dims) or "one number"
+        lines.append(f"| `{name}` | {dims} | {unit} | {words.replace('<', '&lt;')} |")
+    return lines
+
+
+def pages() -> dict[str, str]:
+    """Name below ``reference/`` to text."""
+    lines = [
+        "# Variables of the archives", "",
+        "Made from the schemas of the archives and the vocabulary. A file has those that its test or "
+        "campaign gives; SI. A suffix is part of the name: `tension_standard_uncertainty`. How to "
+        "read them: [Reading the archives](../archive.md).", "",
+        "| suffix | means |", "|---|---|",
+        *(f"| `{end}` | {words.format('...')} |" for end, (words, _, _) in SUFFIXES.items()), "",
+    ]  # fmt: skip
+    for title, schema in _FILES.items():
+        lines += [f"## {title}", "", *_rows(schema), ""]
+    return {"variables.md": "\n".join(lines)}

@@ -1,0 +1,201 @@
+"""The page as a file: what was read before stays where it still holds, and appears in one piece."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, cast, get_args
+
+from jinja2 import Environment, StrictUndefined
+
+from reduction import __version__
+from reduction.archive.write import write_whole
+from reduction.designpage.campaigns import CampaignLines, read_campaigns, state_of
+from reduction.designpage.exportdata import EXPORT_CONSTANTS, curves_of_published
+from reduction.designpage.linedata import line_data
+from reduction.designpage.printed import errata_told, printed_at
+from reduction.line.product import REASONS
+from reduction.published.linesource import published_sources
+from reduction.surface.tested import ABOVE_LEVERAGE
+from reduction.units import Dimension, UnitSystem, display_unit, scale_to_si
+from reduction.vocabulary import quantity
+
+__all__ = ["MOST_BYTES", "PAGE_NAME", "render_design_page", "write_design_page"]
+
+PAGE_NAME = "design-values.html"
+MOST_BYTES = 2_600_000
+"""Of the lines of campaigns on one page; what is beyond is named there, and looked up elsewhere."""
+_FORMAT = 1
+"""Of what one page keeps for the next."""
+_TIMES = 3
+_SCRIPTS = (
+    "format.js", "student.js", "surface.js", "curve.js", "loads.js", "lookup.js", "shown.js",
+    "identify.js", "linetype.js", "dynamics.js", "moordyn.js", "chart.js", "page.js",
+)  # fmt: skip
+_DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
+_OF_LINES = (
+    "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
+    "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient", "tangent_modulus",
+    "branch_tension", "strain",
+)  # fmt: skip
+_SYMBOLS = ("K_ap", "H", "K_0", "K_1", "tau", "N")
+_LEVELS: dict[str, Dimension] = {
+    "frequency": "frequency", "mean_tension": "force", "tension_amplitude": "force",
+    "tension": "force", "strain": "strain",
+}  # fmt: skip
+_GIVEN: dict[Dimension, tuple[str, ...]] = {
+    "frequency": ("Hz",),
+    "force": ("N", "kN", "lbf"),
+    "strain": ("%", "1"),
+    "linear_density": ("kg/m", "g/m", "lb/ft"),
+    "length": ("mm", "in", "m"),
+}
+
+
+def write_design_page(processed: Path, reports: Path) -> Path:
+    """Write the page of a folder of products, or write it again.
+
+    Parameters
+    ----------
+    processed : pathlib.Path
+        Folder in which campaigns have theirs; an archive that cannot be read is named on the page.
+    reports : pathlib.Path
+        Folder of the page; one that is there is replaced in one piece.
+
+    Returns
+    -------
+    path : pathlib.Path
+        ``design-values.html``.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    path = reports / PAGE_NAME
+    known = _files_on(path)
+    for _ in range(_TIMES):
+        state = state_of(processed)
+        campaigns = read_campaigns(processed, known)
+        write_whole(path, render_design_page(campaigns))
+        if state_of(processed) == state:
+            break
+        # another run ended meanwhile, and the page that it wrote may just have been replaced
+        known = {one.name: one.files for one in campaigns}
+    return path
+
+
+def render_design_page(campaigns: Sequence[CampaignLines] = ()) -> str:
+    """Return the page as HTML that opens from disk.
+
+    Parameters
+    ----------
+    campaigns : sequence of CampaignLines
+        Beside the published lines; of more than a page can hold, those that were written last.
+
+    Returns
+    -------
+    html : str
+        With everything inside.
+    """
+    room = files("reduction.designpage")
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    page = environment.from_string((room / "templates" / PAGE_NAME).read_text("utf-8"))
+    kept, left_out = _that_fit(campaigns)
+    data = _constants() | {
+        "format": _FORMAT,
+        "campaigns": [
+            {"name": one.name, "files": one.files, "names": one.names} for one in kept
+        ],
+        "faults": [
+            [one.name, name, text] for one in campaigns for name, text in one.faults.items()
+        ],
+        "left_out": left_out,
+    }  # fmt: skip
+    return page.render(
+        style=(room / "static" / "page.css").read_text("utf-8"),
+        script="\n".join((room / "static" / name).read_text("utf-8") for name in _SCRIPTS),
+        data=_json(data),
+    )
+
+
+def _constants() -> dict[str, Any]:
+    """What does not depend on any campaign."""
+    lines = tuple(published_sources().values())
+    published = [
+        line_data(line)
+        | {"printed": printed_at(line), "export": curves_of_published(line, lines)}
+        for line in lines
+    ]  # fmt: skip
+    known = {name: quantity(name) for name in (*_OF_LINES, *_LEVELS)}
+    units = {one.unit for one in known.values()}
+    return {
+        "version": __version__,
+        "published": published,
+        "errata": errata_told(lines),
+        "quantities": {name: [one.unit, one.long_name] for name, one in known.items()},
+        "symbols": dict(zip(_OF_LINES, _SYMBOLS, strict=False)),
+        "shown": {
+            unit: {
+                system: list(display_unit(unit, cast("UnitSystem", system)))
+                for system in get_args(UnitSystem)
+            }
+            for unit in sorted(units)
+        },
+        "levels": _LEVELS,
+        "given": {
+            dimension: {unit: scale_to_si(unit, dimension)[0] for unit in given}
+            for dimension, given in _GIVEN.items()
+        },
+        "above_leverage": ABOVE_LEVERAGE,
+        "reasons": {str(number): text for number, text in REASONS.items()},
+        "export": EXPORT_CONSTANTS,
+    }
+
+
+def _that_fit(campaigns: Sequence[CampaignLines]) -> tuple[list[CampaignLines], list[list[Any]]]:
+    """Campaigns with the files that the page has room for, and how many lines have none."""
+    room, kept, left_out = MOST_BYTES, {}, []
+    for one in sorted(campaigns, key=lambda one: -one.changed):
+        own, left = {}, 0
+        # surfaces are of all tests of an experiment, and small
+        for stem in sorted(one.files, key=lambda stem: not _has_surfaces(one.files[stem])):
+            size = len(_json(one.files[stem]))
+            if size <= room:
+                own[stem] = one.files[stem]
+                room -= size
+            else:
+                left += len(one.files[stem]["lines"])
+        files_kept = {stem: own[stem] for stem in one.files if stem in own}
+        kept[one.name] = CampaignLines(one.name, files_kept, one.faults, one.changed)
+        if left:
+            left_out.append([one.name, left])
+    return [kept[one.name] for one in campaigns], left_out
+
+
+def _has_surfaces(file: Mapping[str, Any]) -> bool:
+    return any(line["surfaces"] for line in file["lines"])
+
+
+def _json(data: Any) -> str:
+    """JSON that ends no element of a page, whatever stands in it."""
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
+
+
+def _files_on(path: Path) -> dict[str, dict[str, Any]]:
+    """What the page that is there keeps of campaigns; nothing of one of another version."""
+    try:
+        found = _DATA.search(path.read_text(encoding="utf-8"))
+        data = json.loads(found[1]) if found is not None else {}
+        if (data["format"], data["version"]) != (_FORMAT, __version__):
+            return {}
+        return {one["name"]: one["files"] for one in data["campaigns"]}
+    except (OSError, ValueError, KeyError, TypeError):
+        # no page, or one that is not ours: everything is read
+        return {}

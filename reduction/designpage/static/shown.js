@@ -1,0 +1,105 @@
+// What a reader is shown of a look-up: the same texts as the command gives.
+
+const TENSIONS = ["mean_tension", "tension_amplitude", "tension"];
+
+function displayUnit(unit, system) {
+  return DATA.shown[unit][system];
+}
+
+function unitOfLevel(name, system) {
+  return name === "strain" ? ["%", 100] : displayUnit(unitOf(name), system);
+}
+
+function span(factor, low, high) {
+  if (!(Number.isFinite(low) && Number.isFinite(high))) return "-";
+  return `${short(factor * low)} to ${short(factor * high)}`;
+}
+
+function remarksOf(found) {
+  const isBelow = found.value < 0;
+  return [
+    ["OUTSIDE what was tested", !found.inside],
+    ["untested corner", found.is_untested],
+    ["peak above the strength it has", found.own_peak_share >= 1],
+    ["peak above the rule", found.is_above_rule],
+    ["snap load: goes slack", found.is_slack && found.peak > 0],
+    ["below zero: no value", isBelow],
+    ["lower end below zero: not told from zero", !isBelow && (found.low < 0 || found.surface_low < 0)],
+  ].filter((one) => one[1]).map((one) => one[0]);
+}
+
+// Headings and cells of one row, as the table of the command has them.
+function rowOf(line, found, levels, system) {
+  const row = [];
+  for (const [name, value] of Object.entries(levels)) {
+    const [unit, factor] = unitOfLevel(name, system);
+    row.push([`${name.replaceAll("_", "\n")}\n[${unit}]`, short(factor * value)]);
+    if (TENSIONS.includes(name) && Number.isFinite(line.rated_break_strength)) {
+      row.push(["\n[%RBS]", short((100 * value) / line.rated_break_strength, 4)]);
+    }
+  }
+  const [unit, factor] = displayUnit(found.unit, system);
+  row.push([`value\n[${unit}]`, short(factor * found.value)]);
+  row.push(...intervalsOf(found).map(([head, low, high]) => [head, span(factor, low, high)]));
+  row.push(["peak\n[%RBS]", short(100 * found.peak_share, 4)]);
+  row.push(["minimum\n[%RBS]", short(100 * found.minimum_share, 4)]);
+  if (Number.isFinite(line.tensile_strength)) {
+    row.push(["peak [% of what\nit still has]", short(100 * found.own_peak_share, 4)]);
+  }
+  row.push(["remark", remarksOf(found).join("; ")]);
+  return row;
+}
+
+function intervalsOf(found) {
+  return [
+    ["95 % of\none more run", found.low, found.high],
+    [`95 % of\nthe ${found.interval_of ? "surface" : "one test"}`, found.surface_low, found.surface_high],
+    ["95 % of\nanother line", found.line_low, found.line_high],
+  ].filter((one) => Number.isFinite(one[1]));
+}
+
+// What is stated of the line, its rule, its errata and notes; each sentence once.
+function saidOf(line, found) {
+  const said = [];
+  for (const [what, value] of [["in air", line.linear_density], ["in water", line.wet_linear_density]]) {
+    if (Number.isFinite(value)) said.push(`linear density ${what}: ${short(value)} kg/m`);
+  }
+  said.push(`rule: ${found.rule}`);
+  if (found.errata.length) said.push(`errata that touch it: ${found.errata.join(", ")}`);
+  said.push(...found.notes.map((note) => `note: ${note}`));
+  return distinct(said);
+}
+
+function headlineOf(line, found) {
+  const branch = found.branch ? `, ${found.branch} branch` : "";
+  return `${found.quantity} of ${line.name}${branch}; ${found.source}`;
+}
+
+// Level in SI of a number and a unit; a share is one of the break strength.
+function levelInSi(name, number, unit, strength) {
+  if (unit === "%RBS") {
+    if (!Number.isFinite(strength)) {
+      throw new Refusal("a share of the break strength is given, but no break strength", {
+        found: `'${number} %RBS'`, needed: "rated_break_strength of the specimen",
+      });
+    }
+    return (number / 100) * strength;
+  }
+  return DATA.given[DATA.levels[name]][unit] * number;
+}
+
+// The answer to a question as a whole, or the refusal of it.
+function answer({ line, quantity, levels, branch = null, flag = false, system = "si" }) {
+  const of = LINES.find((one) => one.key === line);
+  const at = Object.fromEntries(Object.entries(levels).map(([name, [number, unit]]) => (
+    [name, levelInSi(name, number, unit, of.rated_break_strength)])));
+  try {
+    const found = lookUp(of, quantity, at, { branch, flag });
+    return {
+      headline: headlineOf(of, found), row: rowOf(of, found, at, system), said: saidOf(of, found), found, at,
+    };
+  } catch (error) {
+    if (!(error instanceof Refusal)) throw error;
+    return { refused: error.message, refusal: error, at };
+  }
+}
