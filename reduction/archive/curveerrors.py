@@ -7,6 +7,7 @@ import xarray as xr
 
 from reduction.archive.shared import components_of
 from reduction.archive.statederrors import stated_errors_of
+from reduction.archive.stored import stored
 from reduction.compare.shared import SharedErrors, constant_errors
 from reduction.record import Bools, Floats
 
@@ -62,7 +63,7 @@ def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tupl
     which no other sample shares; it is in the scatter.
     """
     for curve, modulus, axis in _CURVES:
-        rows = archive.get(f"{curve}_uncertainty_contribution")
+        rows = stored(archive, f"{curve}_uncertainty_contribution")
         if rows is None or modulus not in archive:
             continue
         tension, of_error = archive[curve].values[place], rows.values[:, place]

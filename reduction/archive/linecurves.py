@@ -9,6 +9,7 @@ import xarray as xr
 
 from reduction.archive.freedom import random_freedom
 from reduction.archive.shared import components_of
+from reduction.archive.stored import stored
 from reduction.lookup.line import Branch
 from reduction.lookup.product import LineCurve
 from reduction.record import Bools
@@ -96,10 +97,10 @@ def _uncertainty(dataset: xr.Dataset, name: str, place: tuple[int, ...], seen: B
         "standard_uncertainty": spread[seen],
         "degrees_of_freedom": np.array(freedom[seen]),
     }
-    stored = dataset.get(f"{name}_uncertainty_contribution")
-    if stored is None:
+    own_rows = stored(dataset, f"{name}_uncertainty_contribution")
+    if own_rows is None:
         return found
-    rows = np.nan_to_num(np.moveaxis(stored.values, 0, -1)[place].T)[:, seen]
+    rows = np.nan_to_num(np.moveaxis(own_rows.values, 0, -1)[place].T)[:, seen]
     touched = np.flatnonzero(rows.any(axis=1))
     component = components_of(dataset)
     return found | {

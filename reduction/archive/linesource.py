@@ -10,6 +10,7 @@ import xarray as xr
 
 from reduction.archive.linecurves import curves_of_specimen
 from reduction.archive.shared import components_of
+from reduction.archive.stored import stored
 from reduction.archive.surface_read import surface_names, surfaces_of
 from reduction.errors import ArchiveError
 from reduction.lookup.linesurface import LineSurface
@@ -144,7 +145,7 @@ def _shared(
 
     Not a number, where that is not kept of every run.
     """
-    rows = dataset.get(f"{name}_coefficient_uncertainty_contribution")
+    rows = stored(dataset, f"{name}_coefficient_uncertainty_contribution")
     if rows is None:
         return (), np.empty((0, n_terms))
     own = rows.to_numpy()[row, :, :n_terms]

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.shared import components_of
+from reduction.archive.stored import stored
 from reduction.record import Floats
 from reduction.uncertainty.product import Contributions
 
@@ -49,7 +50,7 @@ def parts_of(
     shared : Contributions or None
         Errors that touch it; None where the archive keeps none apart. [unit of the curve]
     """
-    rows = dataset.get(f"{name}{_ROWS}")
+    rows = stored(dataset, f"{name}{_ROWS}")
     whole = f"{name}_standard_uncertainty"
     own = np.asarray(
         dataset[whole if rows is None else f"{name}_random_standard_uncertainty"].values

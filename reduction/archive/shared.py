@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.reasons import OF_UNCERTAINTY
+from reduction.archive.stored import stored
 from reduction.archive.values import Values, texts
 from reduction.archive.variable import Variable, companion, count, label, stated
 from reduction.errors import ArchiveError
@@ -219,7 +220,7 @@ def shared_contributions(archive: xr.Dataset, name: str, *place: int) -> dict[Co
     contributions : dict of Component to float
         [unit of the quantity]
     """
-    rows = archive.get(f"{name}_uncertainty_contribution")
+    rows = stored(archive, f"{name}_uncertainty_contribution")
     if rows is None:
         return {}
     components = components_of(archive)
@@ -236,8 +237,7 @@ def components_of(archive: xr.Dataset, experiment: int | None = None) -> list[Co
     names = ("uncertainty_source", "uncertainty_source_of", "uncertainty_source_number")
     columns = [archive[name].values for name in names]
     own = columns if experiment is None else [column[experiment] for column in columns]
-    # asked for by its name alone, a variable that is not there is sought among all of like names
-    kept = archive[FREEDOM] if FREEDOM in archive else None
+    kept = stored(archive, FREEDOM)
     known = np.full(len(own[0]), np.inf)
     if kept is not None:
         known = kept.values if experiment is None else kept.values[experiment]

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from reduction.archive.stored import stored
 from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.errors import ArchiveError
 from reduction.record import Floats, Integers
@@ -145,7 +146,7 @@ class _Reader:
     def codes(self, what: str, reasons: dict[int, str]) -> NDArray[np.int8]:
         """Give the code of each reason; an archive without the text has none to give."""
         code = {text: number for number, text in reasons.items()}
-        texts = [self.dataset.get(f"{name}_{what}") for name in self.names]
+        texts = [stored(self.dataset, f"{name}_{what}") for name in self.names]
         found = [0 if text is None else code[str(text.values[self.row])] for text in texts]
         return np.array(found, dtype=np.int8)
 

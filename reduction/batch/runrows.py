@@ -12,6 +12,7 @@ import xarray as xr
 from reduction.archive.open import open_archive
 from reduction.archive.shared import shared_contributions
 from reduction.archive.statederrors import says_what_is_shared
+from reduction.archive.stored import stored
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.errors import ArchiveError
 from reduction.line.product import REASONS
@@ -64,7 +65,7 @@ def row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specim
     """What the archive of a run holds of one specimen."""
 
     def of_test(name: str) -> float:
-        stated = archive.get(f"test_{name}")
+        stated = stored(archive, f"test_{name}")
         return float("nan") if stated is None else float(stated.values[place])
 
     remarks = _refusal(plan, archive, place, specimen) if _NEEDS_LINE & set(plan.responses) else []
@@ -86,7 +87,7 @@ def row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specim
         valley = archive["valley_tension"].values[place, begin:]
         row["peak"], row["least"] = float(np.nanmax(peak)), float(np.nanmin(valley))
         remarks += _slack(valley <= MEASURED_SLACK * peak)
-    strength = archive.get("rated_break_strength")
+    strength = stored(archive, "rated_break_strength")
     row["strength"] = float("nan") if strength is None else float(strength.values[place])
     return row | {"specimen": specimen, "remark": "; ".join(remarks)}
 
@@ -99,7 +100,7 @@ def _slack(is_slack: Bools) -> list[str]:
 
 def _refusal(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> list[str]:
     """Why a run has no K_1 and tau; empty where it has."""
-    flags = archive.get("test_line_refusal")
+    flags = stored(archive, "test_line_refusal")
     code = _NO_REST if flags is None else int(flags.values[place])
     if code == 0:
         return []

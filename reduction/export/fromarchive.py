@@ -18,6 +18,7 @@ import xarray as xr
 
 from reduction.archive.open import open_archive
 from reduction.archive.pieceparts import parts_of
+from reduction.archive.stored import stored
 from reduction.errors import DataError, SettingsError
 from reduction.export.product import ExportLine
 from reduction.export.spread import CurveSpread
@@ -161,7 +162,7 @@ def _of_hose(archive: xr.Dataset, name: str | None) -> dict[str, Any]:
     broken = int(archive["hose_state"].attrs["flag_masks"][flags.index("broken")])
     known = np.isfinite(strain) & np.isfinite(tension) & ((state & broken) == 0)
     strain, tension = strain[known], tension[known]
-    spread = archive.get("tension_standard_uncertainty")
+    spread = stored(archive, "tension_standard_uncertainty")
     return {
         "name": str(archive["hose"].values[place]),
         "spread": None if spread is None else CurveSpread(spread.values[place][known]),

@@ -10,6 +10,7 @@ from typing import ClassVar, Literal
 import numpy as np
 import xarray as xr
 
+from reduction.archive.stored import stored
 from reduction.notes import Severity
 from reduction.record import Floats
 from reduction.report.hoseview import DEGREES, EVENT_WORDS
@@ -172,7 +173,7 @@ class ComparisonView(RowView):
     @property
     def shared_sources(self) -> list[str]:
         """Sources of what all samples of the test share, in fixed order."""
-        rows = self.data.get("measured_tension_uncertainty_contribution")
+        rows = stored(self.data, "measured_tension_uncertainty_contribution")
         if rows is None:
             return []
         own = np.nan_to_num(rows.values[:, self.index]).reshape(rows.shape[0], -1)

@@ -11,6 +11,7 @@ import xarray as xr
 
 from reduction.archive.schema import SCHEMA
 from reduction.archive.shared import components_of
+from reduction.archive.stored import stored
 from reduction.archive.variable import count, label, measured
 from reduction.moduli.interpolation import curve_at
 from reduction.record import Floats
@@ -58,7 +59,7 @@ def curves_of(archive: xr.Dataset) -> Iterator[Curve]:
     if "tangent_modulus" not in archive:
         return
     edges = archive["strain_bin_bounds"].values
-    rows = archive.get("tangent_modulus_uncertainty_contribution")
+    rows = stored(archive, "tangent_modulus_uncertainty_contribution")
     component = () if rows is None else tuple(components_of(archive))
     for row, specimen in enumerate(archive["specimen"].values):
         for column, branch in enumerate(archive["branch_name"].values):

@@ -1,0 +1,35 @@
+"""A variable of an archive that may not be there."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+__all__ = ["stored"]
+
+
+def stored(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
+    """Give a variable of an archive, or nothing.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An open archive.
+    name : str
+        Of the variable.
+
+    Returns
+    -------
+    variable : xarray.DataArray or None
+        As it lies there; not read yet.
+
+    Notes
+    -----
+    ``Dataset.get`` gives the same, but compares a name that is missing with all others for an error
+    message that nobody sees; where an archive has hundreds, that took a third of a report's time.
+
+    Examples
+    --------
+    >>> stored(xr.Dataset({"strain": 1.5}), "tension") is None
+    True
+    """
+    return dataset[name] if name in dataset else None
