@@ -1,8 +1,8 @@
 """Pages of the application programming interface: one for each room, with a section a module.
 
-Public is what a script may well import: every room of physics, what the reports print, exports, and
-the doors of the edges (one that opens, one that reads, one that runs). How an archive is laid out or
-a page put together inside is not.
+Public is what a script may well import: every room of physics, what the reports print, exports,
+and the doors of the edges (one that opens, one that reads, one that runs). How an archive is laid
+out or a page put together inside is not.
 """
 
 from __future__ import annotations

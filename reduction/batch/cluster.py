@@ -18,7 +18,7 @@ from reduction import __version__
 from reduction.batch.executor import Ended, Task
 from reduction.errors import ReductionError, SettingsError, WorkerError
 
-__all__ = ["DEATHS", "PATIENCE", "Cluster"]
+__all__ = ["DEATHS", "PATIENCE", "Cluster", "scheduler_lost"]
 
 Result = TypeVar("Result")
 
@@ -124,19 +124,22 @@ class Cluster:
         made once more, so that a task that had ended has not, at any line of this method.
         """
         last_seen = time.monotonic()
+        on_its_way = _LOOK
         while True:
             try:
                 error = task.future.exception(timeout=_LOOK)
                 if error is not None:
                     return _in_words(error)
-                return task.future.result(timeout=_LOOK)
+                return task.future.result(timeout=on_its_way)
             except TimeoutError:
                 last_seen = self._look(last_seen)
+                if task.future.status == "finished":
+                    on_its_way *= 2  # a result that is fetched again begins at its first byte
             except Exception as gone:
                 if task.future.status == "error":
                     continue
                 if isinstance(gone, (OSError, CancelledError)):
-                    return _scheduler_lost()
+                    return scheduler_lost()
                 raise
 
     def _as_they_end(self, tasks: Iterable[Task[Result]]) -> Iterator[_Sent[Result]]:
@@ -160,9 +163,12 @@ class Cluster:
     def _look(self, last_seen: float) -> float:
         """Refuse to wait for workers that do not come."""
         if self._client.status != "running":
-            raise _scheduler_lost()
-        if self._client.nthreads():
-            return time.monotonic()
+            raise scheduler_lost()
+        try:
+            if self._client.nthreads():
+                return time.monotonic()
+        except OSError as gone:  # the client does not know it yet
+            raise scheduler_lost() from gone
         if time.monotonic() - last_seen > PATIENCE:
             raise WorkerError(
                 "no worker is left",
@@ -220,7 +226,8 @@ def _work(
         return _Told(function(*known), worker.address)
 
 
-def _scheduler_lost() -> WorkerError:
+def scheduler_lost() -> WorkerError:
+    """The error of a run whose scheduler answers no more."""
     return WorkerError(
         "the scheduler was lost",
         hint="Products that were finished are kept; start it anew, and run again to go on.",

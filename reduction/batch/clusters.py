@@ -10,14 +10,16 @@ from contextlib import contextmanager
 from multiprocessing.resource_tracker import ensure_running
 
 import dask
-from distributed import Client, LocalCluster
+from distributed import Client, LocalCluster, Security
+from distributed.comm import get_address_host_port
 
-from reduction.batch.cluster import DEATHS, PATIENCE, Cluster
+from reduction.batch.cluster import DEATHS, PATIENCE, Cluster, scheduler_lost
 from reduction.errors import SettingsError, WorkerError
 
 __all__ = ["local_cluster", "users_cluster"]
 
 _ANSWER = 10.0  # how long a scheduler may take to answer [s]
+_PORTS = 65_536
 
 
 @contextmanager
@@ -89,9 +91,9 @@ def users_cluster(address: str) -> Iterator[Cluster]:
     Raises
     ------
     SettingsError
-        If no scheduler answers there.
+        If no scheduler answers there, or that is no address.
     WorkerError
-        If it has no worker.
+        If it has no worker, or is lost while one is waited for.
     """
     with _silence(), _client(address) as client:
         try:
@@ -102,18 +104,42 @@ def users_cluster(address: str) -> Iterator[Cluster]:
                 found=f"none for {PATIENCE:.0f} s",
                 needed=f"one started with `dask worker {address}`",
             ) from error
+        except OSError as error:
+            raise scheduler_lost() from error
         yield Cluster(client)
 
 
 def _client(address: str) -> Client:
+    # a client that fails before it asks waits at its end for an answer, and says so in its words
+    if not _is_address(address):
+        raise _no_answer(address)
+    is_encrypted = address.partition("://")[0] in ("tls", "wss")
+    if is_encrypted and Security().get_connection_args("client")["ssl_context"] is None:
+        raise SettingsError(
+            "the address of --scheduler asks for TLS, and no certificate is known",
+            found=address,
+            needed="distributed.comm.tls in the configuration of Dask, or tcp://",
+        )
     try:
         return Client(address, timeout=_ANSWER, set_as_default=False)
     except (OSError, ValueError, ImportError) as error:
-        raise SettingsError(
-            "no scheduler answers at the address of --scheduler",
-            found=f"{address}: {error}",
-            needed="the address that `dask scheduler` prints, tcp://HOST:PORT",
-        ) from error
+        raise _no_answer(f"{address}: {error}") from error
+
+
+def _is_address(address: str) -> bool:
+    """Whether a text names a host and a port."""
+    try:
+        return 0 < get_address_host_port(address)[1] < _PORTS
+    except ValueError:
+        return False
+
+
+def _no_answer(found: str) -> SettingsError:
+    return SettingsError(
+        "no scheduler answers at the address of --scheduler",
+        found=found,
+        needed="the address that `dask scheduler` prints, such as tcp://192.0.2.1:8786",
+    )
 
 
 @contextmanager

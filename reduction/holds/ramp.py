@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_increasing, as_same_shape
+from reduction.record import Floats
 
-__all__ = ["Ramp", "find_ramp"]
+__all__ = ["Ramp", "begins_inside", "find_ramp"]
 
 
 @dataclass(frozen=True)
@@ -92,14 +93,9 @@ def find_ramp(
     """
     seconds = as_increasing("time", time)
     seconds, place, load = as_same_shape(time=seconds, position=position, tension=tension)
-    away = place - place[-1]
-    distant = np.flatnonzero(np.abs(away) > band)
-    if distant.size == 0:
+    reach, _ = _way_back(place, band)
+    if reach.size == 0:
         return None
-    # Backwards from the hold, positive in the direction from which the crosshead came.
-    back = (away * np.sign(away[distant[-1]]))[::-1]
-    turned = np.flatnonzero(np.maximum.accumulate(back) - back > band)
-    reach = back[: turned[0]] if turned.size else back
     # The last sample within the band of the far end: a standstill there is no part of the ramp.
     first = place.size - 1 - int(np.flatnonzero(reach >= reach.max() - band)[0])
     seconds, place, load = seconds[first:], place[first:], load[first:]
@@ -122,3 +118,45 @@ def find_ramp(
         duration=min(end - float(seconds[0]), float(np.sqrt(12 * spread))),
         stiffness=float(np.polyfit(place[upper], load[upper], 1)[0]) if stroke > 0 else np.nan,
     )
+
+
+def begins_inside(position: ArrayLike, *, band: float) -> bool:
+    """Whether a series shows where its last motion began, so that nothing before it counts.
+
+    Parameters
+    ----------
+    position : array_like, shape (n_samples,)
+        Up to the first sample of the hold. [m]
+    band : float
+        A change of position within it is not motion. [m]
+
+    Returns
+    -------
+    begins_inside : bool
+        False where the motion may have begun before the series. [1]
+
+    Raises
+    ------
+    IndexError
+        If there is no sample.
+
+    Examples
+    --------
+    >>> begins_inside([0.0, 1.0, 2.0], band=0.1), begins_inside([5.0, 0.0, 1.0, 2.0], band=0.1)
+    (False, True)
+    """
+    return _way_back(np.asarray(position, dtype=np.float64), band)[1]
+
+
+def _way_back(place: Floats, band: float) -> tuple[Floats, bool]:
+    """Distance from the last sample, backwards through the last motion; whether a turn ends it.
+
+    Positive in the direction from which the crosshead came; empty without motion.
+    """
+    away = place - place[-1]
+    distant = np.flatnonzero(np.abs(away) > band)
+    if distant.size == 0:
+        return np.empty(0), False
+    back = (away * np.sign(away[distant[-1]]))[::-1]
+    turned = np.flatnonzero(np.maximum.accumulate(back) - back > band)
+    return (back[: turned[0]], True) if turned.size else (back, False)

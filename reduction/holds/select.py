@@ -11,21 +11,57 @@ from __future__ import annotations
 
 import numpy as np
 
-from reduction.holds.ramp import find_ramp
+from reduction.holds.ramp import Ramp, begins_inside, find_ramp
 from reduction.holds.support import Hold
 from reduction.phases.standstill import Standstills
 from reduction.record import Floats, Integers
+from reduction.samples.blocks import sample_blocks
 
 __all__ = ["select_hold"]
 
+_LOOKED_BACK = 1 << 16
+"""Samples before a hold in which its ramp is looked for at first: many cycles may lie between two
+holds."""
 
-def _sound_rows(time: Floats, *series: Floats) -> Integers:
-    """Rows whose values are finite and whose time is later than all before."""
+
+def _finite_rows(time: Floats, *series: Floats) -> Integers:
+    """Rows whose values are finite."""
     finite = np.isfinite(time)
     for one in series:
         finite &= np.isfinite(one)
-    rows = np.flatnonzero(finite)
-    return rows[np.diff(np.maximum.accumulate(time[rows]), prepend=-np.inf) > 0]
+    return np.flatnonzero(finite)
+
+
+def _sound_rows(time: Floats, *series: Floats, after: float = -np.inf) -> Integers:
+    """Rows whose values are finite and whose time is later than all before."""
+    rows = _finite_rows(time, *series)
+    latest = np.maximum.accumulate(np.concatenate([[after], time[rows]]))
+    return rows[np.diff(latest) > 0]
+
+
+def _latest(time: Floats, *series: Floats) -> float:
+    """Latest time of rows whose values are finite."""
+    latest = -np.inf
+    for part in sample_blocks(time.size, time, *series):
+        rows = _finite_rows(time[part], *(one[part] for one in series))
+        latest = time[part][rows].max(initial=latest)
+    return float(latest)
+
+
+def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) -> Ramp | None:
+    """The ramp that ends with the last sample, out of as much as shows where it began."""
+    n_looked = 0
+    while n_looked < time.size:
+        n_looked = min(max(2 * n_looked, _LOOKED_BACK), time.size)
+        start = time.size - n_looked
+        whole = time, moved, answer
+        rows = start + _sound_rows(
+            *(one[start:] for one in whole), after=_latest(*(one[:start] for one in whole))
+        )
+        before = [one[rows] for one in whole]
+        if rows.size > 2 and begins_inside(before[1], band=band):
+            break
+    return find_ramp(*before, band=band) if rows.size > 2 else None
 
 
 def select_hold(
@@ -91,9 +127,7 @@ def select_hold(
     moved, answer, band = position, tension, standstills.position_tolerance
     if standstills.tension_tolerance is not None:
         moved, answer, band = tension, position, standstills.tension_tolerance
-    rows = begin + _sound_rows(*(one[begin : first + 1] for one in (time, moved, answer)))
-    before = [one[rows] for one in (time, moved, answer)]
-    ramp = find_ramp(*before, band=band) if before[0].size > 2 else None
+    ramp = _ramp_before(*(one[begin : first + 1] for one in (time, moved, answer)), band=band)
     return Hold(
         time=seconds,
         position=place,

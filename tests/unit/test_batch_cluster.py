@@ -6,7 +6,8 @@ import time
 
 import cloudpickle
 import pytest
-from distributed import LocalCluster
+from distributed import Client, LocalCluster
+from distributed.comm import CommClosedError
 
 from reduction.batch import cluster as module
 from reduction.batch import clusters
@@ -183,6 +184,47 @@ def test_a_result_that_is_lost_after_it_was_said_to_have_ended_is_made_again(clu
     assert ended.error is None and ended.value != pid
 
 
+def test_a_result_that_takes_long_to_arrive_is_waited_for(cluster, monkeypatch):
+    """Each time that it is looked for it is fetched from its first byte on."""
+    monkeypatch.setattr(module, "_LOOK", 0.05)
+    task = cluster.start(slow_pid, stage="reduce", test="a")
+    whole = task.future.result
+
+    def slow(timeout):
+        if timeout < 0.5:
+            time.sleep(timeout)
+            raise TimeoutError
+        return whole(timeout=timeout)
+
+    monkeypatch.setattr(task.future, "result", slow)
+    (ended,) = cluster.ended([task])
+    assert ended.error is None and ended.value != os.getpid()
+
+
+def test_a_scheduler_that_is_lost_in_the_moment_in_which_it_is_asked_is_told(cluster, monkeypatch):
+    def closed():
+        raise CommClosedError("in <TCP (closed) ConnectionPool.ncores>")
+
+    monkeypatch.setattr(module, "_LOOK", 0.05)
+    monkeypatch.setattr(cluster._client, "nthreads", closed)
+    task = cluster.start(slow_pid, stage="reduce", test="a")
+    with pytest.raises(WorkerError, match="the scheduler was lost"):
+        list(cluster.ended([task]))
+
+
+def test_a_scheduler_that_is_lost_while_workers_are_waited_for_is_told(monkeypatch):
+    def lost(client, n_workers, timeout):
+        raise OSError("Timed out trying to connect")
+
+    monkeypatch.setattr(Client, "wait_for_workers", lost)
+    with (
+        LocalCluster(n_workers=0, dashboard_address="127.0.0.1:0") as bare,
+        pytest.raises(WorkerError, match="the scheduler was lost"),
+        users_cluster(bare.scheduler_address),
+    ):
+        pass
+
+
 def test_a_test_at_which_workers_die_fails_alone_and_with_words(cluster):
     kept = cluster.start(os._exit, 1, stage="survey", test="deadly")
     tasks = [
@@ -207,12 +249,28 @@ def test_an_address_where_no_scheduler_answers_is_refused(monkeypatch):
         pass
 
 
-@pytest.mark.parametrize("address", ["nonsense://x:1", "127.0.0.1:not-a-port"])
-def test_an_address_that_is_none_is_refused(address, monkeypatch):
-    monkeypatch.setattr(clusters, "_ANSWER", 0.3)
+@pytest.mark.parametrize(
+    "address",
+    ["nonsense://x:1", "127.0.0.1:not-a-port", "localhost", "", "tcp://host", "tcp://host:99999",
+     "tcp://ann:pass-word@host:1", "http://127.0.0.1:8786"],
+)  # fmt: skip
+def test_an_address_that_is_none_is_refused_before_a_client_is_made(address, monkeypatch):
+    monkeypatch.setattr(clusters, "Client", pytest.fail)
     with (
-        pytest.raises(SettingsError, match="no scheduler answers at the address of --scheduler"),
+        pytest.raises(
+            SettingsError, match="no scheduler answers at .* such as tcp://192.0.2.1:8786$"
+        ) as caught,
         users_cluster(address),
+    ):
+        pass
+    assert "pass-word" not in str(caught.value)
+
+
+def test_an_address_with_tls_needs_certificates(monkeypatch):
+    monkeypatch.setattr(clusters, "Client", pytest.fail)
+    with (
+        pytest.raises(SettingsError, match="asks for TLS, and no certificate is known; found tls"),
+        users_cluster("tls://127.0.0.1:1"),
     ):
         pass
 

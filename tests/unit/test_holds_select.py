@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from reduction.holds import select as selected
+from reduction.holds.ramp import find_ramp
 from reduction.holds.select import select_hold
 from reduction.phases.standstill import Standstills
 
@@ -74,3 +76,52 @@ def test_a_record_that_begins_in_the_hold_has_no_ramp():
 def test_a_standstill_that_is_not_there_is_an_error():
     with pytest.raises(IndexError):
         select(2)
+
+
+def cycled_before_a_hold(seed):
+    """Cycles, a way to a hold and the hold, with missing samples and a clock that slips back."""
+    rng = np.random.default_rng(seed)
+    turns = np.cumsum(rng.integers(3, 30, 20))
+    n_before = int(turns[-1])
+    position = np.interp(np.arange(n_before), turns, rng.uniform(0, 4, 20))
+    position = np.concatenate([position, np.full(50, position[-1])])
+    time = np.arange(position.size) / 10
+    time[rng.integers(0, n_before, 4)] += rng.uniform(-2, 3, 4)
+    tension = 100 * position + rng.normal(0, 0.1, position.size)
+    for series in (position, tension):
+        series[rng.integers(0, n_before, 6)] = np.nan
+    stand = replace(
+        STAND, first=np.array([n_before]), last=np.array([position.size - 1]),
+        start_time=time[[n_before]], end_time=time[[-1]], mean_position=position[[-1]],
+        mean_tension=tension[None, [-1]], is_rest=np.array([False]),
+    )  # fmt: skip
+    return {"time": time, "position": position, "tension": tension, "stand": stand}
+
+
+@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("length", [1, 2, 5, 64])
+def test_the_ramp_is_that_of_the_whole_record_however_far_is_looked_back(monkeypatch, length, seed):
+    record = cycled_before_a_hold(seed)
+    ramp = select(**record).ramp
+    monkeypatch.setattr(selected, "_LOOKED_BACK", length)
+    assert select(**record).ramp == ramp
+
+
+def test_many_cycles_before_a_hold_are_not_taken_along(monkeypatch):
+    number = np.arange(200_000)
+    position = np.where(number < 199_000, 2 + 2 * np.cos(number / 50), 6.0)
+    stand = replace(
+        STAND, first=np.array([199_000]), last=np.array([199_999]), is_rest=np.array([False]),
+        start_time=np.array([19_900.0]), end_time=np.array([19_999.9]),
+        mean_position=np.array([6.0]), mean_tension=np.array([[600.0]]),
+    )  # fmt: skip
+    lengths = []
+
+    def find(time, *series, band):
+        lengths.append(time.size)
+        return find_ramp(time, *series, band=band)
+
+    monkeypatch.setattr(selected, "find_ramp", find)
+    one = select(time=number / 10, position=position, tension=100 * position, stand=stand)
+    assert one.ramp.end_time == 19_900.0
+    assert lengths == [1 << 16]
