@@ -47,6 +47,10 @@ def local_cluster(n_workers: int) -> Iterator[Cluster]:
         "distributed.scheduler.allowed-failures": DEATHS,
         # samples of the stack and memory given back at every turn take a tenth of the time
         "distributed.worker.profile.enabled": False,
+        # what Dask notes of itself many times a second takes two to four hundredths of a process
+        "distributed.admin.tick.interval": "1s",
+        "distributed.admin.tick.limit": "1h",
+        "distributed.admin.system-monitor.interval": "1h",
         "distributed.nanny.pre-spawn-environ": {},
     }
     with dask.config.set(settings), _silence():
