@@ -11,7 +11,7 @@ from multiprocessing.resource_tracker import ensure_running
 
 import dask
 from distributed import Client, LocalCluster, Security
-from distributed.comm import get_address_host_port
+from distributed.comm.addressing import get_address_host_port
 
 from reduction.batch.cluster import DEATHS, PATIENCE, Cluster, scheduler_lost
 from reduction.errors import SettingsError, WorkerError

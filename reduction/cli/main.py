@@ -16,6 +16,7 @@ from reduction.cli.campaigncommands import check, init, report, run, schema, sni
 from reduction.cli.cataloguecommand import catalogue
 from reduction.cli.curvecommands import assembly, composite
 from reduction.cli.experimentcommands import experiment, surface
+from reduction.cli.explorecommand import explore
 from reduction.cli.lookupcommand import lookup
 from reduction.cli.predictioncommands import compare, predict
 from reduction.cli.publishedcommands import export, reproduce
@@ -64,5 +65,6 @@ app.command()(lookup)
 app.command()(budget)
 app.command()(catalogue)
 app.command()(report)
+app.command()(explore)
 app.command()(reproduce)
 app.command()(schema)

@@ -149,7 +149,7 @@ def _constants() -> dict[str, Any]:
         },
         "levels": _LEVELS,
         "given": {
-            dimension: {unit: scale_to_si(unit, dimension)[0] for unit in given}
+            dimension: [[unit, scale_to_si(unit, dimension)[0]] for unit in given]
             for dimension, given in _GIVEN.items()
         },
         "above_leverage": ABOVE_LEVERAGE,

@@ -11,7 +11,7 @@ from reduction.ingest.layout import CLOCK, Channel, Layout
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.resample import on_common_time
 from reduction.record import Floats
-from reduction.samples.blocks import finite_extremes, sample_blocks
+from reduction.samples.blocks import sample_blocks
 from reduction.samples.scratch import empty_like
 from reduction.units import Dimension, parse_quantity, scale_to_si
 
@@ -158,22 +158,31 @@ def _shared_time(log: RawLog, layout: Layout) -> Floats | None:
 
 def _check_restart(piece: Piece) -> None:
     """Refuse a log in which time starts again: a slip of the clock is short or small."""
+    time, low, high = piece.time, np.inf, -np.inf
+    for part in sample_blocks(time.size, time, overlap=1):
+        block = time[part]
+        falls = np.flatnonzero(np.diff(block) < 0)
+        if falls.size:  # of all samples so far: a clock may slip at every hundredth
+            first = np.fmin(np.fmin.accumulate(block)[falls], low)
+            top = np.fmax(np.fmax.accumulate(block)[falls], high)
+            is_far = top - block[falls + 1] > (top - first) / 2
+            for last, reached in zip(part.start + falls[is_far], top[is_far], strict=True):
+                _check_slip(piece, int(last), reached)
+        low, high = np.fmin.reduce(block, initial=low), np.fmax.reduce(block, initial=high)
+
+
+def _check_slip(piece: Piece, last: int, top: float) -> None:
+    """Refuse a fall of time after which it goes on for some samples, below where it was."""
     time = piece.time
-    falls_after = [
-        part.start + np.flatnonzero(np.diff(time[part]) < 0)
-        for part in sample_blocks(time.size, time, overlap=1)
-    ]
-    for last in np.concatenate([np.empty(0, dtype=np.intp), *falls_after]):
-        first, top = finite_extremes(time[: last + 1])
-        after = time[last + 1 : last + 2 + _RESTART_SAMPLES]
-        falls = top - after[0] > (top - first) / 2 and after.size > _RESTART_SAMPLES
-        if falls and after[-1] < top and np.all(np.diff(after) > 0):
-            place = piece.place_of(int(last) + 1, "time")
-            raise DataError(
-                "the log has two time bases: time starts again",
-                found=f"{after[0]:g} s after {time[last]:g} s"
-                + ("" if place else f" at {piece.row_of(int(last) + 1)}"),
-                needed="one time that goes on",
-                hint="Split the log, and give each part a test of its own.",
-                **place,
-            )
+    after = time[last + 1 : last + 2 + _RESTART_SAMPLES]
+    if after.size <= _RESTART_SAMPLES or after[-1] >= top or not np.all(np.diff(after) > 0):
+        return
+    place = piece.place_of(last + 1, "time")
+    raise DataError(
+        "the log has two time bases: time starts again",
+        found=f"{after[0]:g} s after {time[last]:g} s"
+        + ("" if place else f" at {piece.row_of(last + 1)}"),
+        needed="one time that goes on",
+        hint="Split the log, and give each part a test of its own.",
+        **place,
+    )

@@ -25,6 +25,7 @@ __all__ = [
     "probability",
     "share_text",
     "span",
+    "with_interval",
     "within",
     "words",
 ]
@@ -145,6 +146,7 @@ def measured(
 ) -> Cell:
     """Return a cell of a value and its expanded uncertainty, to two digits of the latter.
 
+    That holds before the decimal point as well: digits that nothing is known of are zeros.
     ``factor`` is its coverage factor, for the words that explain the table.  The short form has
     one digit where that is 2 or more, and is off by a fifth at most.
 
@@ -152,6 +154,8 @@ def measured(
     --------
     >>> measured(1.23456e6, 1.2e4, Shown("MPa", 1e-6)).text
     '1.235 ± 0.012'
+    >>> measured(156633.2, 1038.1).text
+    '156,600 ± 1,000'
     >>> measured(1.23456e6, 7.2e3, Shown("MPa", 1e-6), is_short=True).text
     '1.235 ± 0.007'
     """
@@ -168,7 +172,7 @@ def measured(
         text = f"{value * scale:.4g} ± {half:.2g}"
         return Cell(text, _exact(value), is_number=True, factors=factors)
     leading = half / 10.0 ** floor(log10(half))
-    places = _decimals(half, 1 if is_short and leading >= _LEAST_LEADING else 2)
+    places = _places(half, 1 if is_short and leading >= _LEAST_LEADING else 2)
     shown = f"{_fixed(value * scale, places)} ± {_fixed(half, places)}"
     return Cell(shown, _exact(value), is_number=True, factors=factors)
 
@@ -181,9 +185,24 @@ def within(value: float, low: float, high: float, unit: Shown) -> Cell:
     >>> within(4.8101, 3.8163, 6.4818, Shown("s", 1.0)).text
     '4.8 (3.8 to 6.5)'
     """
-    places = _decimals((high - low) / 2 * unit.factor, 2)
+    shown, ends = with_interval(value, low, high, unit)
+    return Cell(f"{shown.text} ({ends.text})", shown.value, is_number=True)
+
+
+def with_interval(value: float, low: float, high: float, unit: Shown) -> tuple[Cell, Cell]:
+    """Return a cell of a value and one of its interval, to two digits of half of that.
+
+    Examples
+    --------
+    >>> [cell.text for cell in with_interval(156633.2, 155595.0, 157671.0, Shown("N", 1.0))]
+    ['156,600', '155,600 to 157,700']
+    """
+    if not (isfinite(low) and isfinite(high)):
+        return number(value, unit), Cell(NOT_GIVEN, is_number=True)
+    places = _places((high - low) / 2 * unit.factor, 2)
     shown, *ends = (_fixed(one * unit.factor, places) for one in (value, low, high))
-    return Cell(f"{shown} ({' to '.join(ends)})", _exact(value), is_number=True)
+    interval = Cell(" to ".join(ends), f"{_exact(low)} {_exact(high)}", is_number=True)
+    return Cell(shown, _exact(value), is_number=True), interval
 
 
 def factors_of(rows: Iterable[Iterable[Cell]]) -> list[float]:
@@ -237,13 +256,18 @@ def span(low: float, high: float, unit: Shown, *, places: int) -> Cell:
 
 def _fixed(value: float, places: int) -> str:
     """Return a number to so many places; what rounds to zero has no sign."""
-    return f"{round(value, places) + 0.0:,.{places}f}"
+    return f"{round(value, places) + 0.0:,.{max(places, 0)}f}"
 
 
 def _decimals(value: float, digits: int) -> int:
+    return max(_places(value, digits), 0)
+
+
+def _places(value: float, digits: int) -> int:
+    """Return the place of the last of so many digits, below zero where it is before the point."""
     if value == 0:
         return 0
-    return min(max(digits - 1 - floor(log10(abs(value))), 0), _MOST_DECIMALS)
+    return min(digits - 1 - floor(log10(abs(value))), _MOST_DECIMALS)
 
 
 def _exact(value: float) -> str:

@@ -12,6 +12,7 @@ from reduction.archive.products import archives_of_tests
 from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
 from reduction.report.clientreport import PAGE_NAME, ClientContent, render_client_report
+from reduction.report.designmoduli import design_modulus_table
 from reduction.report.designtables import design_tables
 from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.campaign import (
@@ -132,6 +133,7 @@ def _page_of(
         *whole.comparisons,
     ]
     intervals = [interval_table(view) for view in tests]
+    moduli = design_modulus_table(tests)
     speakers = [*tests, *whole.views]
     first = speakers[0] if speakers else None
     of_tests = tiles(tests, statuses, faults)
@@ -161,7 +163,7 @@ def _page_of(
         instruments=instrument_table(tests, units),
         instrument_notes=instrument_sentences(tests),
         tests=test_table(tests, statuses),
-        answers=whole.answers,
+        answers=[*whole.answers, *([moduli] if moduli else [])],
         designs=design_tables(tests),
         segments=segment_table(tests),
         intervals=[table for table in intervals if table is not None],

@@ -21,6 +21,7 @@ from reduction.report.htmltable import (
     number_text,
     probability,
     share_text,
+    with_interval,
     words,
 )
 from reduction.report.sources import source_words
@@ -67,12 +68,10 @@ def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | No
             continue
         unit = response_unit(base, view.units)
         low, high = float(lows[k, 0]), float(highs[k, 0])
-        ends = " to ".join(number_text(end * unit.factor, 5) for end in (low, high))
         rows.append(
             [
                 words(unit.label(f"{in_words(base)}{_ON_SCALE.get(surfaces.transform[k], '')}")),
-                number(float(middle.value[k, 0]), unit, digits=5),
-                Cell(ends if np.isfinite(low) else NOT_GIVEN, f"{low!r} {high!r}", is_number=True),
+                *with_interval(float(middle.value[k, 0]), low, high, unit),
                 number(float(least[k]), unit),
                 number(float(greatest[k]), unit),
             ]

@@ -127,7 +127,9 @@ def _frame(horizontal: DrawnAxis, vertical: DrawnAxis) -> Iterator[str]:
         x = horizontal.at(tick.value)
         yield f'<path class="grid" d="M{x:.1f} {bottom:.1f}V{top:.1f}"/>'
         for row, line in enumerate(tick.lines):
-            yield _text(x, bottom + 14 + 12 * row, line, "middle")
+            is_beyond = x + _LETTER * len(line) / 2 > horizontal.last + _RIGHT
+            place = (horizontal.last + _RIGHT, "end") if is_beyond else (x, "middle")
+            yield _text(place[0], bottom + 14 + 12 * row, line, place[1])
     for tick in vertical.ticks:
         y = vertical.at(tick.value)
         yield f'<path class="grid" d="M{horizontal.first:.1f} {y:.1f}H{horizontal.last:.1f}"/>'

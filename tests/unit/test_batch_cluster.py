@@ -290,7 +290,11 @@ def test_a_run_does_not_wait_for_ever_for_workers_that_are_lost(monkeypatch):
     monkeypatch.setattr(module, "_LOOK", 0.1)
     with (
         LocalCluster(
-            n_workers=1, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0"
+            n_workers=1,
+            threads_per_worker=1,
+            processes=False,
+            protocol="tcp",
+            dashboard_address="127.0.0.1:0",
         ) as own,
         users_cluster(own.scheduler_address) as found,
     ):

@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from reduction.report.htmltable import NOT_GIVEN, count, make_table, measured, number, span, words
+from reduction.report.htmltable import (
+    NOT_GIVEN,
+    count,
+    make_table,
+    measured,
+    number,
+    span,
+    with_interval,
+    words,
+)
 from reduction.report.style import Shown
 
 MPA = Shown("MPa", 1e-6)
@@ -75,3 +84,17 @@ def test_what_is_missing_stands_flush_right_in_a_column_of_numbers():
     table = make_table("Caption.", ("name", "value", "remark"), rows, synthetic=False)
     assert [cell.is_number for cell in table.rows[1]] == [False, True, False]
     assert not table.rows[0][2].is_number
+
+
+def test_digits_before_the_point_of_which_nothing_is_known_are_zeros():
+    assert measured(50052.3, 376.4).text == "50,050 ± 380"
+    assert measured(-16897.0, 1152.0).text == "-16,900 ± 1,200"
+    assert measured(299.6, 37.0, is_short=True).text == "300 ± 40"
+    assert measured(40.0, 5000.0).text == "0 ± 5,000"
+
+
+def test_a_value_and_its_interval_have_the_same_places():
+    shown = [cell.text for cell in with_interval(4.9996, 4.633, 5.3663, Shown("s", 1.0))]
+    assert shown == ["5.00", "4.63 to 5.37"]
+    value, interval = with_interval(2.0, float("nan"), 3.0, Shown("s", 1.0))
+    assert (value.text, interval.text) == ("2.000", NOT_GIVEN)

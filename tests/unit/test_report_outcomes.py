@@ -56,7 +56,7 @@ def test_strength_has_its_change_against_new_with_an_interval():
     table = strength_table(view([*BREAKS, SPLICE]), "tensile_strength")
     assert column(table, "group") == ["PD, new, 0 years", "PD, worn, 2 years", "PD, worn, 4 years"]
     # two breaks 100 to either side of their mean: 100 of it, times 12.71 for one degree of freedom
-    assert column(table, "mean tensile strength [lbf]")[0] == "6,500 ± 1,271"
+    assert column(table, "mean tensile strength [lbf]")[0] == "6,500 ± 1,300"
     assert "k = " in table.remarks[0] and "12.71)" in table.remarks[0]
     assert column(table, "change against new [%]")[1].startswith("-18.5 ± ")
     assert " to " in column(table, "interval of the change")[1]

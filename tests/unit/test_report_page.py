@@ -414,22 +414,33 @@ def test_wherever_a_plus_minus_stands_its_meaning_stands_too(
         assert PLUS_MINUS in text, text[:300]
 
 
-def test_the_first_answer_is_the_modulus_at_round_strains(report, rich_test):
+def test_the_first_answer_is_the_modulus_to_design_with_and_the_rest_is_folded(report, rich_test):
     page = report(rich_test)
     headings = [a.get("id") for tag, a in page.elements if tag == "h2"]
     assert headings[0] == "answer"
     captions = list(page.tables)
-    assert captions[0].startswith("new: tangent modulus at stated strains")
-    assert captions[1].startswith("used: tangent modulus at stated strains")
+    assert captions[0].startswith("Modulus to design with")
+    assert captions[1].startswith("new: tangent modulus at stated strains")
+    assert captions[2].startswith("used: tangent modulus at stated strains")
     folded = [a for tag, a in page.elements if tag == "details" and a.get("class") == "segments"]
-    assert len(folded) == 1 and "open" not in folded[0]
+    assert len(folded) == 2 and not any("open" in one for one in folded)
 
 
-def test_the_segments_are_unfolded_where_no_round_strain_is_reached(report, rich_test):
+def test_without_round_strains_the_segments_alone_are_folded(report, rich_test):
     curves = replace(rich_test.curves, strain_bin=rich_test.curves.strain_bin * 0 + 0.0031)
     page = report(replace(rich_test, curves=curves))
     folded = [a for tag, a in page.elements if tag == "details" and a.get("class") == "segments"]
-    assert len(folded) == 1 and "open" in folded[0]
+    assert len(folded) == 1
+
+
+def test_what_is_wrong_stands_above_the_answer_and_leads_to_the_whole_list(report, rich_test):
+    page = report(rich_test)
+    lists = [a for tag, a in page.elements if tag == "ul" and a.get("class") == "urgent"]
+    assert len(lists) == 1
+    text = "".join(page.text)
+    first = text.index("the last cycle is broken")
+    assert first < text.index("Modulus to design with")
+    assert text.index("the last cycle is broken", first + 1) > text.index("Anything wrong", first)
 
 
 def test_the_notes_of_a_test_stand_under_headings_most_serious_first(report, rich_test):

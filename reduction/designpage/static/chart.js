@@ -1,6 +1,6 @@
 // Small figures of the quantity over one level through the chosen point.
 
-const CHART = { width: 360, height: 230, left: 58, right: 10, top: 10, bottom: 40, steps: 60 };
+const CHART = { width: 330, height: 220, left: 52, right: 10, top: 10, bottom: 40, steps: 60 };
 const SVG = "http://www.w3.org/2000/svg";
 
 function svg(name, attributes = {}, text = null) {
@@ -16,7 +16,7 @@ function ticksOf(low, high, count) {
   const step = [1, 2, 5, 10].map((one) => one * size).find((one) => one >= raw);
   const found = [];
   for (let place = Math.ceil(low / step - 1e-9); place * step <= high + step * 1e-9; place += 1) {
-    found.push(place * step);
+    found.push(place * step + 0); // no zero with a sign
   }
   return found;
 }
@@ -73,6 +73,7 @@ function chartOf({ line, quantity, branch, levels, name, found, x: [xUnit, xFact
   const toX = (x) => CHART.left + ((x - left + edge) / (right - left + 2 * edge)) * box;
   const toY = (y) => CHART.top + ((top - y) / (top - bottom)) * tall;
   const words = name.replaceAll("_", " ");
+  const xShown = xUnit === "1" ? words : `${words} [${xUnit}]`;
   const root = svg("svg", {
     viewBox: `0 0 ${CHART.width} ${CHART.height}`, role: "img",
     "aria-label": `${quantity.replaceAll("_", " ")} over ${words}, tested ${short(xFactor * low)} to ${short(xFactor * high)} ${xUnit}`,
@@ -80,10 +81,12 @@ function chartOf({ line, quantity, branch, levels, name, found, x: [xUnit, xFact
   root.append(svg("rect", {
     x: CHART.left, y: CHART.top, width: box, height: tall, class: "untested",
   }), svg("rect", { x: toX(low), y: CHART.top, width: toX(high) - toX(low), height: tall, class: "tested" }));
-  for (const tick of ticksOf(yFactor * bottom, yFactor * top, 4)) {
+  const ticks = ticksOf(yFactor * bottom, yFactor * top, 4);
+  const thousands = thousandsOf(Math.max(...ticks.map(Math.abs)));
+  for (const tick of ticks) {
     const y = toY(tick / yFactor);
     root.append(svg("line", { x1: CHART.left, x2: CHART.left + box, y1: y, y2: y, class: "grid" }),
-      svg("text", { x: CHART.left - 5, y: y + 4, class: "tick end" }, general(tick, 4)));
+      svg("text", { x: CHART.left - 5, y: y + 4, class: "tick end" }, general(tick / 1000 ** thousands, 4)));
   }
   for (const tick of ticksOf(xFactor * (left - edge), xFactor * (right + edge), 5)) {
     const x = toX(tick / xFactor);
@@ -111,10 +114,10 @@ function chartOf({ line, quantity, branch, levels, name, found, x: [xUnit, xFact
       svg("circle", { cx: x, cy: y, r: 5, class: "point" }));
   }
   root.append(
-    svg("text", { x: CHART.left + box / 2, y: CHART.height - 6, class: "label middle" }, `${words} [${xUnit}]`),
+    svg("text", { x: CHART.left + box / 2, y: CHART.height - 6, class: "label middle" }, xShown),
     svg("text", {
       x: 12, y: CHART.top + tall / 2, class: "label middle", transform: `rotate(-90 12 ${CHART.top + tall / 2})`,
-    }, `${SYMBOL_OF(quantity)} [${yUnit}]`));
+    }, `${symbolOf(quantity)} [${unitWithPower(yUnit, thousands)}]`));
   return root;
 }
 
@@ -128,6 +131,18 @@ function connected(points) {
   return parts.filter((part) => part.length > 1);
 }
 
-function SYMBOL_OF(quantity) {
+// Power of a thousand that leaves the numbers of an axis short.
+function thousandsOf(greatest) {
+  if (!(greatest > 0) || (greatest < 10000 && greatest >= 0.1)) return 0;
+  return Math.floor(Math.log10(greatest) / 3 + 1e-9);
+}
+
+function unitWithPower(unit, thousands) {
+  if (!thousands) return unit;
+  const power = String(3 * thousands).replace(/./g, (sign) => (sign === "-" ? "\u207b" : "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"[sign]));
+  return `10${power}${unit === "1" ? "" : ` ${unit}`}`;
+}
+
+function symbolOf(quantity) {
   return DATA.symbols[quantity] ?? quantity.replaceAll("_", " ");
 }

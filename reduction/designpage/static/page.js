@@ -142,7 +142,7 @@ function levelNames(line, quantity) {
 }
 
 function unitsOfLevel(line, name) {
-  const units = Object.keys(DATA.given[DATA.levels[name]]);
+  const units = DATA.given[DATA.levels[name]].map((one) => one[0]);
   const force = system() === "us" ? ["lbf"] : ["N", "kN"];
   if (DATA.levels[name] !== "force") return units;
   return [...(Number.isFinite(line.rated_break_strength) ? ["%RBS"] : []), ...force];
@@ -161,7 +161,7 @@ function makeLevels() {
   for (const name of levelNames(line, quantity)) {
     const [low, high] = rangeOfLevel(line, quantity, name, branch);
     const units = unitsOfLevel(line, name);
-    const before = STATE.levels[name];
+    const before = typedIn(units, name);
     const unit = before && units.includes(before[1]) ? before[1] : units[0];
     const isKept = before && before[2] && units.includes(before[1]);
     const number = isKept ? before[0] : short(inUnit(line, name, (low + high) / 2, unit), 4);
@@ -171,9 +171,9 @@ function makeLevels() {
       id: `level-${name}`, type: "text", inputmode: "decimal", "aria-describedby": `tested-${name}`, spellcheck: "false",
     });
     input.value = number;
-    const select = element("select", null, { id: `unit-${name}`, "aria-label": `unit of ${name.replaceAll("_", " ")}` });
-    fill(select, units.map((one) => [one, one === "1" ? "as a number" : one]), unit);
     const words = name.replaceAll("_", " ");
+    const select = element("select", null, { id: `unit-${name}`, "aria-label": `unit of ${words}` });
+    fill(select, units.map((one) => [one, one === "1" ? "as a number" : one]), unit);
     row.append(element("label", words[0].toUpperCase() + words.slice(1), { for: input.id }), input, select,
       element("span", testedText(line, name, low, high, unit), { id: `tested-${name}`, class: "small" }));
     input.addEventListener("input", () => {
@@ -191,6 +191,15 @@ function makeLevels() {
     });
     box.append(row);
   }
+}
+
+// What was typed for a level; a force in a unit that is not shown now is written in one that is.
+function typedIn(units, name) {
+  const before = STATE.levels[name];
+  if (!before || !before[2] || units.includes(before[1]) || before[1] === "%RBS") return before;
+  const unit = units.find((one) => one !== "%RBS");
+  const number = (Number(before[0]) * scaleOf(DATA.levels[name], before[1])) / scaleOf(DATA.levels[name], unit);
+  return [before[0] !== "" && Number.isFinite(number) ? general(number, 6) : before[0], unit, true];
 }
 
 function testedText(line, name, low, high, unit) {
@@ -217,15 +226,33 @@ function listOf(texts, name = "ul") {
   return list;
 }
 
+// The cells of a row, each under the heading that the command gives it.
 function showRow(row) {
-  const box = element("dl", null, { class: "row-of-values" });
+  const box = element("div", null, { class: "row-of-values" }), intervals = element("dl", null, { class: "intervals" });
+  const at = element("dl", null, { class: "at" });
+  let last = null;
   for (const [head, text] of row) {
-    if (head === "remark") continue;
-    const words = head.replaceAll("\n", " ").trim();
-    const part = element("div", null, { class: head.startsWith("value") ? "value" : head.startsWith("95") ? "interval" : "level-shown" });
-    part.append(element("dt", words === "[%RBS]" ? "the same [%RBS]" : words), element("dd", text));
-    box.append(part);
+    const cell = element(head.startsWith("value") ? "strong" : "span", text, { "data-head": head });
+    const words = head.replaceAll("\n", " ").trim(), [, name, unit] = words.match(/^(.*?) ?(?:\[(.*)\])?$/);
+    if (head.startsWith("value")) {
+      const value = element("p", null, { class: "value" });
+      value.append(cell, ` ${unit === "1" ? "" : unit}`);
+      box.append(value);
+      box.dataset.unit = unit;
+    } else if (head.startsWith("95")) {
+      intervals.append(element("dt", words), element("dd"));
+      intervals.lastChild.append(cell, ` ${box.dataset.unit === "1" ? "" : box.dataset.unit}`);
+    } else if (head !== "remark" && !name) {
+      last.append(", ", cell, " %RBS");
+    } else if (head !== "remark") {
+      last = element("dd");
+      last.append(cell, ` ${unit === "% of what it still has" ? "% of the strength it still has" : unit}`);
+      at.append(element("dt", name), last);
+    }
   }
+  if (intervals.childElementCount) box.append(intervals);
+  else box.append(element("p", "no interval: the source states no scatter", { class: "small" }));
+  box.append(at);
   return box;
 }
 
@@ -241,6 +268,11 @@ function showRefusal(said, asked) {
   said.append(box);
 }
 
+// The answer in a line, for a screen on which it lies below the form.
+function brief(text) {
+  byId("brief").textContent = text;
+}
+
 function show() {
   const asked = query(), said = byId("said"), line = chosenLine();
   said.replaceChildren();
@@ -252,6 +284,7 @@ function show() {
     said.append(element("p", line ? "Nothing of this line can be looked up." : "No line has all of these: take a filter or a word away."));
     if (line) showAbsent(line);
     byId("type").hidden = true;
+    brief("");
     return;
   }
   byId("type").hidden = false;
@@ -260,13 +293,16 @@ function show() {
   byId("command").textContent = commandOf(line, asked);
   if (asked.bad) {
     said.append(element("p", `${asked.bad.replaceAll("_", " ")} is no number`, { class: "refused-title" }));
+    brief("Not a number");
     return;
   }
   const found = answer(asked);
   if (found.refusal) {
     showRefusal(said, found);
+    brief("Refused: why");
   } else {
-    const remarks = remarksOf(found.found);
+    const remarks = remarksOf(found.found), [unit, factor] = displayUnit(found.found.unit, asked.system);
+    brief(`${symbolOf(asked.quantity)} ${short(factor * found.found.value)} ${unit === "1" ? "" : unit}${remarks.length ? " (flagged)" : ""}`);
     if (remarks.length) {
       const flags = listOf(remarks);
       flags.className = "flags";
@@ -318,12 +354,12 @@ function showNotes(line, asked, found) {
   fact("condition", line.condition);
   fact("diameter", diameterOf(line));
   if (Number.isFinite(line.rated_break_strength)) {
-    fact("%RBS are of", `${short(scale * line.rated_break_strength)} ${force}${line.strength_of ? ` (${line.strength_of})` : ""}`);
+    fact("%RBS is of", `${short(scale * line.rated_break_strength)} ${force}${line.strength_of ? ` (${line.strength_of})` : ""}`);
   }
   if (Number.isFinite(line.tensile_strength)) fact("strength it still has", `${short(scale * line.tensile_strength)} ${force}`);
   notes.append(element("h3", "Source"), facts);
   if (found.found) {
-    notes.append(element("h3", "Notes"), listOf(found.said));
+    notes.append(element("h3", "Notes"), listOf(found.said.map((one) => one.replace(/^note: /, ""))));
     const errata = found.found.errata.filter((one) => one in DATA.errata);
     if (errata.length) {
       notes.append(element("h3", "Errata"));
@@ -348,12 +384,28 @@ function commandOf(line, asked) {
   const parts = line.campaign
     ? [quoted(`processed/${line.campaign}`), "--line", quoted(line.name)] : [quoted(line.name)];
   for (const [name, [number, unit]] of Object.entries(asked.levels)) {
-    parts.push(`--${name.replaceAll("_", "-")}`, `"${number} ${unit === "1" ? "" : unit}"`.replace(' "', '"'));
+    parts.push(`--${name.replaceAll("_", "-")} "${unit === "1" ? number : `${number} ${unit}`}"`);
   }
   if (asked.branch) parts.push("--branch", asked.branch);
   if (asked.flag) parts.push("--extrapolate", "flag");
   if (asked.system === "us") parts.push("--units", "us");
   return `reduction lookup ${parts[0]} --quantity ${asked.quantity} ${parts.slice(1).join(" ")}`;
+}
+
+// The export that writes the files of a line type.
+function exportCommandOf(line, asked, { form, curve, file }) {
+  const parts = [line.campaign ? quoted(`processed/${line.campaign}/${line.test}.nc`) : quoted(line.name), "--to moordyn"];
+  if (line.campaign) parts.push("--specimen", quoted(line.specimen), "--curve", curve);
+  if (form !== "table") {
+    parts.push("--form", form, ...Object.entries(asked.levels)
+      .map(([name, given]) => `--${name.replaceAll("_", "-")} "${given.join(" ")}"`));
+    if (asked.flag) parts.push("--extrapolate flag");
+  }
+  for (const [name] of STATED) {
+    const [text, unit] = STATE.stated[name] ?? ["", ""];
+    if (text !== "") parts.push(`--${name.replaceAll("_", "-")} "${text} ${unit}"`);
+  }
+  return `reduction export ${parts.join(" ")} --out ${file}`;
 }
 
 async function copy(text, what) {
@@ -435,7 +487,7 @@ function showTypeText(line, asked, found, form, curve) {
       box.append(element("p", `${name.replaceAll("_", " ")} is no number`, { class: "refused-title" }));
       return;
     }
-    stated[name] = DATA.given[dimension][unit] * Number(text);
+    stated[name] = scaleOf(dimension, unit) * Number(text);
   }
   try {
     const isAt = form !== "table" && "mean_tension" in found.at && "tension_amplitude" in found.at;
@@ -455,6 +507,8 @@ function showTypeText(line, asked, found, form, curve) {
       row.append(button);
       box.append(row, element("pre", text, { tabindex: "0", "aria-label": name }));
     }
+    box.append(element("p", "The same files from the command line:", { class: "small" }),
+      element("pre", exportCommandOf(line, asked, { form, curve, file: files[0][0] }), { tabindex: "0" }));
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
     box.append(element("p", error.message, { class: "refused" }));
@@ -538,6 +592,14 @@ function start() {
   byId("ask").addEventListener("submit", (event) => event.preventDefault());
   byId("copy-link").addEventListener("click", () => copy(location.href, "link"));
   byId("print").addEventListener("click", () => window.print());
+  for (const one of document.querySelectorAll('a[href="#answer"]')) {
+    one.addEventListener("click", (event) => {
+      // the link of the page holds the state, and stays
+      event.preventDefault();
+      byId("answer").focus();
+      byId("answer").scrollIntoView();
+    });
+  }
   window.addEventListener("hashchange", takeLink);
   if (!takeLink()) refill();
 }

@@ -85,7 +85,12 @@ function levelInSi(name, number, unit, strength) {
     }
     return (number / 100) * strength;
   }
-  return DATA.given[DATA.levels[name]][unit] * number;
+  return scaleOf(DATA.levels[name], unit) * number;
+}
+
+// Factor from a unit that may be given to SI.
+function scaleOf(dimension, unit) {
+  return DATA.given[dimension].find((one) => one[0] === unit)[1];
 }
 
 // The answer to a question as a whole, or the refusal of it.

@@ -1,0 +1,225 @@
+"""The answers of a test as it is on the disk and as a change would make it, side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import isfinite, nan
+
+import numpy as np
+
+from reduction.archive.budget import all_budgets, budget_from_archive, quantities_with_budget
+from reduction.errors import ReductionError
+from reduction.report.htmltable import (
+    NOT_GIVEN,
+    Cell,
+    Table,
+    count,
+    factors_of,
+    make_table,
+    measured,
+    number,
+    words,
+)
+from reduction.report.style import Kind, Shown, shown
+from reduction.report.uncertainty import factor_words
+from reduction.report.view import TestView
+from reduction.uncertainty.budget import Budget
+
+__all__ = ["answer_table"]
+
+_QUANTITIES: tuple[tuple[str, str, Kind], ...] = (
+    ("segment_modulus", "segment", "stress"),
+    ("stress_at_strain", "stress of the first loading at", "stress"),
+    ("test_apparent_spring_constant", "apparent spring constant", "tension"),
+    ("test_hysteresis_energy", "hysteresis energy of a cycle", "energy"),
+    ("test_loss_factor", "loss factor", "number"),
+    ("test_quasi_static_spring_constant", "quasi-static spring constant", "tension"),
+    ("test_dissipation_spring_constant", "dissipation spring constant", "tension"),
+    ("test_relaxation_time", "relaxation time", "time"),
+    ("dynamic_stiffness", "dynamic stiffness", "tension"),
+    ("relaxation_drop", "tension lost in", "strain"),
+    ("relaxation_rate_per_decade", "tension lost per decade of time in", "strain"),
+    ("creep_rate_per_decade", "strain gained per decade of time in", "strain"),
+    ("long_time_tension", "tension that is tended to in", "tension"),
+)
+_PLACES = (0.1, 0.5, 0.9)
+Key = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """One number: what it is, its unit, value and expanded uncertainty in SI.
+
+    ``range`` is what it was taken over, where that may move with a setting.
+    """
+
+    words: str
+    unit: Shown
+    value: float
+    half: float = nan
+    factor: float = nan
+    range: tuple[float, float] | None = None
+
+    @property
+    def cell(self) -> Cell:
+        if self.unit.unit == "":
+            return count(self.value)
+        return measured(self.value, self.half, self.unit, factor=self.factor)
+
+
+def answer_table(before: TestView | None, after: TestView | None) -> Table | None:
+    """Return the answers before and after a change, with the difference.
+
+    Parameters
+    ----------
+    before, after : TestView or None
+        None where the test cannot be reduced so.
+
+    Returns
+    -------
+    table : Table or None
+        None where there is no number in either.
+    """
+    view = after or before
+    if view is None:
+        return None
+    strains = _common_strains([one for one in (before, after) if one is not None])
+    old = {} if before is None else dict(_answers(before, strains))
+    new = {} if after is None else dict(_answers(after, strains))
+    rows = [_row(old.get(key), new.get(key)) for key in dict.fromkeys([*old, *new])]
+    if not rows:
+        return None
+    factors = factor_words(factors_of(rows))
+    return make_table(
+        "Answers as campaign.toml is, and as it would be.",
+        ("number", "as it is", "changed", "unit", "difference", "difference [%]", "over U [1]"),
+        rows, synthetic=view.is_synthetic, is_compact=True,
+        remarks=[
+            f"±: expanded uncertainty U, 95 %{f' ({factors})' if factors else ''}. Both columns"
+            " are of one log and share its errors: a difference beyond a part of U is the choice"
+            " of settings, not chance. Moduli at a strain are read between the bins."
+        ],
+    )  # fmt: skip
+
+
+def _row(old: _Answer | None, new: _Answer | None) -> list[Cell]:
+    one = new or old
+    if one is None:
+        return []
+    missing = Cell(NOT_GIVEN, is_number=True)
+    head = [
+        words(one.words),
+        missing if old is None else old.cell,
+        missing if new is None else new.cell,
+        words(one.unit.unit or "1"),
+    ]
+    if old is None or new is None or not isfinite(new.value - old.value):
+        return [*head, missing, missing, missing]
+    if not _is_same_range(old, new):
+        return [*head, words("over another range"), missing, missing]
+    moved = new.value - old.value
+    share = 100 * moved / abs(old.value) if old.value else nan
+    over = abs(moved) / old.half if isfinite(old.half) and old.half > 0 else nan
+    return [
+        *head,
+        _signed(moved, one.unit.factor),
+        _signed(share, 1.0),
+        number(over, digits=2),
+    ]
+
+
+def _is_same_range(old: _Answer, new: _Answer) -> bool:
+    """Whether both are of one range, to a tenth of it."""
+    if old.range is None or new.range is None:
+        return True
+    width = old.range[1] - old.range[0]
+    moved = max(abs(a - b) for a, b in zip(old.range, new.range, strict=True))
+    return moved <= 0.1 * width
+
+
+def _signed(value: float, factor: float) -> Cell:
+    cell = number(value * factor, digits=3)
+    sign = "+" if isfinite(value) and value > 0 else ""
+    return Cell(f"{sign}{cell.text}", repr(float(value)) if isfinite(value) else "", True)
+
+
+def _common_strains(views: list[TestView]) -> dict[tuple[str, str], list[float]]:
+    """Strains at which every view has a modulus: the middle of the range and near its ends."""
+    ranges: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    for view in views:
+        strain, modulus = view.array("strain_bin"), view.array("tangent_modulus")
+        if strain is None or modulus is None:
+            continue
+        for index, specimen in enumerate(view.specimens):
+            for place, branch in enumerate(view.texts("branch_name")):
+                known = strain[np.isfinite(modulus[index, place])]
+                if known.size > 1:
+                    ends = (float(known[0]), float(known[-1]))
+                    ranges.setdefault((specimen, branch), []).append(ends)
+    found = {}
+    for key, known_ends in ranges.items():
+        low, high = max(one for one, _ in known_ends), min(one for _, one in known_ends)
+        if len(known_ends) == len(views) and low < high:
+            digits = 2 if high - low > 0.08 else 4
+            rounded = [round(low + place * (high - low), digits) for place in _PLACES]
+            found[key] = [one for one in rounded if low <= one <= high]
+    return found
+
+
+def _answers(
+    view: TestView, strains: dict[tuple[str, str], list[float]]
+) -> Iterator[tuple[Key, _Answer]]:
+    if "cycle" in view.data.sizes:
+        yield ("cycles",), _Answer("whole cycles", Shown("", 1.0), view.n_cycles)
+    in_stress = shown("stress", view.units)
+    for (specimen, branch), places in strains.items():
+        for strain in places:
+            at = {"specimen": specimen, "branch_name": branch, "strain_bin": repr(strain)}
+            try:
+                budget = budget_from_archive(view.data, "tangent_modulus", at)
+            except ReductionError:
+                continue  # a hole of the curve: the row says that there is no number
+            said = f"modulus at {100 * strain:g} %, {branch}, {specimen}"
+            yield ("at", specimen, branch, repr(strain)), _answer(said, in_stress, budget)
+    known = quantities_with_budget(view.data)
+    for name, said, kind in _QUANTITIES:
+        if name not in known:
+            continue
+        unit = shown(kind, view.units)
+        for budget in all_budgets(view.data, name):
+            key = (name, *(f"{dim}={label}" for dim, label in sorted(budget.place.items())))
+            yield key, _answer(_words_of(view, said, budget), unit, budget, _range(view, budget))
+
+
+def _answer(
+    said: str, unit: Shown, one: Budget, over: tuple[float, float] | None = None
+) -> _Answer:
+    half = one.expanded_uncertainty
+    label = said if over is None else f"{said} ({100 * over[0]:.4g} to {100 * over[1]:.4g} %)"
+    return _Answer(label, unit, one.value, half, one.coverage_factor, over)
+
+
+def _range(view: TestView, one: Budget) -> tuple[float, float] | None:
+    """Strains that a segment is over."""
+    if "segment" not in one.place:
+        return None
+    place = (
+        view.specimens.index(one.place["specimen"]),
+        view.texts("branch_name").index(one.place["branch_name"]),
+        view.texts("segment").index(one.place["segment"]),
+    )
+    low, high = view.array("segment_strain_low"), view.array("segment_strain_high")
+    return None if low is None or high is None else (float(low[place]), float(high[place]))
+
+
+def _words_of(view: TestView, said: str, one: Budget) -> str:
+    place = one.place
+    if "segment" in place:
+        return f"segment {place['segment']}, {place['branch_name']}, {place['specimen']}"
+    if "strain_level" in place:
+        return f"{said} {100 * float(place['strain_level']):g} %, {place['specimen']}"
+    if "hold" in place:
+        row = view.texts("hold").index(place["hold"])
+        return f"{said} hold {view.hold_numbers[row]}, {view.texts('hold_specimen')[row]}"
+    return ", ".join([said, *place.values()])

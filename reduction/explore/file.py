@@ -1,0 +1,246 @@
+"""campaign.toml as text: what it says of a test, what it would say, and how that is saved."""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import shutil
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+from reduction.archive.whole import whole_file
+from reduction.campaign.numbers import dimension_of
+from reduction.campaign.testtable import read_test_table
+from reduction.errors import ArchiveError, SettingsError
+from reduction.explore.edit import Value, edited, value_at
+from reduction.explore.keys import Setting, setting_of
+from reduction.explore.statements import Path as Keys
+
+__all__ = ["CampaignText", "Written"]
+
+Place = Literal["test", "defaults", "table", "nowhere"]
+_STEP_ENDS = ("from", "to")
+
+
+@dataclass(frozen=True)
+class Written:
+    """What campaign.toml says of a setting, and where; nothing where it is silent."""
+
+    place: Place
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class CampaignText:
+    """A campaign.toml as it stood when it was read."""
+
+    path: Path
+    text: str
+
+    @classmethod
+    def read(cls, path: Path) -> CampaignText:
+        """Read it; `SettingsError` where that is not possible."""
+        try:
+            return cls(path, path.read_bytes().decode("utf-8"))
+        except (OSError, UnicodeDecodeError) as error:
+            raise SettingsError(
+                f"{path}: the campaign cannot be read",
+                found=getattr(error, "strerror", None) or str(error),
+                needed="a campaign.toml",
+            ) from error
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """As TOML gives it."""
+        return tomllib.loads(self.text)
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of the file."""
+        return digest_of(self.text)
+
+    @cached_property
+    def in_table(self) -> dict[str, set[str]]:
+        """Keys of each test that stand in the table of tests, where there is one."""
+        tests = self.document.get("tests")
+        name = tests if isinstance(tests, str) else value_at(self.document, ("campaign", "tests"))
+        if not name:
+            return {}
+        rows = read_test_table(self.path.parent / str(name))
+        return {test: set(row.model_fields_set) for test, row in rows.items()}
+
+    def written(self, test: str, setting: Setting) -> Written:
+        """What stands of a setting of a test."""
+        if setting.path[0] in self.in_table.get(test, ()):
+            return Written("table")
+        own = ("tests", test, *setting.path)
+        if setting.key == "strain.method":
+            # a table of a test is taken whole: what it leaves out is not in the defaults
+            is_own = value_at(self.document, own[:-1]) is not None
+        else:
+            is_own = value_at(self.document, own) is not None
+        places: tuple[tuple[Place, Keys], ...] = (
+            (("test", own),) if is_own else (("defaults", ("defaults", *setting.path)),)
+        )
+        for place, keys in places:
+            value = value_at(self.document, keys)
+            if value is not None:
+                return Written(place, _as_text(value))
+        return Written("test" if is_own else "nowhere")
+
+    def step_ends(self, test: str, place: int) -> dict[str, str]:
+        """``from`` and ``to`` of a step of a log, by their keys on the page."""
+        return {
+            f"steps.{place}.{end}": _as_text(
+                value_at(self.document, ("tests", test, "steps", place, end)) or ""
+            )
+            for end in _STEP_ENDS
+        }
+
+    def changed(self, test: str, changes: Mapping[str, str], *, control: str) -> CampaignText:
+        """Return what the file would say with settings of one test changed.
+
+        Parameters
+        ----------
+        test : str
+            Key of the test in campaign.toml.
+        changes : mapping of str to str
+            Texts by key, as a person writes them; empty where the key is to be left out.
+        control : str
+            Channel of the test, which says what a band is.
+
+        Returns
+        -------
+        text : CampaignText
+            The same where nothing changes.
+
+        Raises
+        ------
+        SettingsError
+            If a key is not one that may be moved, or stands in the table of tests.
+        """
+        paths: dict[Keys, Value | None] = {}
+        for key, text in changes.items():
+            paths |= self._change(test, key, text.strip(), control)
+        if not paths:
+            return self
+        table = self.document.get("tests")
+        if isinstance(table, str):
+            # beside [tests.ID] the table of tests is named in [campaign]
+            paths = {("tests",): None, ("campaign", "tests"): table, **paths}
+        return CampaignText(self.path, edited(self.text, paths))
+
+    def _change(self, test: str, key: str, text: str, control: str) -> dict[Keys, Value | None]:
+        group, _, rest = key.partition(".")
+        place, _, end = rest.partition(".")
+        if group == "steps" and place.isdigit() and end in _STEP_ENDS:
+            if not text:
+                raise SettingsError(f"{key}: a step has both ends", needed='such as "1200 s"')
+            return {
+                ("tests", test, "steps", int(place), end): int(text) if text.isdigit() else text
+            }
+        setting = setting_of(key)
+        if setting is None:
+            raise SettingsError("a setting is not one that is moved here", found=repr(key))
+        if setting.path[0] in self.in_table.get(test, ()):
+            raise SettingsError(
+                f"{key} of test '{test}' stands in the table of tests", needed="a change there"
+            )
+        path = ("tests", test, *setting.path)
+        if setting.key == "strain.method":
+            return self._strain_change(test, text)
+        return {path: _as_value(setting, text, control) if text else None}
+
+    def _strain_change(self, test: str, method: str) -> dict[Keys, Value | None]:
+        """A test that has a strain method of its own names the marks again."""
+        own = value_at(self.document, ("tests", test, "strain"))
+        default = value_at(self.document, ("defaults", "strain")) or {}
+        rest = {key: value for key, value in (own or default).items() if key != "method"}
+        wanted = {"method": method, **rest} if method else rest
+        table = ("tests", test, "strain")
+        if own is None:
+            return {} if wanted == default else {table: wanted}
+        if wanted:
+            return {(*table, "method"): method or None}
+        # an empty table of its own keeps the method of the defaults away
+        return {table: {} if default.get("method") else None}
+
+    def difference(self, other: CampaignText) -> str:
+        """What another text would change, as a unified diff."""
+        name = self.path.name
+        lines = difflib.unified_diff(
+            self.text.splitlines(), other.text.splitlines(), name, f"{name} (changed)", lineterm=""
+        )
+        return "\n".join(lines)
+
+    def replace_with(self, other: CampaignText) -> None:
+        """Put another text in the place of this one, whole or not at all.
+
+        Raises
+        ------
+        SettingsError
+            If the file is not what this text was read from any more.
+        ArchiveError
+            If the disk refuses.
+        """
+        # a link is followed: what it leads to is replaced, and the link stays
+        target = self.path.resolve()
+        if CampaignText.read(target).digest != self.digest:
+            raise SettingsError(
+                f"{self.path} changed on the disk since it was read",
+                needed="the diff looked at again",
+                hint="Nothing was written. Load the file again.",
+            )
+        try:
+            with whole_file(target) as part:
+                part.write_bytes(other.text.encode("utf-8"))
+                shutil.copymode(target, part)
+        except OSError as error:
+            raise ArchiveError(
+                f"{self.path} cannot be written",
+                found=error.strerror or str(error),
+                hint="It is what it was before.",
+            ) from error
+
+
+def digest_of(text: str) -> str:
+    """SHA-256 of a text in UTF-8."""
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+
+
+def _as_text(value: object) -> str:
+    """A value as a person writes it into a field; entries of a list parted by commas."""
+    if isinstance(value, list):
+        return ", ".join(map(_as_text, value))
+    return str(value)
+
+
+def _as_value(setting: Setting, text: str, control: str) -> Value:
+    """A text of a field as campaign.toml has it; what it means is checked there."""
+    if setting.choices:
+        return text
+    group, _, name = setting.key.partition(".")
+    if setting.key in ("holds.times", "modulus.stress_at_strain"):
+        return [_number(one.strip()) for one in text.split(",") if one.strip()]
+    if dimension_of(group, name, control=control) is None:
+        number = _number(text)
+        if isinstance(number, str):
+            raise SettingsError(
+                f"{setting.key} is not a number", found=repr(text), needed="a number"
+            )
+        return number
+    return _number(text)
+
+
+def _number(text: str) -> Value:
+    """A number where the text is one, else the text: a value with its unit."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

@@ -1,0 +1,231 @@
+"""The report to a client: every field there or called missing, texts as text, one set of numbers."""
+
+import html
+import re
+from dataclasses import replace
+
+import pytest
+
+from reduction.archive.laboratory import keep_details
+from reduction.archive.open import open_archive
+from reduction.laboratory import Instrument, Item, Limit, Party, ReportDetails
+from reduction.report.clientfields import NOT_STATED
+from reduction.report.conformitytable import RULES
+from reduction.report.page import write_report
+from reduction.uncertainty.combine import coverage_factor
+
+NASTY = (
+    "</style></script><script>alert(1)</script> \"q\" 'x' & \\ \u2028\nnew line } @import url(//x)"
+)
+FIELDS = (
+    "Report number", "Revision", "Date of issue", "Laboratory", "Place of the tests", "Client",
+    "Order", "Items received", "Date of the tests", "Method", "Deviations from the method",
+    "Sampling", "Temperature", "Authorised by", "Function", "Date",
+)  # fmt: skip
+
+
+@pytest.fixture
+def client(tmp_path, write):
+    """Write a campaign and what its laboratory states; give the report to the client."""
+
+    def make(details, *tests, units="si"):
+        for test in tests:
+            write(test)
+        keep_details(tmp_path, details)
+        page = write_report(tmp_path, tmp_path / "reports", units=units)
+        beside = page.with_name("client-report.html")
+        return beside.read_text(encoding="utf-8") if beside.exists() else None
+
+    return make
+
+
+def shown(page):
+    """Fields of a page: label to text."""
+    rows = re.findall(r"<dt>(.*?)</dt><dd[^>]*>(.*?)</dd>", page, re.S)
+    return {html.unescape(label): html.unescape(text) for label, text in rows}
+
+
+def text_of(page):
+    body = page.partition("<body>")[2]
+    return " ".join(html.unescape(re.sub(r"<[^>]*>", " ", body)).split())
+
+
+def rows_of(page, caption):
+    table = page.partition(f"<caption>{caption}")[2].partition("</table>")[0]
+    return [
+        [html.unescape(cell) for cell in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, re.S)]
+        for row in table.split("<tr>")[1:]
+    ]
+
+
+AT = {"specimen": "new", "branch": "ascending", "strain": "1.0"}
+
+
+def limit(value, at=AT, **more):
+    return Limit("tangent_modulus", "T-1", at, lower=value, **{"source": "order"} | more)
+
+
+def test_a_campaign_that_states_nothing_has_no_such_report_and_loses_an_older_one(
+    client, rich_test
+):
+    assert client(None, rich_test) is None
+    assert client(ReportDetails(number="1")) is not None
+    assert client(None) is None
+
+
+def test_what_is_not_stated_is_called_so_field_by_field(client, rich_test):
+    page = client(
+        ReportDetails(),
+        replace(rich_test, description=replace(rich_test.description, attributes={})),
+    )
+    found = shown(page)
+    missing = {label for label, text in found.items() if text == NOT_STATED}
+    assert set(FIELDS) - missing == {"Revision"}
+    assert found["Revision"] == "0 (first issue)"
+    for name in ("identification", "condition on receipt"):
+        at = rows_of(page, "Items as they were received")[0].index(name)
+        assert {row[at] for row in rows_of(page, "Items as they were received")[1:]} == {NOT_STATED}
+    assert "No limit is stated" in text_of(page)
+    assert f"End of report {NOT_STATED}, revision 0" in text_of(page)
+
+
+def test_what_is_stated_stands_under_its_label(client, rich_test):
+    details = ReportDetails(
+        number="17", revision=2, amendment="table added", issued="today", received="May",
+        tested="June", method="P-12", deviations="none", sampling="by the client",
+        environment="23 °C", opinions="it may serve on", authorised_by="A. Person",
+        authorised_function="head", authorised_on="5 June",
+        laboratory=Party("Lab", "1 Street", location="the quay"), client=Party("Buoy", order="4711"),
+        items=(Item("new", "tag 1", "a tether", "wet", "4 May"),),
+        instruments=(Instrument("cell", "s/n 1", "cert 2", "PTB", "2025", "2027"),),
+    )  # fmt: skip
+    page = client(details, rich_test)
+    found = shown(page)
+    assert found["Revision"] == "2 — AMENDED REPORT: table added"
+    assert found["Laboratory"] == "Lab\n1 Street"
+    assert [found[label] for label in FIELDS if label not in ("Revision", "Laboratory", "Temperature")] == [
+        "17", "today", "the quay", "Buoy", "4711", "May", "June", "P-12", "none", "by the client",
+        "A. Person", "head", "5 June",
+    ]  # fmt: skip
+    assert found["Other conditions"] == "23 °C"
+    assert rows_of(page, "Items as")[1] == ["new", "tag 1", "a tether", "wet", "4 May"]
+    assert rows_of(page, "Items as")[2] == ["used", NOT_STATED, NOT_STATED, NOT_STATED, "May"]
+    assert rows_of(page, "Instruments and")[1] == ["cell", "s/n 1", "cert 2", "PTB", "2025", "2027"]
+    assert rows_of(page, "Instruments and")[2][0] == "tether machine"
+    assert "Opinion, not a result of the tests: it may serve on" in text_of(page)
+    assert "relate only to the items" in text_of(page) and "except in full" in text_of(page)
+    assert text_of(page).endswith("End of report 17, revision 2")
+
+
+def test_a_revision_that_does_not_say_what_it_changed_says_that(client, rich_test):
+    page = client(ReportDetails(revision=1), rich_test)
+    assert shown(page)["Revision"] == f"1 — AMENDED REPORT: what changed is {NOT_STATED}"
+
+
+def test_every_sheet_has_number_revision_page_and_the_word_synthetic(client, rich_test):
+    page = client(ReportDetails(number="17", revision=1, paper="Letter"), rich_test)
+    sheet = page.partition("<style>")[2].partition("}\n")[0]
+    assert "size: Letter" in sheet
+    assert '"Report 17, revision 1 \\28 amended\\29 "' in sheet
+    assert '"Page " counter(page) " of " counter(pages)' in sheet
+    assert "SYNTHETIC DATA" in sheet
+    assert page.count("SYNTHETIC DATA") > 10
+
+
+def test_measured_data_are_not_called_synthetic(client, stepwise_test):
+    page = client(ReportDetails(), stepwise_test)
+    assert "synthetic" not in text_of(page).lower()
+    assert "SYNTHETIC" not in page
+
+
+def test_texts_of_the_laboratory_are_text_on_the_page_and_in_the_margins(client, rich_test):
+    party = Party(NASTY, NASTY, NASTY, NASTY, NASTY, NASTY)
+    details = ReportDetails(
+        *[NASTY, 1, *[NASTY] * 9], laboratory=party, client=party, authorised_by=NASTY,
+        items=(Item("new", NASTY, NASTY, NASTY, NASTY), Item(NASTY)),
+        instruments=(Instrument(NASTY),), decision_rule="guard band",
+        limits=(limit(1.0, source=NASTY),),
+    )  # fmt: skip
+    page = client(details, rich_test)
+    assert "<script" not in page
+    assert page.count("<style>") == page.count("</style>") == 1
+    style = page.partition("<style>")[2].partition("</style>")[0]
+    assert "import" not in style.replace("\\40 import", "")
+    # what is quoted for the margins has no end of string, rule or element in it
+    for quoted in re.findall(r'content: "(.*?)";', style):
+        assert not set(quoted) & set("<>\"'{}()@;\n\u2028")
+    assert NASTY in shown(page)["Method"]
+
+
+def test_numbers_are_those_of_the_archive(client, rich_test, tmp_path):
+    page = client(ReportDetails(), rich_test)
+    rows = rows_of(page, "Test T-1")
+    with open_archive(tmp_path / "T-1.nc") as archive:
+        stiffness = archive["test_apparent_spring_constant"].values
+        energy = archive["test_hysteresis_energy"].values
+    exact = re.findall(
+        r'data-value="([^"]*)"', page.partition("<caption>Test T-1")[2].partition("</table>")[0]
+    )
+    assert {float(stiffness[0]), float(energy[0])} <= {float(one) for one in exact}
+    assert rows[0] == ["quantity", "item", "result", "unit", "k [1]"]
+    assert {row[1] for row in rows[1:]} <= {"new", "used"}
+
+
+def verdict_of(page):
+    row = rows_of(page, "Statements of conformity")[1]
+    return row[-1]
+
+
+def test_a_limit_is_held_against_the_number_of_the_archive_by_the_rule_that_is_printed(
+    client, rich_test, tmp_path
+):
+    client(None, rich_test)
+    with open_archive(tmp_path / "T-1.nc") as archive:
+        middle = archive["strain_bin"].values[2]
+        value = float(archive["tangent_modulus"].values[0, 0, 2])
+        u = float(archive["tangent_modulus_standard_uncertainty"].values[0, 0, 2])
+    at = {"specimen": "new", "branch": "ascending", "strain": repr(float(middle))}
+    least = float(coverage_factor(float("inf"))) * u
+    for rule, lower, expected in (
+        ("simple acceptance", value - 0.1 * u, "conforms"),
+        ("guard band", value - 0.1 * u, "no statement"),
+        ("guard band", value - 20 * least, "conforms"),
+        ("guard band", value + 20 * least, "does not conform"),
+        ("simple acceptance", value + 0.1 * u, "does not conform"),
+    ):
+        page = client(ReportDetails(decision_rule=rule, limits=(limit(lower, at=at),)))
+        assert verdict_of(page) == expected
+        assert RULES[rule] in text_of(page)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"test": "T-9"}, "no statement: there is no archive of the test"),
+        (
+            {"quantity": "relaxation_time"},
+            "no statement: test_relaxation_time does not vary with branch",
+        ),
+        ({"at": {"branch": "ascending"}}, "no statement: which specimen is meant is not said"),
+    ],
+)
+def test_a_limit_of_a_number_that_is_not_there_gives_no_statement_and_says_why(
+    client, rich_test, change, words
+):
+    one = replace(limit(1.0), **change)
+    page = client(ReportDetails(decision_rule="guard band", limits=(one,)), rich_test)
+    assert verdict_of(page).startswith(words)
+
+
+def test_us_units_change_what_is_shown(client, rich_test):
+    page = client(
+        ReportDetails(decision_rule="guard band", limits=(limit(1e6),)), rich_test, units="us"
+    )
+    assert "[psi]" in page and "[MPa]" not in page
+
+
+def test_the_page_asks_for_nothing_and_runs_nothing(client, rich_test):
+    page = client(ReportDetails(number="1"), rich_test)
+    assert "default-src 'none'" in page and "<script" not in page
+    assert not re.findall(r'(?:src|href)="(?!#)|url\((?!#)', page)
+    assert "<svg" in page

@@ -1,0 +1,109 @@
+"""The modulus to design with: one row a test and specimen, with what a designer has to know."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from reduction.report.designmoduli import design_modulus_table
+from reduction.report.htmltable import NOT_GIVEN
+from reduction.report.view import TestView
+
+S, B = "specimen", ("specimen", "branch_name", "strain_bin")
+NAN = np.nan
+
+
+def make_view(test="T-1", *, units="si", kind="rubber tether", whole=(1.2e6, 1.1e6), notes=()):
+    """Two specimens of 500 mm2; the descending branch of the second is not reached at its middle.
+
+    Ten cycles, nine of them in the tangents; standard uncertainties of 0.01 MPa, so that
+    what is shown is 1.96 and, of the tangents, 2.306 times as much.
+    """
+    modulus = 1e6 * np.array(
+        [[[1.0, 1.2, 1.4], [0.8, 1.0, 1.2]], [[0.9, 1.0, 1.1], [0.7, NAN, NAN]]]
+    )
+    spread = np.where(np.isfinite(modulus), 1e4, NAN)
+    data = {
+        "specimen_kind": (S, [kind, kind]),
+        "tangent_modulus": (B, modulus),
+        "tangent_modulus_standard_uncertainty": (B, spread),
+        "tangent_modulus_count": (B, np.full(modulus.shape, 9)),
+        "test_dynamic_modulus": (S, np.array(whole)),
+        "test_dynamic_modulus_standard_uncertainty": (S, [1e4, 1e4]),
+        "test_apparent_spring_constant": (S, 500e-6 * np.array(whole)),
+        "test_mean_strain": (S, [1.0, 1.1]),
+        "test_strain_amplitude": (S, [0.25, 0.25]),
+        "test_frequency": (S, [0.1, 0.1]),
+        "note_stage": ("note", [stage for stage, _ in notes]),
+        "note": ("note", [text for _, text in notes]),
+    }
+    own = {
+        S: ["new", "used"], "branch_name": ["ascending", "descending"],
+        "strain_bin": [0.9, 1.1, 1.3], "cycle": np.arange(1, 11),
+    }  # fmt: skip
+    return TestView(test, xr.Dataset(data, own, {"test": test}), units)
+
+
+def texts(table):
+    return [[cell.text for cell in row] for row in table.rows]
+
+
+def test_a_row_says_range_branches_cycles_and_factor():
+    table = design_modulus_table([make_view()])
+    first, second = texts(table)
+    # the middle of 75 to 125 % lies half-way between two bins
+    assert first[:4] == ["new", "T-1", "75 to 125", "0.10"]
+    assert first[4].startswith("1.200 ± 0.0")
+    assert first[5:7] == ["1.100 ± 0.023", "0.900 ± 0.023"]
+    assert first[7] == "10; 9"
+    assert first[8].endswith("2.31")
+    assert second[:3] == ["used", "T-1", "85 to 135"]
+    assert second[5] == "1.000 ± 0.023"
+    assert float(table.rows[0][5].value) == pytest.approx(1.1e6)
+
+
+def test_a_branch_without_a_value_there_has_a_dash_and_words_for_it():
+    table = design_modulus_table([make_view()])
+    assert texts(table)[1][6] == NOT_GIVEN
+    assert any("no trustworthy value" in text for text in table.remarks)
+    assert table.remarks[0].startswith("±: expanded uncertainty, 95 % (k = ")
+
+
+def test_specimens_stand_together_in_the_order_of_the_campaign():
+    table = design_modulus_table([make_view("T-2"), make_view("T-1")])
+    assert [row[:2] for row in texts(table)] == [
+        ["new", "T-2"], ["new", "T-1"], ["used", "T-2"], ["used", "T-1"],
+    ]  # fmt: skip
+
+
+def test_doubts_of_a_test_are_counted_beside_its_numbers():
+    notes = [("cycles", "the last cycle is broken"), ("moduli", "take an area of 5 cm2")]
+    doubted, sound = make_view(notes=notes), make_view("T-2")
+    column = {row[1]: row[9] for row in texts(design_modulus_table([doubted, sound]))}
+    assert column == {"T-1": "1", "T-2": "none"}
+
+
+def test_a_rope_has_the_force_of_its_whole_cycle_per_unit_strain():
+    table = design_modulus_table([make_view(kind="rope")])
+    assert table.columns[4] == "whole cycle [N]"
+    assert texts(table)[0][4] == "600.0"
+    assert table.caption.startswith("Stiffness to design with")
+
+
+def test_the_units_of_the_page_are_those_of_the_table():
+    table = design_modulus_table([make_view(units="us")])
+    assert table.columns[4:7] == ("whole cycle [psi]", "ascending [psi]", "descending [psi]")
+    # 1.1 MPa; 0.023 MPa is 3.3 psi
+    assert texts(table)[0][5] == "159.5 ± 3.3"
+
+
+def test_without_cycles_there_is_no_table():
+    view = make_view()
+    assert design_modulus_table([]) is None
+    assert design_modulus_table([make_view(whole=(NAN, NAN))]) is None
+    assert design_modulus_table([TestView("k", view.data.drop_vars("test_mean_strain"))]) is None
+
+
+def test_a_test_without_curves_has_its_whole_cycle_alone():
+    view = make_view()
+    table = design_modulus_table([TestView("k", view.data.drop_dims("strain_bin"))])
+    assert texts(table)[0][5:8] == [NOT_GIVEN, NOT_GIVEN, "10"]
