@@ -14,7 +14,6 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.shared import COMPONENT, FREEDOM
-from reduction.archive.stored import stored
 from reduction.record import Floats
 from reduction.uncertainty.combine import effective_degrees_of_freedom
 
@@ -140,13 +139,11 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
     [2.]
     """
     variable = archive[name]
-    spread = stored(archive, f"{name}{_RANDOM}")
-    if spread is None:
-        spread = stored(archive, f"{name}_standard_uncertainty")
+    spread = archive.get(f"{name}{_RANDOM}", archive.get(f"{name}_standard_uncertainty"))
     own = np.broadcast_to(random_freedom(archive, name), variable.shape)
     if spread is None or spread.dims != variable.dims:
         return np.array(own)
-    rows, known = stored(archive, f"{name}{_CONTRIBUTION}"), stored(archive, FREEDOM)
+    rows, known = archive.get(f"{name}{_CONTRIBUTION}"), archive.get(FREEDOM)
     if rows is None:
         return effective_degrees_of_freedom(spread.values, own)
     of_rows = np.asarray(np.inf)
