@@ -139,11 +139,13 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
     [2.]
     """
     variable = archive[name]
-    spread = archive.get(f"{name}{_RANDOM}", archive.get(f"{name}_standard_uncertainty"))
+    spread = _found(archive, f"{name}{_RANDOM}")
+    if spread is None:
+        spread = _found(archive, f"{name}_standard_uncertainty")
     own = np.broadcast_to(random_freedom(archive, name), variable.shape)
     if spread is None or spread.dims != variable.dims:
         return np.array(own)
-    rows, known = archive.get(f"{name}{_CONTRIBUTION}"), archive.get(FREEDOM)
+    rows, known = _found(archive, f"{name}{_CONTRIBUTION}"), _found(archive, FREEDOM)
     if rows is None:
         return effective_degrees_of_freedom(spread.values, own)
     of_rows = np.asarray(np.inf)
@@ -157,3 +159,8 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
         contribution=rows.transpose(COMPONENT, *variable.dims).values,
         of_contribution=of_rows,
     )
+
+
+def _found(archive: xr.Dataset, name: str) -> xr.DataArray | None:
+    # get() of a name that is missing looks for one that is spelt nearly so, among hundreds
+    return archive[name] if name in archive else None

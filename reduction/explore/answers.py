@@ -8,8 +8,6 @@ from math import isfinite, nan
 
 import numpy as np
 
-from reduction.archive.budget import all_budgets, budget_from_archive, quantities_with_budget
-from reduction.errors import ReductionError
 from reduction.report.htmltable import (
     NOT_GIVEN,
     Cell,
@@ -22,9 +20,8 @@ from reduction.report.htmltable import (
     words,
 )
 from reduction.report.style import Kind, Shown, shown
-from reduction.report.uncertainty import factor_words
+from reduction.report.uncertainty import expanded_of, factor_words
 from reduction.report.view import TestView
-from reduction.uncertainty.budget import Budget
 
 __all__ = ["answer_table"]
 
@@ -172,54 +169,67 @@ def _answers(
 ) -> Iterator[tuple[Key, _Answer]]:
     if "cycle" in view.data.sizes:
         yield ("cycles",), _Answer("whole cycles", Shown("", 1.0), view.n_cycles)
-    in_stress = shown("stress", view.units)
-    for (specimen, branch), places in strains.items():
-        for strain in places:
-            at = {"specimen": specimen, "branch_name": branch, "strain_bin": repr(strain)}
-            try:
-                budget = budget_from_archive(view.data, "tangent_modulus", at)
-            except ReductionError:
-                continue  # a hole of the curve: the row says that there is no number
-            said = f"modulus at {100 * strain:g} %, {branch}, {specimen}"
-            yield ("at", specimen, branch, repr(strain)), _answer(said, in_stress, budget)
-    known = quantities_with_budget(view.data)
+    yield from _at_strains(view, strains)
     for name, said, kind in _QUANTITIES:
-        if name not in known:
+        values = view.array(name)
+        if values is None:
             continue
+        spread = expanded_of(view, name, values)
         unit = shown(kind, view.units)
-        for budget in all_budgets(view.data, name):
-            key = (name, *(f"{dim}={label}" for dim, label in sorted(budget.place.items())))
-            yield key, _answer(_words_of(view, said, budget), unit, budget, _range(view, budget))
+        dims = [str(dim) for dim in view.data[name].dims]
+        for place in np.argwhere(np.isfinite(values)):
+            at = dict(zip(dims, map(int, place), strict=True))
+            own = tuple(place)
+            over = _range(view, own) if name == "segment_modulus" else None
+            words_of_one = _words_of(view, said, at, over)
+            answer = _Answer(
+                words_of_one, unit, float(values[own]), float(spread.half[own]),
+                float(spread.factor[own]), over,
+            )  # fmt: skip
+            yield (name, *(f"{dim}={index}" for dim, index in at.items())), answer
 
 
-def _answer(
-    said: str, unit: Shown, one: Budget, over: tuple[float, float] | None = None
-) -> _Answer:
-    half = one.expanded_uncertainty
-    label = said if over is None else f"{said} ({100 * over[0]:.4g} to {100 * over[1]:.4g} %)"
-    return _Answer(label, unit, one.value, half, one.coverage_factor, over)
+def _at_strains(
+    view: TestView, strains: dict[tuple[str, str], list[float]]
+) -> Iterator[tuple[Key, _Answer]]:
+    """Moduli at some strains, between the bins by a straight line."""
+    strain, modulus = view.array("strain_bin"), view.array("tangent_modulus")
+    if strain is None or modulus is None:
+        return
+    spread = expanded_of(view, "tangent_modulus", modulus)
+    unit = shown("stress", view.units)
+    for (specimen, branch), wanted in strains.items():
+        place = (view.specimens.index(specimen), view.texts("branch_name").index(branch))
+        known = np.isfinite(modulus[place])
+        for one in wanted:
+            value, half, factor = (
+                float(np.interp(one, strain[known], row[place][known]))
+                for row in (modulus, spread.half, spread.factor)
+            )
+            said = f"modulus at {100 * one:g} %, {branch}, {specimen}"
+            yield ("at", specimen, branch, repr(one)), _Answer(said, unit, value, half, factor)
 
 
-def _range(view: TestView, one: Budget) -> tuple[float, float] | None:
+def _range(view: TestView, place: tuple[int, ...]) -> tuple[float, float] | None:
     """Strains that a segment is over."""
-    if "segment" not in one.place:
-        return None
-    place = (
-        view.specimens.index(one.place["specimen"]),
-        view.texts("branch_name").index(one.place["branch_name"]),
-        view.texts("segment").index(one.place["segment"]),
-    )
     low, high = view.array("segment_strain_low"), view.array("segment_strain_high")
     return None if low is None or high is None else (float(low[place]), float(high[place]))
 
 
-def _words_of(view: TestView, said: str, one: Budget) -> str:
-    place = one.place
-    if "segment" in place:
-        return f"segment {place['segment']}, {place['branch_name']}, {place['specimen']}"
-    if "strain_level" in place:
-        return f"{said} {100 * float(place['strain_level']):g} %, {place['specimen']}"
-    if "hold" in place:
-        row = view.texts("hold").index(place["hold"])
-        return f"{said} hold {view.hold_numbers[row]}, {view.texts('hold_specimen')[row]}"
-    return ", ".join([said, *place.values()])
+def _words_of(
+    view: TestView, said: str, at: dict[str, int], over: tuple[float, float] | None
+) -> str:
+    """What a number is: of which specimen, branch, elongation or hold."""
+    if "hold" in at:
+        hold = at["hold"]
+        return f"{said} hold {view.hold_numbers[hold]}, {view.texts('hold_specimen')[hold]}"
+    parts = [said]
+    if "segment" in at and over is not None:
+        parts = [f"{said} {at['segment'] + 1} ({100 * over[0]:.4g} to {100 * over[1]:.4g} %)"]
+        parts.append(view.texts("branch_name")[at["branch_name"]])
+    levels = view.array("strain_level")
+    if "strain_level" in at and levels is not None:
+        parts = [f"{said} {100 * levels[at['strain_level']]:g} %"]
+    if "specimen" in at:
+        parts.append(view.specimens[at["specimen"]])
+    return ", ".join(parts)

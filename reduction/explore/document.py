@@ -14,7 +14,7 @@ from reduction.campaign.numbers import dimension_of, limits_of
 from reduction.errors import ReductionError
 from reduction.explore.answers import answer_table
 from reduction.explore.figures import draw_change
-from reduction.explore.file import CampaignText
+from reduction.explore.file import CampaignText, Written
 from reduction.explore.keys import Setting, settings_of_kind
 from reduction.explore.session import Made, Session
 from reduction.report.figure import Figure
@@ -32,7 +32,7 @@ _FOUND = {
     "cycles.band": ("position_band", "tension_band"),
     "modulus.window": ("strain_window",),
 }
-_SLOW = 1.0
+_SLOW = 2.0
 """A change that takes longer is told beforehand. [s]"""
 
 
@@ -143,17 +143,28 @@ def _setting(
         "words": setting.words,
         "value": written.text if written.place == "test" else "",
         "shown": written.text or _shown(setting, survey, in_force, units),
-        "place": written.place,
+        "place": _place(setting, survey, written),
         "choices": list(setting.choices),
         "slider": _slider(setting, survey, in_force),
     }
 
 
+def _place(setting: Setting, survey: Survey, written: Written) -> str:
+    """Where the value in force comes from; what nobody stated is a default, or was found."""
+    if written.place != "nowhere" and (written.text or written.place == "table"):
+        return written.place
+    return "found" if _stated(setting, survey) is None else "default"
+
+
+def _stated(setting: Setting, survey: Survey) -> Any:
+    """Value of a setting of a plan, in SI; None where it is to be found."""
+    group, _, name = setting.key.rpartition(".")
+    return getattr(getattr(survey.plan.settings, group or "cycles"), name)
+
+
 def _in_force(setting: Setting, survey: Survey, view: TestView | None) -> Any:
     """Value of a setting, in SI; what was found in the record where nobody stated it."""
-    settings = survey.plan.settings
-    group, _, name = setting.key.rpartition(".")
-    value = getattr(getattr(settings, group or "cycles"), name)
+    value = _stated(setting, survey)
     if value is not None or view is None:
         return value
     if setting.key == "strain.method":

@@ -61,6 +61,11 @@ class _Surveyed:
     basis: Callable[[Survey], Basis]
     errors: Mapping[str, ReductionError]
 
+    def settings(self) -> dict[str, str]:
+        """Every setting in force, by test; tests that failed have none."""
+        sound = (one for one in self.surveys if not one.error and one.plan.id not in self.errors)
+        return {one.plan.id: self.basis(one).settings for one in sound}
+
 
 class Session:
     """A campaign that is being explored; to be used by one thread at a time.
@@ -94,6 +99,7 @@ class Session:
         first.kept.clear()
         self.surveys = first.surveys
         self._made.clear()
+        self._settings: dict[str, str] = {}
 
     @property
     def is_changed_on_disk(self) -> bool:
@@ -211,18 +217,14 @@ class Session:
     def _also(self, now: _Surveyed, test: str, told: Callable[[str], None]) -> tuple[str, ...]:
         """Other tests whose settings in force are not those of the text on the disk."""
         told("looking at the other tests")
-        log = self.survey(test).plan.log
-        before = self._surveyed(self.text, log, told)
-
-        def settings(of: _Surveyed) -> dict[str, str]:
-            sound = (one for one in of.surveys if not one.error and one.plan.id not in of.errors)
-            return {one.plan.id: of.basis(one).settings for one in sound}
-
-        old, new = settings(before), settings(now)
+        if not self._settings:
+            before = self._surveyed(self.text, self.survey(test).plan.log, told)
+            self._settings = before.settings()
+        new = now.settings()
         return tuple(
             one.plan.id
             for one in now.surveys
-            if one.plan.id != test and old.get(one.plan.id) != new.get(one.plan.id)
+            if one.plan.id != test and self._settings.get(one.plan.id) != new.get(one.plan.id)
         )
 
     def save(self, text: CampaignText) -> None:

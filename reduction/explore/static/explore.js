@@ -11,9 +11,11 @@ const foldAgain = () => {};
   const OPEN = ["Trim and cycles", "Modulus windows", "Splice correction", "Steps"];
   const FROM = {
     test: "stated for this test", defaults: "from [defaults]", table: "stands in the table of tests: change it there",
-    nowhere: "not stated",
+    default: "not stated: the default", found: "not stated: found in the record",
   };
+  const CURVES = /^(modulus|difference)-/;
   const PAUSE = 150; // a slider is at rest for so long before a change is asked for, in ms
+  const wide = matchMedia("(min-width: 1100px)"); // settings stand beside the answers, and not above them
   const unsaved = new Map(); // changes by test, and in them texts by key
   const figures = new Map();
   const fields = new Map();
@@ -158,7 +160,7 @@ const foldAgain = () => {};
         if (!groups.has(one.group)) {
           const group = make("details");
           group.append(make("summary", one.group));
-          group.open = OPEN.includes(one.group);
+          group.open = wide.matches && OPEN.includes(one.group);
           groups.set(one.group, group);
         }
         groups.get(one.group).append(makeField(one));
@@ -170,25 +172,28 @@ const foldAgain = () => {};
     settings.forEach(setField);
   };
 
-  const setAnswers = (table) => {
+  const setAnswers = () => {
+    const table = shown?.answers;
     if (!table) {
       part("answers").replaceChildren(make("p", "There is no number to show."));
       return;
     }
+    const isMoved = (cells) => Number(cells[4].value) !== 0 || !cells[4].value && cells[1].text !== cells[2].text;
+    const picked = shown.diff && part("moved").checked ? table.rows.filter(isMoved) : table.rows;
     const box = make("div", "", { class: "table compact", role: "group", tabindex: "0", "aria-label": table.caption });
     const grid = make("table");
     const caption = make("caption");
-    caption.append(make("span", table.caption));
+    const left = table.rows.length - picked.length;
+    caption.append(make("span", left ? `${table.caption} ${left} of ${table.rows.length} numbers do not move.` : table.caption));
     const head = make("tr");
     head.append(...table.columns.map((name, place) => make("th", name, { scope: "col", class: table.numbers[place] ? "number" : "" })));
     const body = make("tbody");
-    for (const cells of table.rows) {
+    for (const cells of picked) {
       const row = make("tr");
       row.append(...cells.map((cell, place) => place === 0
         ? make("th", cell.text, { scope: "row" })
         : make("td", cell.text, { class: table.numbers[place] ? "number" : "", "data-value": cell.value })));
-      const difference = cells[4]?.value;
-      if (difference && Number(difference) !== 0) row.classList.add("moved");
+      if (isMoved(cells)) row.classList.add("moved");
       body.append(row);
     }
     const top = make("thead");
@@ -198,28 +203,42 @@ const foldAgain = () => {};
     part("answers").replaceChildren(box, ...table.remarks.map((text) => make("p", text, { class: "small under" })));
   };
 
+  const makeSlot = (key) => {
+    const slot = {
+      figure: make("figure", "", { id: `figure-${key}` }),
+      plot: make("div", "", { class: "plot", role: "group", "data-figure": `${key}-data` }),
+      caption: make("figcaption"),
+      data: make("script", "", { type: "application/json", id: `${key}-data` }),
+    };
+    slot.figure.append(slot.plot, slot.caption, slot.data);
+    figures.set(key, slot);
+    return slot;
+  };
+
+  // a figure keeps its place and what a reader zoomed; only its lines change
   const setFigures = (wanted) => {
+    const keys = new Set(wanted.map((one) => one.key));
+    figures.forEach((slot, key) => { slot.figure.hidden = !keys.has(key); });
     for (const one of wanted) {
-      let slot = figures.get(one.key);
-      if (!slot) {
-        slot = { figure: make("figure", "", { id: `figure-${one.key}` }), data: make("script", "", { type: "application/json", id: `${one.key}-data` }) };
-        slot.plot = make("div", "", { class: "plot", role: "group", "data-figure": `${one.key}-data` });
-        slot.caption = make("figcaption");
-        slot.figure.append(slot.plot, slot.caption, slot.data);
-        figures.set(one.key, slot);
-        part("figures").append(slot.figure);
-      }
+      const slot = figures.get(one.key) ?? makeSlot(one.key);
       slot.figure.classList.toggle("wide", one.wide);
       slot.plot.setAttribute("aria-label", one.label);
       slot.plot.dataset.height = one.height;
+      if (!drawn.has(slot.plot)) slot.plot.style.minHeight = `${one.height}px`;
       slot.caption.textContent = one.caption;
       slot.data.textContent = one.json;
-      slot.figure.hidden = false;
-      near.observe(slot.plot);
-      if (drawn.has(slot.plot)) drawAgain(slot.plot);
     }
-    const keys = new Set(wanted.map((one) => one.key));
-    figures.forEach((slot, key) => { slot.figure.hidden = !keys.has(key); });
+    for (const [id, isOwn] of [["curves", true], ["figures", false]]) {
+      const own = wanted.filter((one) => CURVES.test(one.key) === isOwn).map((one) => figures.get(one.key).figure);
+      const there = [...part(id).children].filter((figure) => !figure.hidden);
+      if (own.some((figure, place) => figure !== there[place])) part(id).append(...own);
+    }
+    part("curves-section").hidden = !wanted.some((one) => CURVES.test(one.key));
+    for (const one of wanted) {
+      const { plot } = figures.get(one.key);
+      near.observe(plot);
+      if (drawn.has(plot)) drawAgain(plot);
+    }
   };
 
   const mark = (error) => {
@@ -231,7 +250,7 @@ const foldAgain = () => {};
     shown = found;
     if (!changes().size) base = new Map(found.settings.map((one) => [one.key, one.value]));
     setSettings(found.settings);
-    setAnswers(found.answers);
+    setAnswers();
     setFigures(found.figures);
     mark(found.error);
     part("disk").hidden = !found.is_changed_on_disk;
@@ -315,6 +334,7 @@ const foldAgain = () => {};
   };
 
   part("test").addEventListener("change", open);
+  part("moved").addEventListener("change", setAnswers);
   part("settings").addEventListener("submit", (sent) => sent.preventDefault());
   part("undo").addEventListener("click", () => { unsaved.delete(test()); open(); });
   part("review").addEventListener("click", review);
