@@ -16,6 +16,7 @@ from reduction.samples.intervals import interval_labels, over_intervals
 
 __all__ = ["Runs", "constant_runs", "find_saturated", "find_stuck", "find_stuck_position", "moves"]
 
+_EDGES = 1 << 10  # of runs, looked at together: a quantised channel has one for every level
 _SATURATED_SAMPLES = 5
 _SATURATED_STEPS = 16.0
 _MOVING_NOISE = 10.0
@@ -76,19 +77,23 @@ def constant_runs(values: Floats, minimum: int) -> Runs:
     level = take_samples(values, place * length)
     is_first = np.concatenate([[True], (np.diff(place) > 1) | (np.diff(level) != 0)])
     is_last = np.concatenate([is_first[1:], [True]])
-    reach = np.arange(1, length)
     start, stop = place[is_first] * length, (place[is_last] + 1) * length
-    before = start[:, np.newaxis] - reach
-    level = take_samples(values, start)[:, np.newaxis]
-    same = (take_samples(values, np.maximum(before, 0)) == level) & (before >= 0)
-    start = start - np.cumprod(same, axis=1).sum(axis=1)
-    after = stop[:, np.newaxis] + reach - 1
-    inside = np.minimum(after, values.size - 1)
-    level = take_samples(values, stop - 1)[:, np.newaxis]
-    same = (take_samples(values, inside) == level) & (after < values.size)
-    stop = stop + np.cumprod(same, axis=1).sum(axis=1)
+    start = start - _repeats(values, start, -np.arange(1, length))
+    stop = stop + _repeats(values, stop - 1, np.arange(1, length))
     runs = Runs(start, stop)
     return runs.where(stop - start >= minimum)
+
+
+def _repeats(values: Floats, edge: Integers, reach: Integers) -> Integers:
+    """Samples next to each edge, in the order of the reach, that repeat its value."""
+    repeats = np.empty(edge.size, dtype=np.intp)
+    for part in sample_blocks(edge.size, size=_EDGES):
+        beyond = edge[part, np.newaxis] + reach
+        inside = np.clip(beyond, 0, values.size - 1)
+        same = take_samples(values, inside) == take_samples(values, edge[part])[:, np.newaxis]
+        same &= inside == beyond
+        repeats[part] = np.cumprod(same, axis=1).sum(axis=1)
+    return repeats
 
 
 def moves(position: Floats, runs: Runs) -> Bools:

@@ -1,6 +1,9 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 
+from reduction.ingest import constant
 from reduction.ingest.constant import (
     constant_runs,
     find_saturated,
@@ -144,3 +147,27 @@ def test_missing_loads_do_not_upset_the_search():
     assert loops(find_stuck(load, POSITION, samples=50)) == [(730, 830)]
     assert not find_saturated(load, POSITION).any()
     assert not find_stuck_position(POSITION, load[np.newaxis], samples=50).any()
+
+
+@pytest.mark.parametrize("n_together", [1, 3, 1 << 10])
+@pytest.mark.parametrize("minimum", [2, 7, 50])
+def test_runs_are_those_told_value_by_value(monkeypatch, n_together, minimum):
+    monkeypatch.setattr(constant, "_EDGES", n_together)
+    random = np.random.default_rng(4)
+    values = np.repeat(random.integers(0, 3, 400), random.integers(1, 90, 400)).astype(float)
+    values[random.integers(0, values.size, 20)] = np.nan
+    edges = np.flatnonzero(np.diff(values, prepend=np.nan, append=np.nan) != 0)
+    long = np.diff(edges) >= minimum
+    runs = constant_runs(values, minimum)
+    np.testing.assert_array_equal(runs.start, edges[:-1][long])
+    np.testing.assert_array_equal(runs.stop, edges[1:][long])
+
+
+def test_very_many_runs_take_no_memory_for_each():
+    values = np.repeat(np.arange(20_000.0) % 7, 60)
+    tracemalloc.start()
+    runs = constant_runs(values, 50)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert runs.start.size == 20_000
+    assert peak < values.nbytes
