@@ -11,8 +11,11 @@ let printing = false;
 const ON_DARK = [["#56B4E9", "#B3E0FF"], ["#0072B2", "#4AA3DF"]];
 const AXIS = 52; // ticks and title under a plot, in CSS pixels
 const LINE = 18; // a line of a title
+const RAISED = 10; // by which plotly draws a title of several lines too high
 // what an A4 or Letter page with 15 mm margins holds, in CSS pixels: one figure, or two abreast
 const PAPER = { wide: 655, narrow: 318 };
+const FLATTER = 0.72; // of its height on the screen a figure has on paper, where two rows go on a page
+const SMALL_PRINT = 10; // letters of a table on paper, in CSS pixels
 const ON_PAPER = { ink: "#000", faint: "#333", grid: "#ccc", paper: "#fff", bad: "#7a2b00" };
 
 const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
@@ -49,9 +52,11 @@ const brokenTitle = (text, width) => {
   return lines;
 };
 
-const themed = (layout, legend, width, colours) => {
-  const title = brokenTitle(layout.title.text, width);
-  const above = (title.length - 1) * LINE + (layout.title.subtitle ? 62 : 44);
+const extraOf = (title) => (title.length > 1 ? (title.length - 1) * LINE + RAISED : 0);
+
+const themed = (layout, title, { legend, height, colours }) => {
+  const more = extraOf(title);
+  const above = more + (layout.title.subtitle ? 62 : 44);
   const result = {
     ...layout,
     autosize: true,
@@ -63,7 +68,7 @@ const themed = (layout, legend, width, colours) => {
     legend: { orientation: "h", x: 0, y: 0, yref: "container", yanchor: "bottom", tracegroupgap: 0, font: { size: 11 }, ...layout.legend },
     hoverlabel: { namelength: 40 },
     hovermode: "closest",
-    title: { ...layout.title, text: title.join("<br>"), x: 0.01, xanchor: "left", y: 0.98, yanchor: "top", yref: "container", font: { size: 14 } },
+    title: { ...layout.title, text: title.join("<br>"), x: 0.01, xanchor: "left", y: 1 - (8 + (more && RAISED)) / height, yanchor: "top", yref: "container", font: { size: 14 } },
   };
   if (layout.title.subtitle) {
     result.title.subtitle = { ...layout.title.subtitle, font: { size: 11, color: colours.bad } };
@@ -107,9 +112,12 @@ const figureOf = (plot, width, colours, isDark = false) => {
     // from farther away, or the numbers of the axes leave the figure
     for (const axis of ["x", "y", "z"]) layout.scene.camera.eye[axis] *= 1.25;
   }
-  const shown = themed(layout, legend, width, colours);
-  const lines = brokenTitle(layout.title.text, width).length - 1;
-  const height = Number(plot.dataset.height) + legend + lines * LINE;
+  const title = brokenTitle(layout.title.text, width);
+  // what is written into a figure needs its room on paper, too
+  const isDense = layout.yaxis?.ticktext || data.some((trace) => trace.mode?.includes("text"));
+  const own = Number(plot.dataset.height) * (printing && !isDense ? FLATTER : 1);
+  const height = Math.round(own + legend + extraOf(title));
+  const shown = themed(layout, title, { legend, height, colours });
   return { data, layout: { ...shown, height, showlegend: legend > 0 } };
 };
 
@@ -160,10 +168,23 @@ const drawAgain = (plot) => {
 };
 dark.addEventListener("change", () => drawn.forEach(drawAgain));
 
+// a table that is too wide for the paper is set smaller, not cut off
+const fitTables = () => {
+  const tables = [...document.querySelectorAll(".table table")];
+  document.documentElement.classList.add("measuring");
+  const widths = tables.map((table) => table.offsetWidth / Number.parseFloat(getComputedStyle(table).fontSize));
+  document.documentElement.classList.remove("measuring");
+  tables.forEach((table, place) => {
+    const size = Math.min(SMALL_PRINT, (0.97 * PAPER.wide) / widths[place]);
+    table.style.setProperty("--on-paper", `${size.toFixed(2)}px`);
+  });
+};
+
 // paper is white and narrower than the screen, whatever the screen is
 addEventListener("beforeprint", () => {
   printing = true;
   openForPaper();
+  fitTables();
   plots.forEach(draw);
 });
 addEventListener("afterprint", () => {
