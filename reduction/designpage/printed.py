@@ -62,7 +62,8 @@ def errata_told(lines: Iterable[LineSource]) -> dict[str, list[str]]:
     return {
         one.id: [
             f"{one.report}, {one.place}",
-            f"printed {one.printed}; corrected {one.corrected or 'nothing'}; {one.confidence}",
+            f"printed {one.printed}; corrected {one.corrected or 'nothing'}"
+            + (f" ({one.confidence})" if one.confidence not in ("", one.corrected) else ""),
             one.evidence,
         ]
         for report in REPORTS

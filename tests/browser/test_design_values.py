@@ -23,6 +23,7 @@ from reduction.designpage.linedata import line_data
 from reduction.designpage.page import render_design_page, write_design_page
 from reduction.lookup.product import LineCurve, LineSource
 from reduction.published.linesource import published_sources
+from reduction.uncertainty.combine import coverage_factor
 
 SEED = 20_261_122
 ASKED, BY_HAND, TYPES, ODD = 500, 30, 60, 300
@@ -176,6 +177,37 @@ def small(tmp_path_factory):
     page = tmp_path_factory.mktemp("small") / "design-values.html"
     page.write_text(render_design_page([campaign]), encoding="utf-8")
     return page, name
+
+
+def test_numbers_are_written_by_the_rules_of_python(small, visit):
+    chance = np.random.default_rng(SEED)
+    ties = [0.5, 1.5, 2.5, 0.125, 0.375, 1234.5, 1235.5, 12345.5, 100002.5, 99999.5, 2.0**-20, 1e22]
+    near = [2.675, 9.9995, 0.00099995, 9.9999995e-5, 1e-5, 123456.0, 999995.0, 0.0, -0.0, -2.5]
+    values = [
+        *ties,
+        *near,
+        *(10 ** chance.uniform(-8, 12, 300)).tolist(),
+        *(-chance.random(50)).tolist(),
+    ]
+    # halves of the last digit that a power of two makes exact
+    values += [
+        (2 * int(one) + 1) / 2**power for one in chance.integers(1, 1e5, 200) for power in (1, 2, 3)
+    ]
+    page = visit(small[0]).page
+    for script, form, digits in (
+        ("general", "g", (2, 3, 4, 5, 6, 15)), ("fixed", "f", (0, 1, 2)), ("scientific", "e", (2, 4)),
+    ):  # fmt: skip
+        for count in digits:
+            found = page.evaluate(f"values => values.map((one) => {script}(one, {count}))", values)
+            assert found == [f"{one:.{count}{form}}" for one in values]
+    found = page.evaluate("[NaN, Infinity, -Infinity, 0.26].map((one) => fixed(one, 1, '+'))")
+    assert found == [f"{one:+.1f}" for one in (np.nan, np.inf, -np.inf, 0.26)]
+
+
+def test_the_factor_of_an_interval_is_that_of_the_package(small, visit):
+    freedom = [*np.geomspace(0.5, 1e10, 400), 1.0, 2.0, 5.0, 1999.0, 2001.0]
+    found = visit(small[0]).page.evaluate("all => all.map(coverageFactor)", freedom)
+    assert found == pytest.approx(coverage_factor(freedom), rel=1e-12)
 
 
 def link(page, **state):

@@ -44,8 +44,12 @@ function general(value, digits) {
 
 // As f"{value:.{digits}f}", and with a sign as f"{value:+.{digits}f}".
 function fixed(value, digits, plus = "") {
-  if (!Number.isFinite(value)) return (value > 0 ? plus : "") + notFinite(value);
+  if (!Number.isFinite(value)) return (value < 0 ? "" : plus) + notFinite(value);
   const size = Math.abs(value);
+  if (size >= 1e21) {
+    // beyond, the language changes to powers; such a number is whole
+    return (signOf(value) || plus) + BigInt(size) + (digits ? `.${"0".repeat(digits)}` : "");
+  }
   let text = size.toFixed(digits);
   const more = size.toFixed(100);
   const point = more.indexOf(".");

@@ -173,7 +173,7 @@ function makeLevels() {
     input.value = number;
     const words = name.replaceAll("_", " ");
     const select = element("select", null, { id: `unit-${name}`, "aria-label": `unit of ${words}` });
-    fill(select, units.map((one) => [one, one === "1" ? "as a number" : one]), unit);
+    fill(select, units.map((one) => [one, one === "1" ? "number" : one]), unit);
     row.append(element("label", words[0].toUpperCase() + words.slice(1), { for: input.id }), input, select,
       element("span", testedText(line, name, low, high, unit), { id: `tested-${name}`, class: "small" }));
     input.addEventListener("input", () => {
@@ -251,7 +251,7 @@ function showRow(row) {
     }
   }
   if (intervals.childElementCount) box.append(intervals);
-  else box.append(element("p", "no interval: the source states no scatter", { class: "small" }));
+  else box.append(element("p", "no interval: the notes say why", { class: "small" }));
   box.append(at);
   return box;
 }
@@ -329,8 +329,10 @@ function showCharts(line, asked, found) {
     byId("charts").append(box);
   }
   if (byId("charts").childElementCount) {
-    byId("charts").append(element("p", "Light band: 95 % of one more run; dark band: 95 % of the surface or of the one "
-      + "test; grey: not tested. The other levels stay as chosen.", { class: "small legend" }));
+    const bands = byId("charts").querySelector(".band")
+      ? "Light band: 95 % of one more run; dark band: 95 % of the surface, or of the one test. " : "";
+    const others = Object.keys(asked.levels).length > 1 ? " The other levels stay as chosen." : "";
+    byId("charts").append(element("p", `${bands}Grey: not tested.${others}`, { class: "small legend" }));
   }
 }
 
@@ -554,9 +556,9 @@ function refill(line, quantity, branch) {
 }
 
 function about() {
-  const campaigns = DATA.campaigns.length;
+  const campaigns = distinct(LINES.map((line) => line.group)).length - 1;
   byId("about").textContent = `${DATA.published.length} lines and tethers of published reports`
-    + `${campaigns ? ` and ${LINES.length - DATA.published.length} of ${campaigns} campaign${campaigns > 1 ? "s" : ""}` : ""}, `
+    + `${campaigns ? ` and ${LINES.length - DATA.published.length} lines of ${campaigns} campaign${campaigns > 1 ? "s" : ""}` : ""}, `
     + `with intervals, tested range and source. Made by mooring-reduction ${DATA.version}.`;
   const told = [
     ...DATA.faults.map(([campaign, file, text]) => `${campaign}: ${file} cannot be read: ${text}`),
