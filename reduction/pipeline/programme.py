@@ -22,6 +22,7 @@ from reduction.line.step import RopeStep
 from reduction.line.tensile import TensilePull, parting_sample, tensile_pull
 from reduction.pipeline.locate import Located
 from reduction.record import Floats, Integers, Specimen
+from reduction.samples.search import last_sample
 from reduction.settings import RopeSettings
 
 __all__ = ["rope_step"]
@@ -247,26 +248,32 @@ def _parted_in(
     """Cycle within or after which each specimen is slack where it was taut; -1 where it is not."""
     found = np.full(len(tension), -1)
     for row, peak in enumerate(loops.peak_tension):
-        sound = np.flatnonzero(peak >= failure_share * np.nanmedian(peak))
-        if not sound.size:
+        known = peak[np.isfinite(peak)]
+        if not known.size:
             continue
+        sound = np.flatnonzero(peak >= failure_share * np.median(known))
         # a cycle in which it parted may look whole by its peak: the one before it is sound
         sure = max(int(sound[-1]) - 1, 0)
         begin, last = int(cycles.first[sure]), int(cycles.last[sure])
         place, load = located.position[begin : last + 1], tension[row, begin : last + 1]
         least = np.nanmax(place) - _TOP * np.ptp(place[np.isfinite(place)])
-        slack, lowest = located.standstills.slack_tension, np.nanmin(load[place >= least])
-        if not lowest > slack:
+        slack, lowest = located.standstills.slack_tension, np.fmin.reduce(load[place >= least])
+        if not lowest > slack:  # nor where it is not known
             continue
         # as logged: a channel that repeats its zero after a failure is flagged, not wrong
         sample = parting_sample(
             located.record.crosshead_position, located.record.tension[row], last=last,
             least_position=float(least), tension_low=failure_share * float(lowest),
         )  # fmt: skip
-        if sample > 0:
-            taut = np.flatnonzero(located.record.tension[row, :sample] > slack)
-            found[row] = max(int(np.searchsorted(cycles.last, taut[-1])), 1)
+        taut = _last_taut(located.record.tension[row], sample, slack)
+        if taut is not None:
+            found[row] = max(int(np.searchsorted(cycles.last, taut)), 1)
     return found
+
+
+def _last_taut(load: Floats, stop: int, slack: float) -> int | None:
+    """Last sample before another at which a specimen is taut."""
+    return last_sample(lambda part: load[part] > slack, 0, stop, load)
 
 
 def _of_pairs(pairs: Sequence[HeldPair]) -> list[str]:

@@ -1,5 +1,7 @@
 """Which step of a programme a test is, and what is said of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -118,6 +120,24 @@ def test_slack_at_a_position_at_which_it_was_taut_is_a_failure(back, failed):
     found = step_of(record(load, position=position), "fatigue").lasted
     assert found.failed.tolist() == [failed]
     assert found.cycles[0] == 12 or back
+
+
+@pytest.mark.parametrize("lost", [slice(None), slice(222, 239)], ids=["all", "a peak"])
+def test_a_tension_that_is_not_known_tells_of_no_failure(lost):
+    one = record(cycles(12))
+    located = locate(
+        one, kind="fatigue", settings=ReductionSettings(cycles=CycleSettings(control="load"))
+    )
+    tension = located.tension.copy()
+    loops = close_loops(one.time, tension, (located.position[None] - 10) / 10, located.cycles)
+    tension[:, lost] = np.nan
+    if lost == slice(None):
+        loops = replace(loops, peak_tension=np.full(loops.peak_tension.shape, np.nan))
+    found = rope_step(
+        located, tension, tension, kind="fatigue", specimens=(ROPE,), loops=loops, holds=(),
+        failed=None, settings=RopeSettings(),
+    )  # fmt: skip
+    assert found.lasted.failed.tolist() == [False]
 
 
 def test_the_word_of_the_laboratory_goes_before_the_record():
