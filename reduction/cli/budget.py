@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import cast
 
 import xarray as xr
+from rich.markup import escape
 
 from reduction.archive.budget import budget_from_archive, quantities_with_budget
 from reduction.archive.budgetplaces import parse_place, place_name
@@ -23,7 +23,6 @@ from reduction.units import UnitSystem, display_unit
 
 __all__ = ["list_budgets", "show_budget"]
 
-_WIDTH = 30
 # what a look-up calls a curve of a slow pull
 _OVER_TENSION = {"strain": "quasi_static_strain"}
 
@@ -64,7 +63,7 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: Com
     )  # fmt: skip
     for row in budget.rows:
         table.add_row(
-            row.source, _short_name(row.of), short(row.contribution * scale, 3), f"{row.share:.1%}"
+            row.source, escape(row.of), short(row.contribution * scale, 3), f"{row.share:.1%}"
         )
     output.show(table)
     output.say(
@@ -106,11 +105,6 @@ def _drawn_uncertainty(archive: xr.Dataset, budget: Budget) -> float | None:
     if int(method.values[place]) != LINE_METHODS["monte_carlo"]:
         return None
     return float(archive[f"{budget.quantity}_standard_uncertainty"].values[place])
-
-
-def _short_name(text: str) -> str:
-    """Name of an instrument for a column: its first words, where it has a sentence."""
-    return textwrap.shorten(text, _WIDTH, placeholder=" ...")
 
 
 def _places(texts: Sequence[str]) -> dict[str, str]:

@@ -17,6 +17,7 @@ from reduction.catalogue.query import Query, answer, needed_quantities, quantiti
 from reduction.catalogue.write import check_ending, meaning_of, unit_of, write_answer
 from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.numbers import plain, short, table_of
+from reduction.cli.plaintable import plain_table
 from reduction.units import UnitSystem, display_unit
 from reduction.vocabulary import QUANTITIES
 
@@ -167,23 +168,13 @@ def _show(table: Any, query: Query, output: CommandOutput) -> None:
     columns = [[text or "" for text in table[name].to_pylist()] for name in texts]
     columns += [_numbers(table[name].to_pylist(), shown[name][1], name) for name in numbers]
     if not sys.stdout.isatty():
-        output.say(_plain_table(heads, columns, n_texts=len(texts)))
+        is_number = [place >= len(texts) for place in range(len(heads))]
+        output.say(plain_table(heads, columns, is_number=is_number))
         return
     page = table_of(*heads, texts=len(texts))
     for row in zip(*columns, strict=True):
         page.add_row(*map(escape, row))
     output.show(page)
-
-
-def _plain_table(heads: Sequence[str], columns: Sequence[Sequence[str]], *, n_texts: int) -> str:
-    """Lines of as many characters as the cells need: thousands of rows at once, for a pipe."""
-    padded = []
-    for place, (head, column) in enumerate(zip(heads, columns, strict=True)):
-        # a line of a table is one line, whatever a name is
-        cells = [" ".join(cell.split()) for cell in (head, *column)]
-        size = max(map(len, cells))
-        padded.append([cell.ljust(size) if place < n_texts else cell.rjust(size) for cell in cells])
-    return "\n".join("  ".join(row).rstrip() for row in zip(*padded, strict=True))
 
 
 def _heading(name: str, unit: str) -> str:

@@ -18,8 +18,10 @@ import typer
 from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table
+from rich.text import Text
 
 from reduction.address import without_secrets
+from reduction.cli.plaintable import plain_table
 from reduction.errors import ReductionError, SettingsError
 from reduction.remote.scratch import in_words
 
@@ -53,22 +55,20 @@ class CommandOutput:
     def show(self, table: Table) -> None:
         """A table on standard output, where text is said, with every digit of its numbers.
 
-        At least 160 columns where no terminal is; where a terminal has too few, row by row.
+        Where no terminal is, one line a row; where a terminal has too few columns, row by row.
         """
         if not self.is_text:
             return
         if self.names:
             table = _in_words(table, self.names)
         if not sys.stdout.isatty():
-            plenty = Console(width=160, highlight=False)
-            width = max(160, _least_width(table, plenty, words=30))
-            Console(width=width, highlight=False).print(table)
+            typer.echo(_line_by_line(table))
             return
         console = Console(highlight=False)
         if _least_width(table, console, words=10) <= console.width:
             console.print(table)
         else:
-            typer.echo(_row_by_row(table, console))
+            typer.echo(_row_by_row(table))
 
     def answer(self, document: object) -> None:
         """The JSON object of ``--json``; the only thing on standard output then."""
@@ -112,22 +112,33 @@ def _least_width(table: Table, console: Console, *, words: int) -> int:
     return total + 2 * len(table.columns)
 
 
-def _row_by_row(table: Table, console: Console) -> str:
+def _words(cell: object) -> str:
+    """A cell without its markup, on one line."""
+    return " ".join(Text.from_markup(str(cell), emoji=False).plain.split())
+
+
+def _line_by_line(table: Table) -> str:
+    """A table for a pipe, under its title."""
+    plain = plain_table(
+        [_words(column.header) for column in table.columns],
+        [[_words(cell) for cell in column.cells] for column in table.columns],
+        is_number=[column.justify == "right" for column in table.columns],
+    )
+    return f"{_words(table.title)}\n{plain}" if table.title else plain
+
+
+def _row_by_row(table: Table) -> str:
     """A table as lines of a heading and a cell, rows parted by an empty line."""
-
-    def words(cell: object) -> str:
-        return " ".join(console.render_str(str(cell)).plain.split())
-
-    heads = [words(column.header) for column in table.columns]
+    heads = [_words(column.header) for column in table.columns]
     size = max(map(len, heads), default=0)
     rows = zip(*(list(column.cells) for column in table.columns), strict=True)
     blocks = [
         "\n".join(
-            f"{head:{size}}  {words(cell)}".rstrip() for head, cell in zip(heads, row, strict=True)
+            f"{head:{size}}  {_words(cell)}".rstrip() for head, cell in zip(heads, row, strict=True)
         )
         for row in rows
     ]
-    title = [words(table.title)] if table.title else []
+    title = [_words(table.title)] if table.title else []
     return "\n\n".join([*title, *blocks])
 
 

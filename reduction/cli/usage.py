@@ -17,6 +17,7 @@ from reduction.address import shown_address
 __all__ = ["Commands", "here", "written_here"]
 
 USAGE = 2
+_LONGEST = 500
 # click's own class, which some versions of typer carry within themselves
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 _URL = re.compile(r"^([a-z][a-z0-9+.-]+):/+", re.IGNORECASE)
@@ -55,10 +56,17 @@ def _address_in(path: Path | None) -> str:
 class Commands(TyperGroup):
     """The commands; the answer to a line that none of them can read is in the form of theirs."""
 
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """What each command does, whole, where no frame is drawn."""
+        known = [(name, self.commands[name]) for name in self.list_commands(ctx)]
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, one.get_short_help_str(_LONGEST)) for name, one in known])
+
     def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
         """Run the command that the line names."""
         given = list(sys.argv[1:] if args is None else args)
         options["standalone_mode"] = False
+        _draw_help(self, is_drawn=sys.stdout.isatty())
         try:
             status = super().main(given, *rest, **options)
         except _UsageError as error:
@@ -66,6 +74,13 @@ class Commands(TyperGroup):
         except typer.Abort:
             status = 1
         sys.exit(status if isinstance(status, int) else 0)
+
+
+def _draw_help(command: Any, *, is_drawn: bool) -> None:
+    """Frames and colours in the help of a command and those below it, or plain text for a pipe."""
+    command.rich_markup_mode = "rich" if is_drawn else None
+    for below in getattr(command, "commands", {}).values():
+        _draw_help(below, is_drawn=is_drawn)
 
 
 def _refuse(given: Sequence[str], error: Any) -> int:
