@@ -18,9 +18,10 @@ from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.campaign import (
     draw_all_moduli,
     draw_parts,
-    draw_ratios,
     draw_static_dynamic,
 )
+from reduction.report.figures.ratios import draw_ratios
+from reduction.report.figures.together import draw_specimens_together
 from reduction.report.instruments import instrument_sentences, instrument_table
 from reduction.report.render import Page, about_page, render_page
 from reduction.report.section import Section, make_part, make_section
@@ -125,7 +126,9 @@ def _page_of(
 ) -> Page:
     faults = find_faults(tests, statuses, unreadable, whole.findings)
     comparisons = [
-        make_part("All tests in one figure", draw_all_moduli(tests)),
+        make_part(
+            "All tests in one figure", [*draw_specimens_together(tests), *draw_all_moduli(tests)]
+        ),
         make_part("Ratios of moduli", draw_ratios(tests)),
         make_part("Mean strain and amplitude", draw_amplitude_pairs(tests)),
         make_part("Start against end", draw_parts(tests)),

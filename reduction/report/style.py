@@ -29,6 +29,7 @@ __all__ = [
     "Shown",
     "colour",
     "faded",
+    "marked",
     "marker",
     "plot_text",
     "shorten",
@@ -135,6 +136,14 @@ def marker(index: int, *, variant: int = 0, size: int = 6) -> dict[str, Any]:
     """
     filling = FILLINGS[variant % len(FILLINGS)]
     return {"color": colour(index), "symbol": symbol(index) + filling, "size": size}
+
+
+def marked(index: int, variant: int = 0) -> dict[str, Any]:
+    """Return what puts a few markers of a test on its line: colours alone are seven."""
+    return {
+        "mode": "lines+markers",
+        "marker": {**marker(index, variant=variant), "maxdisplayed": 6},
+    }
 
 
 def superscript(unit: str) -> str:

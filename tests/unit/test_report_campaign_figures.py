@@ -10,9 +10,9 @@ from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.campaign import (
     draw_all_moduli,
     draw_parts,
-    draw_ratios,
     draw_static_dynamic,
 )
+from reduction.report.figures.ratios import draw_ratios
 from reduction.report.view import TestView
 
 
