@@ -11,6 +11,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "_ext"))
 
+from campaigns import GALLERIES, work_folder
 from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 
@@ -22,6 +23,8 @@ copyright = author
 version = release = reduction.__version__
 
 extensions = [
+    "campaigns",
+    "sphinx_gallery.gen_gallery",
     "myst_parser",
     "sphinx.ext.autodoc",
     "numpydoc",
@@ -55,6 +58,24 @@ nitpick_ignore_regex = [
     # other packages, whose pages are on the network
     (r"py:class", r"(collections|enum|numpy|pandas|pydantic|xarray)\..*"),
 ]
+
+# scripts are run where the products of the campaigns are
+_WORK = work_folder(HERE)
+sphinx_gallery_conf = {
+    "examples_dirs": [str(_WORK / name) for name in GALLERIES],
+    "gallery_dirs": list(GALLERIES.values()),
+    "filename_pattern": r"plot_",
+    "within_subsection_order": "FileNameSortKey",
+    "reset_modules": ("matplotlib", "gallerystyle.set_style"),
+    "capture_repr": (),
+    "download_all_examples": False,
+    "show_memory": False,
+    "show_signature": False,
+    "write_computation_times": False,
+    "min_reported_time": 1e6,
+    "matplotlib_animations": False,
+    "backreferences_dir": None,
+}
 
 html_theme = "furo"
 html_title = f"mooring-reduction {release}"

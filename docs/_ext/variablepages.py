@@ -49,8 +49,8 @@ def pages() -> dict[str, str]:
     lines = [
         "# Variables of the archives", "",
         "Made from the schemas of the archives and the vocabulary. A file has those that its test "
-        "or campaign gives; SI. A suffix is part of the name: `tension_standard_uncertainty`. How to "
-        "read them: [Reading the archives](../archive.md).", "",
+        "or campaign gives; SI. A suffix is part of the name, `tension_standard_uncertainty`. How "
+        "to read them: [Reading the archives](../archive.md).", "",
         "| suffix | means |", "|---|---|",
         *(f"| `{end}` | {words.format('...')} |" for end, (words, _, _) in SUFFIXES.items()), "",
     ]  # fmt: skip

@@ -1,7 +1,15 @@
-"""The documentation is built as it is published, and no warning comes of it."""
+"""The documentation is built as it is published, and no warning comes of it.
 
+First every command of docs/get-started.md is run, in its order; then its products are those that the
+scripts of the gallery read, each of which is run by the build.
+"""
+
+import contextlib
+import doctest
+import itertools
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -10,12 +18,86 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 import pytest
+from commandruns import ROOT, reduction
 
-for needed in ("sphinx", "furo", "myst_parser", "numpydoc"):
-    pytest.importorskip(needed)
+NEEDED = ("sphinx", "furo", "matplotlib", "myst_parser", "numpydoc", "sphinx_gallery")
+MADE = shutil.ignore_patterns("_build", "gallery", "reference", "tutorial", "__pycache__")
+PAGE = (ROOT / "docs" / "get-started.md").read_text(encoding="utf-8")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+STEPS = re.findall(r"^```(sh|text|python)\n(.*?)^```$", PAGE, re.M | re.S)
+SCRIPTS = sorted(
+    path.relative_to(ROOT / "docs") for path in (ROOT / "docs").glob("[et]*/plot_*.py")
+    if path.parent.name in ("examples", "tutorials")
+)  # fmt: skip
+PAGES_OF = {"examples": "gallery", "tutorials": "tutorial"}
 
-ROOT = Path(__file__).parents[2]
-MADE = shutil.ignore_patterns("_build", "reference", "__pycache__")
+
+def commands(body):
+    return [line for line in body.replace("\\\n", " ").splitlines() if line]
+
+
+def without_blank_ends(text):
+    return [line.rstrip() for line in text.strip().splitlines()]
+
+
+@pytest.fixture(scope="module")
+def walked(tmp_path_factory):
+    """What each command printed, in a folder that has the raw files and nothing else."""
+    folder = tmp_path_factory.mktemp("five-minutes")
+    (folder / "raw").symlink_to(ROOT / "raw")
+    (folder / "my-logs").mkdir()
+    shutil.copy(ROOT / "raw" / "tmt-synthetic" / "T-1.csv", folder / "my-logs")
+    done = {}
+    for kind, body in STEPS:
+        for line in commands(body) if kind == "sh" else ():
+            program, *arguments = shlex.split(line)
+            if program == "reduction":
+                done[line] = reduction(*arguments, cwd=folder, COLUMNS="120")
+    return folder, done
+
+
+def test_it_installs_as_the_readme_does():
+    (install, _) = commands(STEPS[0][1])
+    main_job = re.search(r"^(python3 -m venv .*? && .*?) && .*reduction run (\S+)$", README, re.M)
+    assert install == main_job[1]
+    assert f"reduction run {main_job[2]}" in PAGE
+
+
+def test_every_command_runs(walked):
+    _, done = walked
+    assert len(done) == 6
+    for line, one in done.items():
+        assert one.returncode == 0, f"{line}\n{one.stderr}"
+
+
+def test_the_answers_on_the_page_are_those_of_the_commands(walked):
+    _, done = walked
+    shown = {
+        commands(before)[-1]: body
+        for (_, before), (kind, body) in itertools.pairwise(STEPS)
+        if kind == "text"
+    }
+    assert len(shown) == 3
+    for line, body in shown.items():
+        assert without_blank_ends(done[line].stdout) == without_blank_ends(body), line
+
+
+def test_the_lines_of_python_give_what_they_show(walked):
+    folder, _ = walked
+    lines = "".join(body for kind, body in STEPS if kind == "python")
+    example = doctest.DocTestParser().get_doctest(lines, {}, "get-started", None, 0)
+    with contextlib.chdir(folder):
+        assert not doctest.DocTestRunner().run(example).failed
+
+
+def test_what_the_page_names_is_there(walked):
+    folder, _ = walked
+    for name in (
+        "processed/tmt-synthetic", "reports/tmt-synthetic/index.html", "tether.dat", "tether_table.txt",
+        "my-logs/campaign.toml", "my-logs/tests.csv",
+    ):  # fmt: skip
+        assert Path(folder, name).exists(), name
+    assert "tether_table.txt" in (folder / "tether.dat").read_text(encoding="utf-8")
 
 
 class Page(HTMLParser):
@@ -40,8 +122,11 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory):
+def built(walked, tmp_path_factory):
     """The folder of a build from a copy, so that nothing is written beside the sources."""
+    for name in NEEDED:
+        pytest.importorskip(name)
+    work, _ = walked
     folder = tmp_path_factory.mktemp("docs")
     shutil.copytree(ROOT / "docs", folder / "docs", ignore=MADE)
     for path in ROOT.iterdir():
@@ -50,7 +135,7 @@ def built(tmp_path_factory):
     done = subprocess.run(
         [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-j", "2", "-b", "html", "docs", "out"],
         cwd=folder, capture_output=True, text=True, check=False,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        env=os.environ | {"PYTHONPATH": str(ROOT), "REDUCTION_DOCS_WORK": str(work)},
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     return folder / "out"
@@ -104,3 +189,22 @@ def test_formulas_are_set(built):
     text = (built / "reference" / "api" / "predict.html").read_text(encoding="utf-8")
     assert text.count("<math ") > 100
     assert ".. math::" not in text
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_every_script_ran_and_is_shown_with_what_it_printed_and_drew(script, built):
+    page = (built / PAGES_OF[script.parent.name] / f"{script.stem}.html").read_text(
+        encoding="utf-8"
+    )
+    assert "sphx-glr-script-out" in page
+    assert f"sphx_glr_{script.stem}_001.png" in page
+    assert "Traceback" not in page
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_every_figure_says_what_its_numbers_are(script):
+    text = (ROOT / "docs" / script).read_text(encoding="utf-8")
+    figures = text.split("plt.subplots(")[1:]
+    assert figures
+    for one in figures:
+        assert re.search(r"synthetic|published|computed|made-up", one), one[:200]
