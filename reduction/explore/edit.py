@@ -161,7 +161,8 @@ def _is_home(table: Table, path: Path) -> bool:
     """Whether a key can be written under a header, where others of its test stand."""
     if path[: len(table.path)] != table.path:
         return False
-    return len(table.path) >= 2 or any(one.path[:2] == path[:2] for one in table.statements)
+    is_own = len(table.path) >= min(2, len(path) - 1)
+    return is_own or any(one.path[:2] == path[:2] for one in table.statements)
 
 
 def _line(keys: Path, value: Value) -> str:

@@ -6,6 +6,7 @@ import json
 import secrets
 import socket
 import threading
+from collections.abc import Callable
 from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -109,6 +110,22 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         """The page for one who knows the token; style and scripts hold nothing of a campaign."""
+        self._answered(self._get)
+
+    def do_POST(self) -> None:
+        """A document for a document."""
+        self._answered(self._post)
+
+    def _answered(self, answer: Callable[[], None]) -> None:
+        try:
+            answer()
+        except OSError:  # who asked is gone, or dawdles
+            raise
+        except Exception:
+            # a stranger learns no more of a defect here than that it is one
+            self._refuse(HTTPStatus.INTERNAL_SERVER_ERROR, "internal error, a defect here")
+
+    def _get(self) -> None:
         asked = self._asked()
         if asked is None:
             return
@@ -129,8 +146,7 @@ class _Handler(BaseHTTPRequestHandler):
         else:
             self._refuse(HTTPStatus.NOT_FOUND, "there is nothing here")
 
-    def do_POST(self) -> None:
-        """A document for a document."""
+    def _post(self) -> None:
         asked = self._asked()
         if asked is None:
             return
@@ -187,6 +203,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._send(Answer(status, "application/json; charset=utf-8", body))
 
     def _send(self, answer: Answer) -> None:
+        self.request_version = self.protocol_version  # what is no request has headers too
         self.send_response_only(answer.status)
         for name, value in HEADERS.items():
             self.send_header(name, value)

@@ -1,0 +1,411 @@
+"""What the explorer shows is what a run makes, and what it saves is what it showed."""
+
+import os
+import re
+import shutil
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from reduction.archive.open import open_archive
+from reduction.archive.write import write_archive
+from reduction.batch.run import run_campaign
+from reduction.campaign.load import load_campaign
+from reduction.errors import ArchiveError, SettingsError
+from reduction.explore import records
+from reduction.explore.answers import answer_table
+from reduction.explore.document import campaign_document, change_document
+from reduction.explore.file import CampaignText
+from reduction.explore.find import find_campaign
+from reduction.explore.keys import SETTINGS, setting_of, settings_of_kind
+from reduction.explore.session import Session
+from reduction.report.view import TestView
+from reduction.settings import ReductionSettings
+
+ROOT = Path(__file__).parents[2]
+DOCS = (ROOT / "docs" / "campaign.md").read_text(encoding="utf-8")
+SHORT = {"T-1.csv": 3950, "T-2.csv": 4450}
+"""Rows of each log that hold the first few of its cycles."""
+
+
+def copied(folder):
+    """The complete example of docs/campaign.md, its logs cut short: a campaign of two tests."""
+    for name in ("campaign.toml", "tests.csv", "marks.csv"):
+        (body,) = re.findall(rf"^`{name}`:\n\n```\w+\n(.*?)^```$", DOCS, re.M | re.S)
+        (folder / name).write_text(body, encoding="utf-8")
+    for name, n_rows in SHORT.items():
+        lines = (ROOT / "raw" / "tmt-synthetic" / name).read_text("utf-8").splitlines(True)
+        (folder / name).write_text("".join(lines[:n_rows]), encoding="utf-8")
+    return folder / "campaign.toml"
+
+
+def run(path, folder, **options):
+    return run_campaign(
+        load_campaign(path), processed=folder / "processed", reports=folder / "reports",
+        clock=lambda: 0.0, command="reduction run campaign.toml", **options,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("explored")
+    (folder / "raw").mkdir()
+    path = copied(folder / "raw")
+    assert run(path, folder).exit_status == 0
+    return path
+
+
+@pytest.fixture
+def place(campaign, tmp_path):
+    """A copy of the campaign with its archives, for a test that writes."""
+    shutil.copytree(campaign.parent.parent, tmp_path, dirs_exist_ok=True)
+    return tmp_path
+
+
+def session_of(place):
+    return Session(place / "raw" / "campaign.toml", place / "processed" / "two-tethers")
+
+
+def view(made):
+    return TestView("test", made.dataset)
+
+
+def modulus(made):
+    return made.dataset["tangent_modulus"].values
+
+
+@pytest.fixture(scope="module")
+def session(campaign):
+    return session_of(campaign.parent.parent)
+
+
+def test_an_archive_stands_while_nothing_is_changed(session):
+    made = session.made("T-1", session.text)
+    assert made.error == "" and made.is_standing and made.also == ()
+
+
+def test_numbers_that_are_shown_are_those_of_a_run_after_the_save(place, monkeypatch):
+    for name in ("write_tables", "write_report"):  # what is made of archives takes long
+        monkeypatch.setattr(f"reduction.batch.run.{name}", lambda *given, **more: [])
+    session = session_of(place)
+    changes = {"cycles.trim_threshold": "0.9", "modulus.window": "6 %"}
+    text = session.changed("T-1", changes)
+    shown = session.made("T-1", text)
+    before = session.made("T-1", session.text)
+    assert not np.array_equal(modulus(before), modulus(shown), equal_nan=True)
+    session.save(text)
+    assert run(place / "raw" / "campaign.toml", place, tests=["T-1"]).exit_status == 0
+    with open_archive(place / "processed" / "two-tethers" / "T-1.nc") as archive:
+        xr.testing.assert_identical(archive.drop_attrs(deep=True), _as_read(shown, place))
+        assert archive.attrs["settings"] == shown.dataset.attrs["settings"]
+    assert session.made("T-1", session.text).is_standing
+
+
+def _as_read(made, place):
+    """The dataset as it comes back from a disk."""
+    write_archive(made.dataset, place / "shown.nc")
+    with open_archive(place / "shown.nc") as archive:
+        return archive.drop_attrs(deep=True).load()
+
+
+def test_raw_files_and_archives_are_never_written(place):
+    def stamps():
+        return {
+            path: (path.stat().st_mtime_ns, path.read_bytes())
+            for path in place.rglob("*")
+            if path.is_file() and path.name != "campaign.toml"
+        }
+
+    before = stamps()
+    session = session_of(place)
+    text = session.changed("T-2", {"cycles.break_in_cycles": "1"})
+    session.made("T-2", text)
+    session.save(text)
+    assert stamps() == before
+
+
+def test_a_log_is_read_once_however_often_a_setting_moves(place, monkeypatch):
+    read = []
+    whole = records.read_record
+
+    def counted(files, **how):
+        read.append(how["test_id"])
+        return whole(files, **how)
+
+    monkeypatch.setattr(records, "read_record", counted)
+    session = session_of(place)
+    for value in ("0.9", "0.92"):
+        session.made("T-1", session.changed("T-1", {"cycles.trim_threshold": value}))
+    assert read == ["T-1"]
+    log = place / "raw" / "T-1.csv"
+    os.utime(log, ns=(1, 1))
+    session.made("T-1", session.changed("T-1", {"cycles.trim_threshold": "0.96"}))
+    assert read == ["T-1", "T-1"], "a log that changed is read again"
+    session.made("T-1", session.changed("T-1", {"quality.gap_factor": "5"}))
+    assert len(read) == 3, "flags are set while a log is read"
+
+
+def test_tests_that_share_what_a_change_moves_are_named(session):
+    moved = session.changed("T-1", {"phases.minimum_duration": "100 s"})
+    assert session.made("T-1", moved).also == ("T-2",), "a mark has lost its hold"
+    alone = session.changed("T-1", {"modulus.window": "6 %"})
+    assert session.made("T-1", alone).also == ()
+
+
+def test_a_test_that_cannot_be_reduced_says_why(session):
+    made = session.made("T-1", session.changed("T-1", {"cycles.band": "300 ft"}))
+    assert made.dataset is None and "band" in made.error
+    before = session.made("T-1", session.text)
+    found = change_document(session, "T-1", session.text, before, made, "si")
+    assert found["error"] == made.error
+
+
+@pytest.mark.parametrize(
+    ("changes", "match"),
+    [
+        ({"cycles.trim_threshold": "2"}, "trim_threshold is out of range"),
+        ({"modulus.window": "1 lbf"}, "unit"),
+        ({"phases.minimum_duration": "5"}, "a value has no unit"),
+        ({"strain.method": "guess"}, "strain.method"),
+        ({"waveform": "<b>"}, "waveform"),
+    ],
+)
+def test_a_value_that_a_run_would_refuse_is_refused(session, changes, match):
+    with pytest.raises(SettingsError, match=match):
+        session.made("T-1", session.changed("T-1", changes))
+
+
+@pytest.mark.parametrize(
+    ("changes", "match"),
+    [
+        ({"archive.samples": "all"}, "not one that is moved here; found 'archive.samples'"),
+        ({"file": "/etc/passwd"}, "not one that is moved here"),
+        ({"cycles.trim_threshold.x": "1"}, "not one that is moved here"),
+        ({"cycles.trim_threshold": "steep"}, "is not a number; found 'steep'"),
+        ({"steps.0.from": ""}, "a step has both ends"),
+    ],
+)
+def test_keys_that_are_not_offered_are_refused(session, changes, match):
+    with pytest.raises(SettingsError, match=match):
+        session.changed("T-1", changes)
+
+
+def test_a_test_that_is_not_there_is_refused(session):
+    with pytest.raises(SettingsError, match="no such test; found '../x'"):
+        session.changed("../x", {})
+
+
+def test_a_table_of_tests_goes_on_beside_the_settings_of_one(session):
+    text = session.changed("T-1", {"cycles.trim_threshold": "0.9"})
+    diff = session.text.difference(text)
+    changed = [line for line in diff.splitlines() if re.match(r"[-+](?![-+])", line)]
+    assert changed == [
+        '-tests = "tests.csv"', '+tests = "tests.csv"', "+", "+[tests.T-1]",
+        "+reduction.cycles.trim_threshold = 0.9",
+    ]  # fmt: skip
+
+
+def test_a_file_that_changed_meanwhile_is_not_written_over(place):
+    session = session_of(place)
+    path = place / "raw" / "campaign.toml"
+    text = session.changed("T-1", {"cycles.trim_threshold": "0.9"})
+    theirs = path.read_text("utf-8") + "# of somebody else\n"
+    path.write_text(theirs, encoding="utf-8")
+    assert session.is_changed_on_disk
+    with pytest.raises(SettingsError, match=r"changed on the disk since .* Nothing was written"):
+        session.save(text)
+    assert path.read_text("utf-8") == theirs
+    session.read_again()
+    assert not session.is_changed_on_disk
+
+
+def test_a_disk_that_refuses_leaves_the_file_as_it_was(place, monkeypatch):
+    session = session_of(place)
+    text = session.changed("T-1", {"cycles.trim_threshold": "0.9"})
+    before = session.path.read_bytes()
+
+    def refuse(self, data):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", refuse)
+    with pytest.raises(ArchiveError, match=r"cannot be written; found No space left"):
+        session.save(text)
+    assert session.path.read_bytes() == before
+    assert sorted(path.name for path in session.path.parent.glob(".*")) == []
+
+
+@pytest.mark.skipif(os.name != "posix", reason="modes and links of POSIX")
+def test_a_link_stays_a_link_and_a_mode_stays(place):
+    path = place / "raw" / "campaign.toml"
+    real = path.rename(place / "raw" / "real.toml")
+    path.symlink_to("real.toml")
+    real.chmod(0o640)
+    session = session_of(place)
+    session.save(session.changed("T-1", {"cycles.trim_threshold": "0.9"}))
+    assert path.is_symlink() and "trim_threshold" in real.read_text("utf-8")
+    assert real.stat().st_mode & 0o777 == 0o640
+
+
+def test_a_file_that_cannot_be_read_is_said(tmp_path):
+    with pytest.raises(SettingsError, match="the campaign cannot be read; found No such file"):
+        CampaignText.read(tmp_path / "campaign.toml")
+
+
+def of_text(tmp_path, text):
+    return CampaignText(tmp_path / "campaign.toml", text)
+
+
+@pytest.mark.parametrize(
+    ("text", "method", "made"),
+    [
+        ('[defaults]\nstrain = { marks = "m.csv" }\n[tests.T]\n', "marks",
+         '[tests.T]\nstrain = { method = "marks", marks = "m.csv" }\n'),
+        ('[tests.T]\nstrain = { method = "marks", marks = "m.csv" }\n', "",
+         '[tests.T]\nstrain = { marks = "m.csv" }\n'),
+        ('[tests.T]\nstrain = { method = "marks" }\n', "", "[tests.T]\n"),
+        ('[defaults]\nstrain = { method = "marks" }\n[tests.T]\nstrain = { method = "strain-ratio" }\n', "",
+         "[tests.T]\nstrain = {}\n"),
+        ('[defaults]\nstrain = { method = "marks" }\n[tests.T]\n', "marks", "[tests.T]\n"),
+        ('[tests.T]\nstrain.marks = "m.csv"\n', "marks",
+         '[tests.T]\nstrain.marks = "m.csv"\nstrain.method = "marks"\n'),
+    ],
+)  # fmt: skip
+def test_a_strain_method_keeps_the_marks(tmp_path, text, method, made):
+    found = of_text(tmp_path, text).changed("T", {"strain.method": method}, control="position")
+    assert found.text.partition("[tests.T]")[2] == made.partition("[tests.T]")[2]
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "line"),
+    [
+        ("holds.times", "1 s, 60 s", 'reduction.holds.times = ["1 s", "60 s"]'),
+        ("modulus.stress_at_strain", "0.5,100 %", 'reduction.modulus.stress_at_strain = [0.5, "100 %"]'),
+        ("cycles.break_in_cycles", "3", "reduction.cycles.break_in_cycles = 3"),
+        ("cycles.band", "0.2 ft", 'reduction.cycles.band = "0.2 ft"'),
+        ("control", "load", 'control = "load"'),
+        ("modulus.window", "0.05", "reduction.modulus.window = 0.05"),
+    ],
+)  # fmt: skip
+def test_a_text_is_written_as_campaign_toml_has_it(tmp_path, key, text, line):
+    found = of_text(tmp_path, "[tests.T]\n").changed("T", {key: text}, control="position")
+    assert found.text == f"[tests.T]\n{line}\n"
+    setting = setting_of(key)
+    assert found.written("T", setting).place == "test"
+    assert found.changed("T", {key: ""}, control="position").text == "[tests.T]\n"
+
+
+def test_ends_of_a_step_are_moved(tmp_path):
+    text = '[tests.T]\n[[tests.T.steps]]\nname = "a"\nfrom = 1\nto = 5\n'
+    found = of_text(tmp_path, text).changed("T", {"steps.0.to": "7"}, control="position")
+    assert found.text == text.replace("to = 5", "to = 7")
+    assert found.step_ends("T", 0) == {"steps.0.from": "1", "steps.0.to": "7"}
+
+
+def test_what_stands_in_the_table_of_tests_is_changed_there(tmp_path):
+    (tmp_path / "tests.csv").write_text("id,file,method\nT,a.csv,marks\n", encoding="utf-8")
+    text = of_text(tmp_path, '[campaign]\ntests = "tests.csv"\n')
+    assert text.written("T", setting_of("strain.method")).place == "table"
+    with pytest.raises(SettingsError, match="stands in the table of tests"):
+        text.changed("T", {"strain.method": "marks"}, control="position")
+
+
+def test_every_number_of_a_reduction_is_offered_but_those_of_the_archive():
+    known = {
+        f"{group.name}.{item.name}"
+        for group in fields(ReductionSettings)
+        for item in fields(group.default_factory)
+        if group.name != "archive" and (group.name, item.name) != ("cycles", "expected_cycles")
+    }
+    known -= {"cycles.control", "cycles.waveform"}  # keys of the test itself
+    assert {one.key for one in SETTINGS} == known | {"control", "waveform"}
+    assert settings_of_kind("stepwise") == []
+    assert "cycles.band" not in {one.key for one in settings_of_kind("relaxation")}
+
+
+def test_answers_stand_side_by_side_with_their_difference(session):
+    before = session.made("T-1", session.text)
+    after = session.made("T-1", session.changed("T-1", {"cycles.break_in_cycles": "1"}))
+    table = answer_table(view(before), view(after))
+    rows = {row[0].text: row for row in table.rows}
+    row = rows["apparent spring constant, new"]
+    old, new = (float(one.dataset["test_apparent_spring_constant"][0]) for one in (before, after))
+    assert float(row[1].value) == old and float(row[2].value) == new
+    assert float(row[4].value) == pytest.approx(new - old, rel=1e-12)
+    assert float(row[5].value) == pytest.approx(100 * (new / old - 1), rel=1e-9)
+    assert float(row[6].value) == pytest.approx(
+        abs(new - old) / float(re.search(r"± ([\d.]+)", row[1].text)[1]), rel=0.1
+    )
+
+
+def test_a_segment_over_another_range_has_no_difference(session):
+    before = session.made("T-1", session.text)
+    after = session.made("T-1", session.changed("T-1", {"modulus.maximum_segments": "1"}))
+    segments = [
+        row for row in answer_table(view(before), view(after)).rows
+        if row[0].text.startswith("segment 1")
+    ]  # fmt: skip
+    counted = before.dataset.sizes["segment"]
+    assert counted == 1 or any(row[4].text == "over another range" for row in segments)
+
+
+def test_the_page_is_sent_settings_figures_answers_and_the_diff(session):
+    text = session.changed("T-1", {"cycles.trim_threshold": "0.9"})
+    before, after = session.made("T-1", session.text), session.made("T-1", text)
+    found = change_document(session, "T-1", text, before, after, "us")
+    assert [one["key"] for one in found["figures"]][:2] == ["modulus-0", "modulus-1"]
+    assert {"record", "loops-0", "difference-1"} <= {one["key"] for one in found["figures"]}
+    assert "+reduction.cycles.trim_threshold = 0.9" in found["diff"].splitlines()
+    settings = {one["key"]: one for one in found["settings"]}
+    assert settings["cycles.trim_threshold"]["value"] == "0.9"
+    assert settings["cycles.trim_threshold"]["place"] == "test"
+    assert settings["modulus.strain_bin_width"]["shown"] == "1 %"
+    assert settings["modulus.strain_bin_width"]["place"] == "defaults"
+    assert settings["cycles.band"]["place"] == "found"
+    assert settings["cycles.band"]["shown"].endswith(" ft")
+    assert settings["cycles.break_in_cycles"]["place"] == "default"
+    assert any("psi" in cell["text"] for row in found["answers"]["rows"] for cell in row)
+
+
+def test_the_page_is_told_of_every_test(session):
+    found = campaign_document(session, "si")
+    assert [one["id"] for one in found["tests"]] == ["T-1", "T-2"]
+    assert found["synthetic"] is True
+
+
+def test_a_campaign_is_found_where_it_lies_by_habit(place, monkeypatch):
+    processed = place / "processed" / "two-tethers"
+    (place / "raw" / "two-tethers").mkdir()
+    there = place / "raw" / "two-tethers" / "campaign.toml"
+    shutil.copy(place / "raw" / "campaign.toml", there)
+    assert find_campaign(processed) == there
+    other = place / "elsewhere" / "two-tethers"
+    shutil.copytree(processed, other / "archives")
+    with pytest.raises(SettingsError, match=r"not where it is looked for.*needed --campaign"):
+        find_campaign(other / "archives")
+    monkeypatch.chdir(place)
+    assert find_campaign(other / "archives") == there
+    assert (
+        find_campaign(other / "archives", place / "raw" / "campaign.toml").name == "campaign.toml"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "match"),
+    [('[campaign]\nid = "other"\n', "found campaign 'other'; needed campaign 'two-tethers'"),
+     ("= no toml", "found no campaign.toml"), ("campaign = 3\n", "found no campaign.toml")],
+)  # fmt: skip
+def test_another_campaign_is_refused(campaign, tmp_path, text, match):
+    (tmp_path / "campaign.toml").write_text(text, encoding="utf-8")
+    processed = campaign.parent.parent / "processed" / "two-tethers"
+    with pytest.raises(SettingsError, match=match):
+        find_campaign(processed, tmp_path / "campaign.toml")
+
+
+def test_a_folder_of_several_campaigns_or_of_none_is_refused(campaign, tmp_path):
+    with pytest.raises(SettingsError, match="a folder for each campaign; found two-tethers"):
+        find_campaign(campaign.parent.parent / "processed")
+    with pytest.raises(ArchiveError, match=r"there is no archive of a test in .* Run the campaign"):
+        find_campaign(tmp_path)
