@@ -92,27 +92,55 @@ def questions(sources, count, seed):
         branches = [one.branch for one in line.curves if one.quantity == quantity and one.branch]
         branch = str(chance.choice(branches)) if branches else None
         system = str(chance.choice(["si", "us"]))
-        levels = {}
-        where = chance.choice(["inside", "inside", "inside", "edge", "outside"])
-        for name, (low, high) in levels_of(line, quantity, branch).items():
-            share = {
-                "inside": chance.uniform(0, 1),
-                "edge": chance.choice([0.0, 0.5, 1.0]),
-                "outside": chance.uniform(-0.3, 1.3),
-            }[where]
-            levels[name] = _written(low + share * (high - low), name, line, system, chance)
+        where = str(chance.choice(["inside", "inside", "edge", "edge", "outside", "loads"]))
+        ends = levels_of(line, quantity, branch)
+        at = {name: _place(where, low, high, chance) for name, (low, high) in ends.items()}
+        nodes = [one.at for one in line.curves if one.quantity == quantity and one.at.size]
+        if where == "edge" and nodes and chance.integers(2):
+            # a point of the curve itself: a joint of two pieces, or the end of a gap
+            (name,) = at
+            gaps = [one.gaps.ravel() for one in line.curves if one.gaps.size]
+            at[name] = float(chance.choice(gaps[0] if gaps and chance.integers(2) else nodes[0]))
+        if where == "loads" and "tension_amplitude" in at:
+            at |= _loads(line, chance)
+        levels = {
+            name: _written(value, name, line, system, chance, is_exact=where in ("edge", "loads"))
+            for name, value in at.items()
+        }
         found.append(
             {
                 "line": key, "name": line.name, "quantity": quantity, "levels": levels,
-                "branch": branch, "flag": bool(chance.integers(2)), "system": system,
+                "branch": branch, "flag": where == "loads" or bool(chance.integers(2)), "system": system,
             }
         )  # fmt: skip
     return found
 
 
-def _written(value, name, line, system, chance):
+def _loads(line, chance):
+    """A cycle whose ends are about those that the rule of the source names."""
+    own = line.tensile_strength
+    strength = own if np.isfinite(own) else line.rated_break_strength
+    beside = 1 + chance.choice([0.0, 1e-10, -1e-10, 1e-8, -1e-8, 0.01, -0.01])
+    peak = chance.choice([0.6, 0.3, 1.0]) * strength * beside
+    least = chance.choice([0.03, 0.03, 0.0]) * strength * (1 + chance.choice([0.0, 1e-8, -1e-8]))
+    return {"mean_tension": (peak + least) / 2, "tension_amplitude": (peak - least) / 2}
+
+
+def _place(where, low, high, chance):
+    """A level between its ends, just beside one of them, or beyond."""
+    if where == "inside":
+        return chance.uniform(low, high)
+    if where == "edge":
+        # printed levels are rounded to a pound, and a change of units to a billionth
+        beside = chance.choice([0.0, 0.0, 3e-10, 5e-9, 2e-8, 1e-4, 4e-4])
+        end = float(chance.choice([low, (low + high) / 2, high]))
+        return end + float(chance.choice([-1, 1])) * beside * (high - low)
+    return chance.uniform(low - 0.3 * (high - low), high + 0.3 * (high - low))
+
+
+def _written(value, name, line, system, chance, *, is_exact):
     """A level as a person writes it: a number of few or of many digits, and a unit."""
-    digits = int(chance.choice([3, 5, 17]))
+    digits = 17 if is_exact else int(chance.choice([3, 5, 17]))
     if name == "frequency":
         unit, factor = "Hz", 1.0
     elif name == "strain":

@@ -38,7 +38,7 @@ def _rope(name, surfaces, **fields):
 
 def _tether(chance):
     at = np.round(np.cumsum(chance.uniform(0.01, 0.06, 24)), 4)
-    force = 300 * at + 10 * np.cumsum(chance.uniform(0, 1, 24))
+    force = 300 * at + 10 * np.cumsum(chance.uniform(0, 1, 24)) - 300 * at[0]
     own, rows = chance.uniform(1, 3, 24), chance.normal(0, 2, (3, 24))
     known = {
         "at": at, "gaps": np.array([[at[7], at[8]], [at[15], at[16]]]),
@@ -47,7 +47,7 @@ def _tether(chance):
         "spread_of": "the mean over the cycles of this one test",
     }  # fmt: skip
     return LineSource(
-        "tether", "made up", "rubber", "", "", 0.026, float("nan"), kind="rubber tether",
+        "tether", "made up", "rubber", "", "", 0.026, 500.0, kind="rubber tether",
         curves=(
             LineCurve(
                 "branch_tension", "strain", at[0], at[-1], value=force, branch="ascending",
@@ -82,7 +82,7 @@ def odd_lines():
                 _shared(spring, 11.0, chance, (CELL, GAUGE), exponent=0.0, spread=0.01),
                 _shared(time, 1.1, chance, (CELL,), exponent=0.0),
                 _shared(apparent, 600.0, chance, (CELL, CLOCK), exponent=0.5, sigma=40.0),
-                _surface(energy, -0.4, chance, exponent=-0.5, sigma=0.4),
+                _surface(energy, -0.4, chance, exponent=-0.5, sigma=1.0),
             ],
         ),
         _rope(
