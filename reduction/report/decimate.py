@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from reduction.errors import DataError
 from reduction.record import Floats, Integers
 
-__all__ = ["POINTS", "keep_extremes", "with_gaps"]
+__all__ = ["POINTS", "keep_extremes", "least_and_greatest", "with_gaps"]
 
 POINTS = 2000
 """Most points of one trace; a screen has fewer columns than that."""
@@ -72,6 +72,45 @@ def keep_extremes(coordinate: Floats, *channels: Floats, limit: int = POINTS) ->
             missing = np.flatnonzero(gap)
             kept.append(missing[np.flatnonzero(np.diff(interval[missing], prepend=-1))])
     return np.unique(np.concatenate(kept))
+
+
+def least_and_greatest(
+    coordinate: Floats, channel: Floats, *, n_intervals: int = POINTS // 4
+) -> tuple[Floats, Floats, Floats]:
+    """Return the edges of what a channel does in intervals of equal width.
+
+    For a record of so many cycles that a line through them would be a block of colour.
+
+    Parameters
+    ----------
+    coordinate : ndarray, shape (n_samples,)
+        Along which the intervals have equal width, as in `keep_extremes`.
+    channel : ndarray, shape (n_samples,)
+        What is drawn; a sample that is not finite is left out. [any]
+    n_intervals : int
+        Most intervals. [1]
+
+    Returns
+    -------
+    middle : ndarray, shape (n_found,)
+        Middle of the samples of each interval. [as coordinate]
+    least, greatest : ndarray, shape (n_found,)
+        NaN of an interval without a finite sample. [as channel]
+
+    Examples
+    --------
+    >>> wave = np.tile([1.0, 5.0, 2.0], 100)
+    >>> middle, least, greatest = least_and_greatest(np.arange(300.0), wave, n_intervals=3)
+    >>> print(middle, least, greatest)
+    [ 49.5 149.5 249.5] [1. 1. 1.] [5. 5. 5.]
+    """
+    if not channel.size:
+        return coordinate, channel, channel
+    interval = _intervals(coordinate, n_intervals)
+    starts = np.flatnonzero(np.diff(interval, prepend=-1))
+    ends = np.append(starts[1:], channel.size) - 1
+    middle = (coordinate[starts] + coordinate[ends]) / 2
+    return middle, np.fmin.reduceat(channel, starts), np.fmax.reduceat(channel, starts)
 
 
 def with_gaps(piece: Integers, *series: Floats) -> list[Floats]:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from reduction.errors import DataError
-from reduction.report.decimate import keep_extremes
+from reduction.report.decimate import keep_extremes, least_and_greatest
 
 VALUES = st.floats(-1e6, 1e6) | st.just(float("nan"))
 CHANNELS = arrays(np.float64, st.integers(200, 600), elements=VALUES)
@@ -80,3 +80,23 @@ def test_no_room_and_no_channel_are_refused():
         keep_extremes(np.arange(10.0), limit=5)
     with pytest.raises(DataError, match="at most 3 points"):
         keep_extremes(np.arange(10.0), np.ones(10), limit=3)
+
+
+@given(CHANNELS, st.integers(3, 60))
+def test_between_least_and_greatest_lies_every_sample_of_an_interval(channel, n_intervals):
+    place = np.arange(channel.size, dtype=float)
+    middle, least, greatest = least_and_greatest(place, channel, n_intervals=n_intervals)
+    assert middle.size == n_intervals
+    assert (np.diff(middle) > 0).all()
+    own = np.minimum(place * n_intervals // (channel.size - 1), n_intervals - 1).astype(int)
+    for interval in range(n_intervals):
+        inside = channel[own == interval]
+        known = inside[np.isfinite(inside)]
+        if known.size:
+            assert (least[interval], greatest[interval]) == (known.min(), known.max())
+        else:
+            assert np.isnan(least[interval]) and np.isnan(greatest[interval])
+
+
+def test_nothing_has_no_edges():
+    assert [one.size for one in least_and_greatest(np.zeros(0), np.zeros(0))] == [0, 0, 0]

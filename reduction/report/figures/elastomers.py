@@ -22,6 +22,10 @@ __all__ = ["draw_mooney"]
 FIT_POINTS = 60
 LEAST_STRAIN = 0.05
 """Below this the reduced stress is a small number over a small number. [1]"""
+_NAMES = {
+    "neo-hookean": "neo-Hookean", "mooney-rivlin": "Mooney-Rivlin", "yeoh": "Yeoh",
+    "ogden-2": "Ogden, two terms",
+}  # fmt: skip
 _DASHES = ("solid", "dash", "dot", "dashdot")
 
 
@@ -77,8 +81,8 @@ def _laws(view: TestView, specimen: str, factor: float) -> Iterator[Trace]:
         )
         order = LAWS.index(law)
         yield line(
-            inverse, reduced * factor, name=law, colour=colour(order), dash=_DASHES[order],
-            width=1.6,
+            inverse, reduced * factor, name=_NAMES.get(law, law), colour=colour(order),
+            dash=_DASHES[order], width=1.6,
         )  # fmt: skip
 
 

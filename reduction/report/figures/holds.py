@@ -14,6 +14,8 @@ from reduction.report.view import TestView
 __all__ = ["draw_holds"]
 
 FIT_POINTS = 120
+_FIT = "#6E6E6E"
+"""Of a fit upon any colour, on white and on black."""
 
 
 def draw_holds(view: TestView) -> list[Figure]:
@@ -38,7 +40,7 @@ def draw_holds(view: TestView) -> list[Figure]:
                 make_figure(
                     f"{view.key}-hold-{kind}-{index}", f"{view.id}: {kind}, {specimen}",
                     f"{what.capitalize()} in the holds at {held} against time since the hold"
-                    " began; dashed: the fitted Prony series,"
+                    " began; dashed grey: the fitted Prony series,"
                     " which is for a step in length, where the record supports one.",
                     traces, synthetic=view.is_synthetic,
                     xaxis=axis(
@@ -70,19 +72,20 @@ def _one_hold(
     level = "" if held is None or np.isnan(held[hold]) else f", strain {100 * held[hold]:.0f} %"
     number = view.hold_numbers[hold]
     name, order = f"hold {number}{level}", number - 1
+    fit = None if is_creep else _prony(view, hold, since)
     traces = [
         line(
             since[kept], y[kept], name=name, colour=colour(order), width=1.2, legendgroup=name,
             mode="lines+markers", marker={**marker(order), "maxdisplayed": 6},
+            opacity=1.0 if fit is None else 0.55,
         )
     ]  # fmt: skip
-    fit = None if is_creep else _prony(view, hold, since)
     if fit is not None:
         moments, tension = fit
         traces.append(
             line(
                 moments, tension * unit.factor, name=f"{name}: Prony series",
-                colour=colour(order), dash="dash", width=2.2, legendgroup=name, showlegend=False,
+                colour=_FIT, dash="dash", width=1.8, legendgroup=name, showlegend=False,
             )
         )  # fmt: skip
     return traces

@@ -8,8 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record import Bools, Floats, Integers
-from reduction.report.decimate import POINTS, keep_extremes, with_gaps
-from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
+from reduction.report.decimate import POINTS, keep_extremes, least_and_greatest, with_gaps
+from reduction.report.figure import (
+    Figure,
+    Trace,
+    axis,
+    band,
+    line,
+    make_figure,
+    plain_numbers,
+)
+from reduction.report.figures.trends import LONG
 from reduction.report.style import PHASE_FILLS, Shown, colour, plot_text, shown
 from reduction.report.view import TestView
 from reduction.vocabulary import PHASE_VALUES
@@ -51,33 +60,22 @@ def draw_record(view: TestView) -> list[Figure]:
         seconds = SECONDS_IN_AN_HOUR
         time, in_time = time / seconds, Shown("h", 1.0)
     data: list[Trace] = []
-    pieces = view.pieces
-    # most of the time of a record that is stored in part has no sample to draw
-    along = time if view.is_whole else np.arange(time.size, dtype=np.float64)
+    # a line through so many cycles is a block of colour that hides the specimen behind it
+    is_dense = view.is_whole and view.n_cycles > LONG
     position = position_of(view)
     if position is not None:
         words, values = position
         length = shown("length", view.units)
-        kept = keep_extremes(along, values)
         data.append(
-            line(
-                *with_gaps(pieces[kept], time[kept], values[kept] * length.factor), name=words,
-                colour="#8C8C8C", width=1.2, x_digits=TIME_DIGITS, yaxis="y2",
-            )
-        )  # fmt: skip
+            _series(view, time, values * length.factor, words, "#8C8C8C", is_dense, yaxis="y2")
+        )
         flags = view.array("crosshead_position_quality_flag")
         data += _flagged(view, "crosshead_position_quality_flag", time, values * length.factor,
                          flags, words, "#8C8C8C", "y2")  # fmt: skip
     flags = view.array("quality_flag")
     for index, specimen in enumerate(view.specimens):
-        kept = keep_extremes(along, tension[index])
         force = tension[index] * in_tension.factor
-        data.append(
-            line(
-                *with_gaps(pieces[kept], time[kept], force[kept]), name=f"tension, {specimen}",
-                colour=colour(index), width=1.2, x_digits=TIME_DIGITS,
-            )
-        )  # fmt: skip
+        data.append(_series(view, time, force, f"tension, {specimen}", colour(index), is_dense))
         of_specimen = None if flags is None else flags[index]
         data += _flagged(
             view, "quality_flag", time, force, of_specimen, specimen, colour(index), "y"
@@ -104,7 +102,12 @@ def draw_record(view: TestView) -> list[Figure]:
         + " (rate not constant, resampled, extrapolated) can be switched on in the legend."
     )
     caption += _of_part(view)
-    if time.shape[0] > POINTS:
+    if is_dense:
+        caption += (
+            " The cycles are too many to be told apart here: filled from the least to the greatest"
+            f" of every short interval of the {time.shape[0]:,} samples."
+        )
+    elif time.shape[0] > POINTS:
         caption += (
             f" The {time.shape[0]:,} samples are thinned out so that the least and the greatest"
             " of every short interval stay."
@@ -117,6 +120,25 @@ def draw_record(view: TestView) -> list[Figure]:
             synthetic=view.is_synthetic, height=480, is_wide=True, **layout,
         )
     ]  # fmt: skip
+
+
+def _series(
+    view: TestView, time: Floats, values: Floats, name: str, tint: str, is_dense: bool, **more: Any
+) -> Trace:
+    """Return one channel against time: a line, or of many cycles what lies between its extremes."""
+    if is_dense:
+        middle, least, greatest = least_and_greatest(time, values)
+        return band(
+            middle, least, greatest, name=name, colour=tint, alpha=0.3, showlegend=True,
+            line={"width": 1, "color": tint}, **more,
+        )  # fmt: skip
+    # most of the time of a record that is stored in part has no sample to draw
+    along = time if view.is_whole else np.arange(time.size, dtype=np.float64)
+    kept = keep_extremes(along, values)
+    return line(
+        *with_gaps(view.pieces[kept], time[kept], values[kept]), name=name, colour=tint, width=1.2,
+        x_digits=TIME_DIGITS, **more,
+    )  # fmt: skip
 
 
 def draw_tension_position(view: TestView) -> list[Figure]:

@@ -17,6 +17,10 @@ __all__ = ["LONG", "draw_trends"]
 
 LONG = 100
 """More cycles than this are drawn against the logarithm of their number."""
+_UNDER_LABELS = 0.85
+"""Height of the axes where the steps of a splice are named above them."""
+_ROWS = (0.9, 0.97)
+"""Heights of their names, so that two steps close together can be read."""
 _PANELS: tuple[tuple[str, str, Kind, tuple[tuple[str, str], ...]], ...] = (
     ("peaks", "peak and valley tension", "tension",
      (("peak_tension", "solid"), ("valley_tension", "dash"))),
@@ -68,7 +72,7 @@ def draw_trends(view: TestView) -> list[Figure]:
             synthetic=view.is_synthetic,
             height=340,
             xaxis=axis("cycle number [1]", **({"type": "log", "dtick": 1} if is_long else {})),
-            yaxis=axis(unit.label(words)),
+            yaxis=axis(unit.label(words), **({"domain": [0.0, _UNDER_LABELS]} if labels else {})),
             shapes=shapes,
             annotations=labels,
             meta={"cycles": "number"},
@@ -102,12 +106,12 @@ def _slips(view: TestView, *, is_long: bool) -> tuple[list[Trace], list[Trace]]:
         tint = colour(view.specimens.index(specimen))
         shapes += [
             {
-                "type": "rect", "layer": "below", "xref": "x", "yref": "paper", "y0": 0, "y1": 1,
-                "x0": low[place] - 0.5, "x1": high[place] + 0.5, "line": {"width": 0},
-                "fillcolor": faded(tint, 0.15),
+                "type": "rect", "layer": "below", "xref": "x", "yref": "paper", "y0": 0,
+                "y1": _UNDER_LABELS, "x0": low[place] - 0.5, "x1": high[place] + 0.5,
+                "line": {"width": 0}, "fillcolor": faded(tint, 0.15),
             },
             {
-                "type": "line", "xref": "x", "yref": "paper", "y0": 0, "y1": 1,
+                "type": "line", "xref": "x", "yref": "paper", "y0": 0, "y1": _UNDER_LABELS,
                 "x0": cycles[place], "x1": cycles[place],
                 "line": {"color": tint, "dash": "dot", "width": 1.5},
             },
@@ -115,10 +119,10 @@ def _slips(view: TestView, *, is_long: bool) -> tuple[list[Trace], list[Trace]]:
         # plotly wants the logarithm for a label on a logarithmic axis, but not for a shape
         labels.append(
             {
-                "text": f"slip, {plot_text(specimen, 12)}, {cycles[place]:.0f}",
+                "text": f"{plot_text(specimen, 12)} {cycles[place]:.0f}",
                 "x": float(np.log10(cycles[place])) if is_long else float(cycles[place]),
-                "xref": "x", "yref": "paper", "y": 1.0, "yanchor": "top", "xanchor": "right",
-                "showarrow": False, "textangle": -90, "font": {"size": 10},
+                "xref": "x", "yref": "paper", "y": _ROWS[place % len(_ROWS)], "yanchor": "middle",
+                "xanchor": "center", "showarrow": False, "font": {"size": 10, "color": tint},
             }
         )  # fmt: skip
     return shapes, labels
@@ -138,4 +142,5 @@ def _of_many(n_cycles: int) -> str:
 
 
 def _slip_words(view: TestView) -> str:
-    return " Vertical lines: steps of a splice." if view.array("slip_cycle") is not None else ""
+    words = " Vertical lines: steps of a splice, with specimen and cycle; shaded: where it may lie."
+    return words if view.array("slip_cycle") is not None else ""

@@ -1,0 +1,81 @@
+"""Figures of long tests: specimens stay apart where their cycles do not, slips are named."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from long_records import long_test
+
+from reduction.archive.dataset import to_dataset
+from reduction.report.figures.record import draw_record
+from reduction.report.figures.trends import draw_trends
+from reduction.report.view import TestView
+
+
+def whole_view(n_cycles):
+    test = long_test(n_cycles)
+    with_loops = to_dataset(test, version="1", command="run")
+    return TestView("test-0", with_loops.assign_coords(cycle=np.arange(1, n_cycles + 1)))
+
+
+def test_many_cycles_are_filled_between_their_extremes_so_that_no_specimen_hides_another():
+    view = whole_view(400)
+    (figure,) = draw_record(view)
+    for index, name in enumerate(("one", "two")):
+        (trace,) = (one for one in figure.data if one["name"] == f"tension, {name}")
+        assert trace["fill"] == "toself"
+        assert trace["fillcolor"].endswith("0.3)")
+        heights = [y for y in trace["y"] if y is not None]
+        tension = view.data["tension"].values[index]
+        assert min(heights) == pytest.approx(tension.min(), rel=1e-5)
+        assert max(heights) == pytest.approx(tension.max(), rel=1e-5)
+    assert "too many to be told apart" in figure.caption
+
+
+def test_a_spike_in_a_long_record_is_at_its_place():
+    view = whole_view(400)
+    tension = view.data["tension"].copy()
+    tension[0, 4321] = 5000.0
+    (figure,) = draw_record(replace(view, data=view.data.assign(tension=tension)))
+    (trace,) = (one for one in figure.data if one["name"] == "tension, one")
+    heights = np.array([np.nan if y is None else y for y in trace["y"]])
+    place = trace["x"][int(np.nanargmax(heights))]
+    assert np.nanmax(heights) == 5000.0
+    assert place == pytest.approx(432.1, abs=float(view.data["time"][-1]) / 500)
+
+
+def test_a_few_cycles_are_a_line():
+    (figure,) = draw_record(whole_view(20))
+    assert not any("fill" in trace for trace in figure.data)
+    assert "told apart" not in figure.caption
+
+
+def slipped(n_cycles, cycles):
+    data = xr.Dataset(
+        {
+            "peak_tension": (("specimen", "cycle"), np.ones((2, n_cycles))),
+            "slip_cycle": ("slip", cycles),
+            "slip_specimen": ("slip", ["one", "<b>"][: len(cycles)]),
+        },
+        coords={"specimen": ["one", "<b>"], "cycle": np.arange(1, n_cycles + 1)},
+        attrs={"test": "T-1"},
+    )
+    return TestView("test-0", data)
+
+
+def test_steps_of_a_splice_are_named_above_the_axes_and_not_on_the_curve():
+    (figure,) = draw_trends(slipped(1000, [100, 130]))
+    top = figure.layout["yaxis"]["domain"][1]
+    labels = figure.layout["annotations"]
+    assert [one["text"] for one in labels] == ["one 100", "&lt;b&gt; 130"]
+    assert all(one["y"] > top for one in labels)
+    # one above the other, since 100 and 130 are close on a logarithmic axis
+    assert labels[0]["y"] != labels[1]["y"]
+    assert [one["x"] for one in labels] == pytest.approx([2.0, np.log10(130)])
+    assert all(shape["y1"] == top for shape in figure.layout["shapes"])
+
+
+def test_without_a_step_the_axes_have_all_the_room():
+    (figure,) = draw_trends(slipped(20, []))
+    assert "domain" not in figure.layout["yaxis"]
