@@ -9,6 +9,7 @@ from __future__ import annotations
 import json as json_module
 import os
 import sys
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from copy import copy
@@ -55,7 +56,8 @@ class CommandOutput:
     def show(self, table: Table) -> None:
         """A table on standard output, where text is said, with every digit of its numbers.
 
-        Where no terminal is, one line a row; where a terminal has too few columns, row by row.
+        Where no terminal is, one line a row; where a terminal has too few columns, words of the
+        last one below each row, or all row by row.
         """
         if not self.is_text:
             return
@@ -65,7 +67,11 @@ class CommandOutput:
             typer.echo(_line_by_line(table))
             return
         console = Console(highlight=False)
-        if _least_width(table, console, words=10) <= console.width:
+        if _least_width(table, console, words=30) <= console.width:
+            console.print(table)
+        elif _ends_in_words(table) and _width_before_last(table, console) <= console.width:
+            typer.echo(_with_last_below(table, console.width))
+        elif _least_width(table, console, words=10) <= console.width:
             console.print(table)
         else:
             typer.echo(_row_by_row(table))
@@ -125,6 +131,41 @@ def _line_by_line(table: Table) -> str:
         is_number=[column.justify == "right" for column in table.columns],
     )
     return f"{_words(table.title)}\n{plain}" if table.title else plain
+
+
+def _ends_in_words(table: Table) -> bool:
+    """Whether the last of several columns is a message, and no number or name."""
+    last = table.columns[-1]
+    return len(table.columns) > 2 and last.justify == "left" and not last.no_wrap
+
+
+def _width_before_last(table: Table, console: Console) -> int:
+    """Columns that all but the last column need, in which nothing is broken."""
+    options = console.options.update(max_width=10_000)
+    return sum(
+        max(Measurement.get(console, options, cell).maximum for cell in (one.header, *one.cells))
+        + 2
+        for one in table.columns[:-1]
+    )
+
+
+def _with_last_below(table: Table, width: int) -> str:
+    """A table whose last column stands below each row, over the whole width."""
+    cells = [[_words(cell) for cell in column.cells] for column in table.columns[:-1]]
+    heads, *rows = plain_table(
+        [_words(column.header) for column in table.columns[:-1]],
+        cells,
+        is_number=[column.justify == "right" for column in table.columns[:-1]],
+    ).split("\n")
+    lines = [*([_words(table.title)] if table.title else []), heads]
+    for row, cell in zip(rows, table.columns[-1].cells, strict=True):
+        lines += [row, *_indented(_words(cell), width)]
+    return "\n".join(lines)
+
+
+def _indented(text: str, width: int) -> list[str]:
+    margin = "    "
+    return textwrap.wrap(text, width - 1, initial_indent=margin, subsequent_indent=margin)
 
 
 def _row_by_row(table: Table) -> str:

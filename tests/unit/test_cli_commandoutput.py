@@ -56,3 +56,47 @@ def test_nothing_is_shown_where_no_text_is_said(capsys):
         silent.show(table(1))
         assert not silent.is_text
     assert capsys.readouterr().out == ""
+
+
+MESSAGE = "a message of several words that is longer than what is left of eighty columns"
+
+
+def messages():
+    made = table_of("test", "status", "number", texts=2)
+    made.columns[2].justify, made.columns[2].no_wrap = "right", True
+    made.add_column("message")
+    made.add_row("T-1", "reduced_with_notes", "1.2345e+05", MESSAGE)
+    made.add_row("T-2", "reduced", "1", "")
+    return made
+
+
+def test_a_message_that_has_no_room_beside_its_row_stands_below_it(capsys, monkeypatch):
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setattr(output_module, "Console", lambda **_: Console(width=60, highlight=False))
+    CommandOutput().show(messages())
+    assert capsys.readouterr().out.splitlines() == [
+        "test  status                  number",
+        "T-1   reduced_with_notes  1.2345e+05",
+        "    a message of several words that is longer than what is",
+        "    left of eighty columns",
+        "T-2   reduced                      1",
+    ]
+
+
+def test_a_pipe_has_one_line_a_row_and_no_markup(capsys):
+    made = table_of("name", "number", texts=1, title="[bold]title[/]")
+    made.add_row(r"\[red]a name", "1")
+    made.add_row("", "2")
+    made.add_row(MESSAGE * 5, "3")
+    CommandOutput().show(made)
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "title"
+    assert [line.split()[-1] for line in lines[1:]] == ["number", "1", "2", "3"]
+    assert lines[2].startswith("[red]a name ") and lines[3].startswith("- ")
+    assert lines[4].startswith(MESSAGE * 5)
+
+
+def test_a_pipe_has_no_escape_codes_even_where_colour_is_forced(capsys, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    CommandOutput().show(table(3))
+    assert "\x1b" not in capsys.readouterr().out
