@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from reduction.record import Floats
 from reduction.report.decimate import POINTS, keep_extremes
 from reduction.report.figure import Figure, Trace, axis, line, make_figure
 from reduction.report.style import COLOURS, DASHES, shown
@@ -35,6 +36,7 @@ def draw_loops(view: TestView) -> list[Figure]:
     found = []
     for index, specimen in enumerate(view.specimens):
         data: list[Trace] = []
+        chord: tuple[float, float] | None = None
         for order, cycle in enumerate(cycles):
             for name, value in BRANCH_VALUES.items():
                 if value == 0:
@@ -48,21 +50,39 @@ def draw_loops(view: TestView) -> list[Figure]:
                         limit=POINTS // 4,
                     )
                 ]  # fmt: skip
-                data.append(
+                x, y = strain[index, kept], load[index, kept]
+                chord = chord or _chord(x, y)
+                opened = y - (chord[0] * x + chord[1])
+                data += [
                     line(
-                        strain[index, kept] * in_strain.factor, load[index, kept] * in_load.factor,
+                        x * in_strain.factor, values * in_load.factor,
                         name=f"cycle {cycle}, {name}", colour=COLOURS[(0, 4, 1)[order]],
                         dash=DASHES[name], width=1.6, legendgroup=f"cycle {cycle}",
-                        meta={"cycle": int(cycle)},
+                        meta={"cycle": int(cycle)}, yaxis=where, showlegend=where == "y2",
                     )
-                )  # fmt: skip
+                    for values, where in ((y, "y2"), (opened, "y"))
+                ]  # fmt: skip
         found.append(
             make_figure(
                 f"{view.key}-loops-{index}", f"{view.id}: loops, {specimen}",
-                f"{words.capitalize()} against strain of the splice-free length, first, middle and"
-                f" last cycle{of_stored}; ascending solid, descending dashed.",
-                data, synthetic=view.is_synthetic, height=400,
-                xaxis=axis(in_strain.label("strain")), yaxis=axis(in_load.label(words)),
+                f"Above: {words} against strain of the splice-free length, first, middle and last"
+                f" cycle{of_stored}; ascending solid, descending dashed. Below: the same less one"
+                " straight line, that of the first branch from end to end, so that the loops open.",
+                data, synthetic=view.is_synthetic, height=520,
+                xaxis=axis(in_strain.label("strain"), anchor="y"),
+                yaxis=axis(in_load.label("less the line"), domain=[0.0, 0.4], zeroline=True),
+                yaxis2=axis(in_load.label(words), domain=[0.48, 1.0]),
             )
         )  # fmt: skip
     return found
+
+
+def _chord(strain: Floats, load: Floats) -> tuple[float, float]:
+    """Return slope and height at zero of the straight line between the ends of a branch."""
+    known = np.flatnonzero(np.isfinite(strain) & np.isfinite(load))
+    if known.size == 0:
+        return 0.0, 0.0
+    low, high = known[np.argmin(strain[known])], known[np.argmax(strain[known])]
+    width = strain[high] - strain[low]
+    slope = float((load[high] - load[low]) / width) if width > 0 else 0.0
+    return slope, float(load[low] - slope * strain[low])
