@@ -1,13 +1,15 @@
 """What stands on a page, and the page made of it: one template, one style, one program for all.
 
 Nothing is fetched: plotly stands in the page once as text and is read when the page is there,
-figures are JSON beside their captions and are drawn when a reader comes to them.  Names out of
-files are escaped wherever they show, in the text by the template and in the figures by
-`reduction.report.figure`.
+figures are deflated JSON beside their captions and are drawn when a reader comes to them.
+Names out of files are escaped wherever they show, in the text by the template and in the
+figures by `reduction.report.figure`.
 """
 
 from __future__ import annotations
 
+import zlib
+from base64 import b64encode
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.resources import files
@@ -21,9 +23,9 @@ from reduction.report.section import Part, Section
 from reduction.report.summary import Finding, Tile
 from reduction.units import UnitSystem
 
-__all__ = ["Page", "about_page", "render_page"]
+__all__ = ["Page", "about_page", "packed", "render_page"]
 
-_SCRIPTS = ("figures", "cycles", "downloads", "contents")
+_SCRIPTS = ("inflate", "figures", "cycles", "downloads", "contents")
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,20 @@ def about_page(
     return [*found, f"Made by mooring-reduction {__version__} from {made_from}.", *definitions]
 
 
+def packed(text: str) -> tuple[str, int]:
+    """Return text deflated, in base64, and its length as UTF-8: a page has to stay small.
+
+    Examples
+    --------
+    >>> text, size = packed("nought " * 100)
+    >>> size, len(text) < 40
+    (700, True)
+    """
+    content = text.encode("utf-8")
+    packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
+    return b64encode(packer.compress(content) + packer.flush()).decode("ascii"), len(content)
+
+
 def render_page(page: Page) -> str:
     """Return a page as HTML that opens from disk."""
     environment = Environment(
@@ -117,4 +133,5 @@ def render_page(page: Page) -> str:
         style=(room / "static" / "page.css").read_text("utf-8"),
         script="\n".join((room / "static" / f"{name}.js").read_text("utf-8") for name in _SCRIPTS),
         plotly=get_plotlyjs(),
+        packed=packed,
     )

@@ -1,4 +1,4 @@
-// Figures are JSON beside their captions.  One is drawn when a reader comes near it, and again
+// Figures are JSON beside their captions, deflated.  One is drawn when a reader comes near it, and again
 // when the colours of the screen, its width on paper or the chosen cycle change.
 
 const plots = [...document.querySelectorAll(".plot")];
@@ -35,7 +35,8 @@ const plain = (text) => {
   return unbroken.replaceAll("&lt;", "<").replaceAll("&gt;", ">").replaceAll("&amp;", "&");
 };
 const readFigure = (plot, isDark = false) => {
-  let text = document.getElementById(plot.dataset.figure).textContent;
+  const held = document.getElementById(plot.dataset.figure);
+  let text = held.dataset.size ? unpack(held) : held.textContent;
   if (isDark) for (const [onWhite, onDark] of ON_DARK) text = text.replaceAll(onWhite, onDark);
   return JSON.parse(text);
 };
