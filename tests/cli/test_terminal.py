@@ -1,0 +1,106 @@
+"""At a terminal tables and progress, in a pipe plain text, with --json one object, with --quiet nothing."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+from commandruns import ROOT, reduction
+
+pty = pytest.importorskip("pty", reason="a terminal is imitated where there are pseudo-terminals")
+fcntl, termios = pytest.importorskip("fcntl"), pytest.importorskip("termios")
+
+CAMPAIGN = ROOT / "raw" / "buoy-technology-1997" / "campaign.toml"
+ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
+COLOUR = re.compile(r"\x1b\[(?:\d+;)*(?:3[0-8]|4[0-8]|9[0-7])(?:;\d+)*m")
+
+
+def at_terminal(*arguments, columns=80, **environment):
+    """Run the command with a terminal of so many columns for its output."""
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, bytes([50, 0, columns, 0, 0, 0, 0, 0]))
+    kept = {name: text for name, text in os.environ.items() if name not in ("COLUMNS", "NO_COLOR")}
+    done = subprocess.Popen(
+        [sys.executable, "-m", "reduction", *map(str, arguments)],
+        stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs,
+        env=kept | {"PYTHONPATH": str(ROOT), "TERM": "xterm-256color"} | environment,
+    )  # fmt: skip
+    os.close(theirs)
+    said = b""
+    while True:
+        try:
+            part = os.read(ours, 65536)
+        except OSError:  # how Linux says that the other side is closed
+            break
+        if not part:
+            break
+        said += part
+    os.close(ours)
+    return done.wait(), said.decode()
+
+
+def places(folder):
+    return "--processed", folder / "processed", "--reports", folder / "reports"
+
+
+@pytest.fixture(scope="module")
+def narrow(tmp_path_factory):
+    return at_terminal("run", CAMPAIGN, *places(tmp_path_factory.mktemp("narrow")))
+
+
+def test_a_run_with_one_job_shows_how_far_it_is(narrow):
+    status, said = narrow
+    assert status == 0
+    assert "survey static" in ESCAPE.sub("", said) and "reduce static" in ESCAPE.sub("", said)
+    assert "\N{BOX DRAWINGS HEAVY HORIZONTAL}" in said and "1/1 static" in ESCAPE.sub("", said)
+
+
+def test_what_is_left_on_the_screen_fits_it_and_is_whole(narrow):
+    _, said = narrow
+    left = [line.split("\r")[-1] for line in ESCAPE.sub("", said).replace("\r\n", "\n").split("\n")]
+    start = next(place for place, line in enumerate(left) if line.startswith("test "))
+    end = next(place for place, line in enumerate(left) if line.startswith("products:"))
+    assert max(map(len, left[start:end])) <= 80
+    text = " ".join(" ".join(left[start:end]).split())
+    assert "the intervals beside it would be 0.62 and 0.33 MPa" in text
+    assert "\N{HORIZONTAL ELLIPSIS}" not in text
+
+
+def test_colours_are_left_out_where_nobody_wants_them(tmp_path, narrow):
+    assert COLOUR.search(narrow[1])
+    status, said = at_terminal("run", CAMPAIGN, *places(tmp_path), NO_COLOR="1")
+    assert status == 0 and not COLOUR.search(said)
+
+
+def test_json_at_a_terminal_is_one_object_and_nothing_else(tmp_path):
+    status, said = at_terminal("run", CAMPAIGN, *places(tmp_path), "--json")
+    assert status == 0 and json.loads(said)["tests"][0]["id"] == "static"
+
+
+def test_quiet_at_a_terminal_says_nothing(tmp_path):
+    assert at_terminal("run", CAMPAIGN, *places(tmp_path), "--quiet") == (0, "")
+
+
+def test_a_pipe_has_one_line_a_test_and_progress_beside_it(tmp_path):
+    done = reduction("run", CAMPAIGN, *places(tmp_path), FORCE_COLOR="1")
+    assert "\x1b" not in done.stdout + done.stderr
+    assert done.stderr.startswith("1/1 static reduced_with_notes, ")
+    head, row, *_ = done.stdout.splitlines()
+    columns = re.split(r"  +", head)
+    assert columns[0] == "test" and columns[-1] == "message"
+    cells = re.split(r"  +", row)
+    assert len(cells) == len(columns) and cells[0] == "static"
+    assert cells[-1].endswith("0.62 and 0.33 MPa")
+
+
+def test_help_is_drawn_at_a_terminal_and_plain_and_whole_in_a_pipe():
+    _, drawn = at_terminal("--help")
+    assert "\N{BOX DRAWINGS LIGHT HORIZONTAL}" in drawn
+    plain = reduction("--help", FORCE_COLOR="1").stdout
+    assert plain.isascii() and "\x1b" not in plain and "..." not in plain.partition("Options:")[2]
+    assert "Write a starter campaign into a folder of logs, for a person to complete." in " ".join(
+        plain.split()
+    )
+    assert max(map(len, plain.splitlines())) <= 80
