@@ -2,9 +2,10 @@
 
 Colours are those of Okabe and Ito [1]_, which readers with any common colour vision tell
 apart; yellow and black are left out because one fades on white and the other on a dark
-page.  A test keeps its colour and its marker through the figures of a campaign, where the
-filling of the marker is the specimen's; an ascending branch is solid and a descending one
-dashed, so that print in grey loses nothing.
+page.  The seventh is a grey, dark enough not to be taken for the green or the purple by who
+sees no red or no green.  A test keeps its colour and its marker through the figures of a
+campaign, where the filling of the marker is the specimen's; an ascending branch is solid and a
+descending one dashed, so that print in grey loses nothing.
 
 References
 ----------
@@ -38,7 +39,7 @@ __all__ = [
     "symbol",
 ]
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C8C8C")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#686868")
 DASHES = {"ascending": "solid", "descending": "dash"}
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "x", "star", "triangle-down")
 FILLINGS = ("", "-open", "-dot", "-open-dot")

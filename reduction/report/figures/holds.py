@@ -8,13 +8,13 @@ from reduction.holds.series import prony_tension
 from reduction.record import Floats
 from reduction.report.decimate import POINTS, keep_extremes
 from reduction.report.figure import Figure, Trace, axis, line, make_figure
-from reduction.report.style import Kind, colour, marker, shown
+from reduction.report.style import COLOURS, Kind, colour, marker, shown
 from reduction.report.view import TestView
 
 __all__ = ["draw_holds"]
 
 FIT_POINTS = 120
-_FIT = "#6E6E6E"
+_FIT = COLOURS[6]
 """Of a fit upon any colour, on white and on black."""
 
 

@@ -52,7 +52,7 @@ def draw_specimens_together(tests: Sequence[TestView]) -> list[Figure]:
             is_first = is_first and not traces
             data += traces
             if traces and not any(one["text"] == plot_text(view.id, 20) for one in labels):
-                labels.append(_label(view, traces[0], order))
+                labels.append(_label(view, traces[0]))
     if not any(trace["name"] in map(plot_text, names) for trace in data):
         return []
     left = [view.id for view in curved if view not in chosen]
@@ -96,13 +96,13 @@ def _curves(view: TestView, specimen: str, order: int, *, is_first: bool) -> lis
     return found
 
 
-def _label(view: TestView, trace: Trace, order: int) -> Trace:
+def _label(view: TestView, trace: Trace) -> Trace:
     """Return the name of a test, at the end of its curve."""
     known = [place for place, value in enumerate(trace["y"]) if value is not None]
     return {
         "text": plot_text(view.id, 20), "x": trace["x"][known[-1]], "y": trace["y"][known[-1]],
         "showarrow": False, "xanchor": "left", "yanchor": "bottom", "xshift": 4,
-        "font": {"size": 11, "color": colour(order)},
+        "font": {"size": 11},
     }  # fmt: skip
 
 

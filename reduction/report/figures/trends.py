@@ -122,7 +122,7 @@ def _slips(view: TestView, *, is_long: bool) -> tuple[list[Trace], list[Trace]]:
                 "text": f"{plot_text(specimen, 12)} {cycles[place]:.0f}",
                 "x": float(np.log10(cycles[place])) if is_long else float(cycles[place]),
                 "xref": "x", "yref": "paper", "y": _ROWS[place % len(_ROWS)], "yanchor": "middle",
-                "xanchor": "center", "showarrow": False, "font": {"size": 10, "color": tint},
+                "xanchor": "center", "showarrow": False, "font": {"size": 10},
             }
         )  # fmt: skip
     return shapes, labels
