@@ -14,10 +14,9 @@ from reduction.designpage.linedata import numbers
 from reduction.errors import ReductionError
 from reduction.export.fromarchive import CurveName, line_from_open_archive
 from reduction.export.fromlookup import line_from_lookup
-from reduction.export.moordyn import MOST_POINTS, NUMERICAL_DAMPING
+from reduction.export.moordyn import NUMERICAL_DAMPING
 from reduction.export.product import CYLINDER, FIBRE_DENSITY, SEA_WATER, ExportLine
 from reduction.export.start import siblings_of
-from reduction.export.thin import local_words, thin_curve
 from reduction.lookup.product import LineSource
 
 __all__ = ["EXPORT_CONSTANTS", "curves_of_archive", "curves_of_published", "refusal_of_surfaces"]
@@ -101,7 +100,6 @@ def _or_refused(made: Callable[[], dict[str, Any]]) -> dict[str, Any]:
 
 
 def _curve(line: ExportLine) -> dict[str, Any]:
-    thin = thin_curve(line.strain, line.tension, most=MOST_POINTS)
     stem = re.sub(r"[^A-Za-z0-9_]+", "_", line.identifier).strip("_")
     return {
         "name": line.name,
@@ -110,16 +108,8 @@ def _curve(line: ExportLine) -> dict[str, Any]:
         "file": f"{stem}_line",
         "curve": line.curve,
         "tested": numbers(line.tested),
-        "end": float(line.strain[-1]),
-        "size": int(line.strain.size),
-        "thin": {
-            "strain": numbers(thin.strain),
-            "tension": numbers(thin.tension),
-            "error": thin.error,
-            "share": thin.share,
-            "local": local_words(thin),
-            "words": thin.words,
-        },
+        "strain": numbers(line.strain),
+        "tension": numbers(line.tension),
         "diameter": numbers(line.diameter),
         "linear_density": numbers(line.linear_density),
         "wet_linear_density": numbers(line.wet_linear_density),

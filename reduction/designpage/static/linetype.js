@@ -118,7 +118,7 @@ function headerLines(line, curve, remarks) {
       `Holds as ${rangeOf(line)}. The curve ends at strain ${general(curve.strain[last], 6)} and `
         + `tension ${general(curve.tension[last], 6)} N; beyond it nothing is known; some codes keep the `
         + "last tension there",
-      `${curve.strain.length} points of ${line.size}; greatest error ${general(curve.error, 3)} N, `
+      `${curve.strain.length} points of ${line.strain.length}; greatest error ${general(curve.error, 3)} N, `
         + `${scientific(curve.share, 2)} of the greatest tension; ${curve.local}`);
     if (curve.words) told.push(`At the start: ${curve.words}`);
   }

@@ -32,7 +32,7 @@ function saidOfType(line) {
 }
 
 function tableFiles(line) {
-  const curve = line.thin, table = `${line.file}_table.txt`, damping = DATA.export.numerical_damping;
+  const curve = thinCurve(line.strain, line.tension), table = `${line.file}_table.txt`, damping = DATA.export.numerical_damping;
   const head = headerLines(line, curve, [
     ...saidOfType(line),
     `internal damping ${general(damping, 6)}: MoorDyn takes a number below zero for minus a `
@@ -48,7 +48,7 @@ function tableFiles(line) {
     + `${general(curve.error, 3)} N; ${where}; ${line.sources.join("; ")}`);
   const rows = curve.strain.map((strain, place) => `${number15(strain)} ${number15(curve.tension[place])}`);
   return [
-    [`${line.file}.dat`, deckOf(line, row, head, line.end / 2, steepest)],
+    [`${line.file}.dat`, deckOf(line, row, head, line.strain[line.strain.length - 1] / 2, steepest)],
     [table, [first, "Strain Tension", "(-) (N)", ...rows].join("\n")],
   ];
 }
@@ -82,5 +82,5 @@ function stiffnessFiles(line, part, form) {
       + "measured; without it the integration grows",
   ]);
   const row = lineTypeRow(line, stiffness, damping);
-  return [[`${line.file}.dat`, deckOf(line, row, head, line.end / 2, part.fast)]];
+  return [[`${line.file}.dat`, deckOf(line, row, head, line.strain[line.strain.length - 1] / 2, part.fast)]];
 }
