@@ -52,7 +52,7 @@ def walked(tmp_path_factory):
         for line in commands(body) if kind == "sh" else ():
             program, *arguments = shlex.split(line)
             if program == "reduction":
-                done[line] = reduction(*arguments, cwd=folder, COLUMNS="120")
+                done[line] = reduction(*arguments, cwd=folder, COLUMNS="96")
     return folder, done
 
 
