@@ -6,34 +6,13 @@ import shutil
 from pathlib import Path
 
 import pytest
+import smallcampaign
 
 from reduction.archive.open import open_archive
 
 ROOT = Path(__file__).parents[2]
 RAW = ROOT / "raw" / "tmt-synthetic"
-CAMPAIGN = """
-[campaign]
-id = "small"
-title = "Small campaign (synthetic)"
-source = "synthetic"
-[specimens.new]
-kind = "rubber tether"
-diameter = ["1.04 in"]
-[specimens.used]
-kind = "rubber tether"
-diameter = ["0.94 in"]
-[layouts.logger]
-format = "delimited"
-comment = "#"
-[layouts.logger.channels]
-time = { column = "time_s", unit = "s" }
-crosshead_position = { column = "crosshead_ft", unit = "ft", datum = "pin-to-pin" }
-tension.1 = { column = "load_new_lb", unit = "lbf" }
-tension.2 = { column = "load_used_lb", unit = "lbf" }
-[defaults]
-layout = "logger"
-specimens = ["new", "used"]
-strain = { marks = "marks.csv" }
+CAMPAIGN = f"""{smallcampaign.CAMPAIGN}strain = {{ marks = "marks.csv" }}
 [tests.A]
 file = "A.csv"
 n_cycles = 10
@@ -45,14 +24,7 @@ n_cycles = 10
 
 def write_small(folder):
     """Two synthetic logs, their marks, and a campaign."""
-    folder.mkdir()
-    shutil.copy(RAW / "T-1.csv", folder / "A.csv")
-    shutil.copy(RAW / "T-2.csv", folder / "B.csv")
-    lines = (RAW / "marks.csv").read_text().splitlines()
-    kept = [line for line in lines if line.startswith(("test,", "T-1,", "T-2,"))]
-    (folder / "marks.csv").write_text(
-        "\n".join(kept).replace("T-1,", "A,").replace("T-2,", "B,") + "\n"
-    )
+    smallcampaign.write_logs(folder)
     (folder / "campaign.toml").write_text(CAMPAIGN)
 
 
