@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.shared import COMPONENT, FREEDOM
+from reduction.archive.stored import stored
 from reduction.record import Floats
 from reduction.uncertainty.combine import effective_degrees_of_freedom
 
@@ -139,13 +140,13 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
     [2.]
     """
     variable = archive[name]
-    spread = _found(archive, f"{name}{_RANDOM}")
+    spread = stored(archive, f"{name}{_RANDOM}")
     if spread is None:
-        spread = _found(archive, f"{name}_standard_uncertainty")
+        spread = stored(archive, f"{name}_standard_uncertainty")
     own = np.broadcast_to(random_freedom(archive, name), variable.shape)
     if spread is None or spread.dims != variable.dims:
         return np.array(own)
-    rows, known = _found(archive, f"{name}{_CONTRIBUTION}"), _found(archive, FREEDOM)
+    rows, known = stored(archive, f"{name}{_CONTRIBUTION}"), stored(archive, FREEDOM)
     if rows is None:
         return effective_degrees_of_freedom(spread.values, own)
     of_rows = np.asarray(np.inf)
@@ -159,8 +160,3 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
         contribution=rows.transpose(COMPONENT, *variable.dims).values,
         of_contribution=of_rows,
     )
-
-
-def _found(archive: xr.Dataset, name: str) -> xr.DataArray | None:
-    # get() of a name that is missing looks for one that is spelt nearly so, among hundreds
-    return archive[name] if name in archive else None

@@ -12,6 +12,7 @@ from rich.markup import escape
 from reduction.archive.budget import budget_from_archive, quantities_with_budget
 from reduction.archive.budgetplaces import parse_place, place_name
 from reduction.archive.open import open_archive
+from reduction.archive.stored import stored
 from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.lookupsource import name_of_quantity
 from reduction.cli.numbers import plain, short, table_of
@@ -98,7 +99,7 @@ def _in_brackets(label: str, words: str) -> str:
 
 def _drawn_uncertainty(archive: xr.Dataset, budget: Budget) -> float | None:
     """Standard uncertainty that stands in an archive where linear propagation bends."""
-    method = archive.get("test_line_uncertainty_method")
+    method = stored(archive, "test_line_uncertainty_method")
     if method is None or budget.quantity.removeprefix("test_") not in PARAMETERS:
         return None
     place = archive["specimen"].values.tolist().index(budget.place["specimen"])
