@@ -16,6 +16,7 @@ from copy import copy
 from dataclasses import dataclass, field
 
 import typer
+from rich.cells import cell_len
 from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table
@@ -69,7 +70,7 @@ class CommandOutput:
         console = Console(highlight=False)
         if _least_width(table, console, words=30) <= console.width:
             console.print(table)
-        elif _ends_in_words(table) and _width_before_last(table, console) <= console.width:
+        elif _ends_in_words(table) and _width_before_last(table) <= console.width:
             typer.echo(_with_last_below(table, console.width))
         elif _least_width(table, console, words=10) <= console.width:
             console.print(table)
@@ -139,12 +140,10 @@ def _ends_in_words(table: Table) -> bool:
     return len(table.columns) > 2 and last.justify == "left" and not last.no_wrap
 
 
-def _width_before_last(table: Table, console: Console) -> int:
-    """Columns that all but the last column need, in which nothing is broken."""
-    options = console.options.update(max_width=10_000)
+def _width_before_last(table: Table) -> int:
+    """Columns that all but the last column need, in which nothing is broken, no heading either."""
     return sum(
-        max(Measurement.get(console, options, cell).maximum for cell in (one.header, *one.cells))
-        + 2
+        max(cell_len(_words(cell)) for cell in (one.header, *one.cells)) + 2
         for one in table.columns[:-1]
     )
 

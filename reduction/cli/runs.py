@@ -239,6 +239,7 @@ def run_campaign(
         "processed": str(result.processed),
         "tables": [str(path) for path in result.tables],
         "report": None if result.report is None else str(result.report),
+        "client_report": None,
     }
     if result.report is not None:
         output.say(f"report:   {result.report}")

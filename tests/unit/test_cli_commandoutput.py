@@ -83,6 +83,16 @@ def test_a_message_that_has_no_room_beside_its_row_stands_below_it(capsys, monke
     ]
 
 
+def test_headings_of_two_lines_count_whole_where_they_would_stand_on_one(capsys, monkeypatch):
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setattr(output_module, "Console", lambda **_: Console(width=80, highlight=False))
+    made = table_of("name", *(f"a long heading\nof number {place} [N]" for place in range(3)))
+    made.add_column("message")
+    made.add_row("T-1", "1", "2", "3", MESSAGE)
+    CommandOutput().show(made)
+    assert max(map(len, capsys.readouterr().out.splitlines())) <= 80
+
+
 def test_a_pipe_has_one_line_a_row_and_no_markup(capsys):
     made = table_of("name", "number", texts=1, title="[bold]title[/]")
     made.add_row(r"\[red]a name", "1")
