@@ -15,7 +15,7 @@ from reduction.archive.campaignlines import (
 )
 from reduction.archive.open import open_archive
 from reduction.designpage.exportdata import curves_of_archive, refusal_of_surfaces
-from reduction.designpage.linedata import line_data
+from reduction.designpage.linedata import json_text, line_data
 from reduction.errors import ReductionError
 from reduction.lookup.product import LineSource
 
@@ -41,14 +41,14 @@ class CampaignLines:
         ``lines``, none where there is nothing to look up.
     faults : dict of str to str
         Archives that cannot be read, with the reason.
-    changed : int
-        When the newest archive was written; nanoseconds of its file system.
+    left_out : int
+        Archives that a page has no room for; they are not read.
     """
 
     name: str
     files: dict[str, dict[str, Any]] = field(default_factory=dict)
     faults: dict[str, str] = field(default_factory=dict)
-    changed: int = 0
+    left_out: int = 0
 
     @property
     def names(self) -> list[str]:
@@ -69,9 +69,9 @@ def state_of(processed: Path) -> str:
 
 
 def read_campaigns(
-    processed: Path, known: Mapping[str, Mapping[str, Any]] | None = None
+    processed: Path, known: Mapping[str, Mapping[str, Any]] | None = None, *, room: int
 ) -> list[CampaignLines]:
-    """Lines of every campaign below a folder.
+    """Lines of every campaign below a folder, as far as a page has room.
 
     Parameters
     ----------
@@ -80,41 +80,75 @@ def read_campaigns(
     known : mapping of str to mapping, optional
         ``files`` of campaigns by name, as they were read before: an archive that has not changed
         is not read again.
+    room : int
+        For all of them. Surfaces come first, which are of all tests of an experiment, then tests,
+        those of the campaign that was written last before others. [bytes]
 
     Returns
     -------
     campaigns : list of CampaignLines
         By name; an archive that cannot be read is among the faults of its own.
     """
-    return [_read(folder, (known or {}).get(folder.name, {})) for folder in _folders(processed)]
+    found = [_Reading(folder, (known or {}).get(folder.name, {})) for folder in _folders(processed)]
+    newest = sorted(found, key=lambda one: -one.changed)
+    for is_surfaces in (True, False):
+        for one in newest:
+            for path in one.paths:
+                if (path.stem == _SURFACES) != is_surfaces:
+                    continue
+                # what comes behind the first that has no room is not read to see how large it is
+                room -= one.read(path) if room > 0 else one.leave(path)
+                if room < 0:
+                    one.leave(path)
+    return [one.campaign for one in found]
+
+
+class _Reading:
+    """A campaign while its archives are read."""
+
+    def __init__(self, folder: Path, known: Mapping[str, Any]) -> None:
+        self.paths = archives_of_lines(folder)
+        self._stamps = {path: _stamp(path) for path in self.paths}
+        self.changed = max(int(stamp.split()[0]) for stamp in self._stamps.values())
+        self._name, self._known = folder.name, known
+        self._files: dict[Path, dict[str, Any]] = {}
+        self._faults: dict[str, str] = {}
+        self._left: set[Path] = set()
+
+    def read(self, path: Path) -> int:
+        """Read an archive, or take it from what is known; the room that it takes. [bytes]."""
+        # surfaces have what the tests beside them say of their specimens
+        own = " ".join(self._stamps.values()) if path.stem == _SURFACES else self._stamps[path]
+        state = sha256(own.encode()).hexdigest()
+        before = self._known.get(path.stem)
+        if before is not None and before["state"] == state:
+            self._files[path] = dict(before)
+        else:
+            try:
+                self._files[path] = {"state": state, "lines": _lines(path)}
+            except _FAULTS as error:
+                text = str(error) if isinstance(error, ReductionError) else repr(error)
+                self._faults[path.name] = text.replace(str(path), path.name)
+                return 0
+        return len(json_text(self._files[path]))
+
+    def leave(self, path: Path) -> int:
+        """Leave an archive out; it takes no room."""
+        self._files.pop(path, None)
+        self._left.add(path)
+        return 0
+
+    @property
+    def campaign(self) -> CampaignLines:
+        """What was read, in the order of the folder."""
+        files = {path.stem: self._files[path] for path in self.paths if path in self._files}
+        return CampaignLines(self._name, files, self._faults, len(self._left))
 
 
 def _folders(processed: Path) -> list[Path]:
     return sorted(
         one for one in processed.glob("*/") if (one / _STATUS).is_file() and archives_of_lines(one)
     )
-
-
-def _read(folder: Path, known: Mapping[str, Any]) -> CampaignLines:
-    found = CampaignLines(folder.name)
-    files, faults, changed = found.files, found.faults, 0
-    paths = archives_of_lines(folder)
-    stamps = {path: _stamp(path) for path in paths}
-    for path in paths:
-        # surfaces have what the tests beside them say of their specimens
-        own = " ".join(stamps.values()) if path.stem == _SURFACES else stamps[path]
-        state = sha256(own.encode()).hexdigest()
-        changed = max(changed, int(stamps[path].split()[0]))
-        before = known.get(path.stem)
-        if before is not None and before["state"] == state:
-            files[path.stem] = dict(before)
-            continue
-        try:
-            files[path.stem] = {"state": state, "lines": _lines(path)}
-        except _FAULTS as error:
-            text = str(error) if isinstance(error, ReductionError) else repr(error)
-            faults[path.name] = text.replace(str(path), path.name)
-    return CampaignLines(folder.name, files, faults, changed)
 
 
 def _stamp(path: Path) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from typing import Any
 
@@ -12,12 +13,18 @@ from reduction.lookup.linesurface import LineSurface
 from reduction.lookup.product import LineCurve, LineSource
 from reduction.uncertainty.product import Component
 
-__all__ = ["line_data", "numbers"]
+__all__ = ["json_text", "line_data", "numbers"]
 
 _TEXTS = ("name", "source", "material", "construction", "condition", "kind", "strength_of")
 _NUMBERS = (
     "diameter", "rated_break_strength", "tensile_strength", "linear_density", "wet_linear_density",
 )  # fmt: skip
+
+
+def json_text(data: Any) -> str:
+    """JSON that ends no element of a page, whatever stands in it."""
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
 def numbers(values: ArrayLike) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, cast, get_args
@@ -15,7 +15,7 @@ from reduction import __version__
 from reduction.archive.write import write_whole
 from reduction.designpage.campaigns import CampaignLines, read_campaigns, state_of
 from reduction.designpage.exportdata import EXPORT_CONSTANTS, curves_of_published
-from reduction.designpage.linedata import line_data
+from reduction.designpage.linedata import json_text, line_data
 from reduction.designpage.printed import errata_told, printed_at
 from reduction.line.product import REASONS
 from reduction.published.linesource import published_sources
@@ -27,7 +27,7 @@ __all__ = ["MOST_BYTES", "PAGE_NAME", "render_design_page", "write_design_page"]
 
 PAGE_NAME = "design-values.html"
 MOST_BYTES = 2_600_000
-"""Of the lines of campaigns on one page; what is beyond is named there, and looked up elsewhere."""
+"""Of the lines of campaigns on one page; of the rest it says how many archives there are."""
 _FORMAT = 1
 """Of what one page keeps for the next."""
 _TIMES = 3
@@ -79,7 +79,7 @@ def write_design_page(processed: Path, reports: Path) -> Path:
     known = _files_on(path)
     for _ in range(_TIMES):
         state = state_of(processed)
-        campaigns = read_campaigns(processed, known)
+        campaigns = read_campaigns(processed, known, room=MOST_BYTES)
         write_whole(path, render_design_page(campaigns))
         if state_of(processed) == state:
             break
@@ -94,7 +94,7 @@ def render_design_page(campaigns: Sequence[CampaignLines] = ()) -> str:
     Parameters
     ----------
     campaigns : sequence of CampaignLines
-        Beside the published lines; of more than a page can hold, those that were written last.
+        Beside the published lines.
 
     Returns
     -------
@@ -106,21 +106,20 @@ def render_design_page(campaigns: Sequence[CampaignLines] = ()) -> str:
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     page = environment.from_string((room / "templates" / PAGE_NAME).read_text("utf-8"))
-    kept, left_out = _that_fit(campaigns)
     data = _constants() | {
         "format": _FORMAT,
         "campaigns": [
-            {"name": one.name, "files": one.files, "names": one.names} for one in kept
+            {"name": one.name, "files": one.files, "names": one.names} for one in campaigns
         ],
         "faults": [
             [one.name, name, text] for one in campaigns for name, text in one.faults.items()
         ],
-        "left_out": left_out,
+        "left_out": [[one.name, one.left_out] for one in campaigns if one.left_out],
     }  # fmt: skip
     return page.render(
         style=(room / "static" / "page.css").read_text("utf-8"),
         script="\n".join((room / "static" / name).read_text("utf-8") for name in _SCRIPTS),
-        data=_json(data),
+        data=json_text(data),
     )
 
 
@@ -156,36 +155,6 @@ def _constants() -> dict[str, Any]:
         "reasons": {str(number): text for number, text in REASONS.items()},
         "export": EXPORT_CONSTANTS,
     }
-
-
-def _that_fit(campaigns: Sequence[CampaignLines]) -> tuple[list[CampaignLines], list[list[Any]]]:
-    """Campaigns with the files that the page has room for, and how many lines have none."""
-    room, kept, left_out = MOST_BYTES, {}, []
-    for one in sorted(campaigns, key=lambda one: -one.changed):
-        own, left = {}, 0
-        # surfaces are of all tests of an experiment, and small
-        for stem in sorted(one.files, key=lambda stem: not _has_surfaces(one.files[stem])):
-            size = len(_json(one.files[stem]))
-            if size <= room:
-                own[stem] = one.files[stem]
-                room -= size
-            else:
-                left += len(one.files[stem]["lines"])
-        files_kept = {stem: own[stem] for stem in one.files if stem in own}
-        kept[one.name] = CampaignLines(one.name, files_kept, one.faults, one.changed)
-        if left:
-            left_out.append([one.name, left])
-    return [kept[one.name] for one in campaigns], left_out
-
-
-def _has_surfaces(file: Mapping[str, Any]) -> bool:
-    return any(line["surfaces"] for line in file["lines"])
-
-
-def _json(data: Any) -> str:
-    """JSON that ends no element of a page, whatever stands in it."""
-    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
-    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
 def _files_on(path: Path) -> dict[str, dict[str, Any]]:

@@ -19,7 +19,7 @@ from reduction.designpage.exportdata import (
     curves_of_published,
     refusal_of_surfaces,
 )
-from reduction.designpage.linedata import line_data
+from reduction.designpage.linedata import json_text, line_data
 from reduction.errors import ArchiveError
 from reduction.published.linesource import published_sources
 
@@ -144,21 +144,19 @@ def test_a_run_that_ends_meanwhile_is_on_the_page(processed, tmp_path, monkeypat
     assert [one["name"] for one in found["campaigns"]] == ["many", "other"]
 
 
-def test_what_has_no_room_is_told(processed, tmp_path, monkeypatch):
+def test_what_has_no_room_is_told_and_not_read(processed, tmp_path, monkeypatch, opened):
     shutil.copytree(processed / "many", processed / "newer")
     for path in (processed / "newer").glob("*.nc"):
         path.touch()
-    (size,) = {
-        len(made._json(one.files["T01"]))
-        for one in read.read_campaigns(processed)
-        if one.name == "newer"
-    }
-    monkeypatch.setattr(made, "MOST_BYTES", int(3.5 * size))
+    before = read.read_campaigns(processed, room=made.MOST_BYTES)
+    sizes = [len(json_text(one)) for one in before[1].files.values()]
+    opened.clear()
+    monkeypatch.setattr(made, "MOST_BYTES", sizes[0] + sizes[1] + 100)
     found = data_of(made.write_design_page(processed, tmp_path))
     kept = {one["name"]: one["names"] for one in found["campaigns"]}
-    assert kept["newer"] == ["T01 one", "T02.a one", "T02.b one"]
-    assert kept["many"] == []
-    assert found["left_out"] == [["many", 3]]
+    assert kept == {"newer": ["T01 one", "T02.a one"], "many": []}
+    assert found["left_out"] == [["many", 3], ["newer", 1]]
+    assert opened == ["T01.nc", "T02.a.nc", "T02.b.nc"]
 
 
 def test_a_line_that_cannot_be_exported_says_why():

@@ -562,7 +562,7 @@ function about() {
     + `with intervals, tested range and source. Made by mooring-reduction ${DATA.version}.`;
   const told = [
     ...DATA.faults.map(([campaign, file, text]) => `${campaign}: ${file} cannot be read: ${text}`),
-    ...DATA.left_out.map(([campaign, count]) => `${campaign}: ${count} lines have no room on this page; `
+    ...DATA.left_out.map(([campaign, count]) => `${campaign}: ${count} more archives have no room on this page; `
       + `reduction lookup processed/${campaign} has them`),
   ];
   byId("faults").hidden = !told.length;
