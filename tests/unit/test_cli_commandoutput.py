@@ -90,7 +90,8 @@ def test_headings_of_two_lines_count_whole_where_they_would_stand_on_one(capsys,
     made.add_column("message")
     made.add_row("T-1", "1", "2", "3", MESSAGE)
     CommandOutput().show(made)
-    assert max(map(len, capsys.readouterr().out.splitlines())) <= 80
+    text = re.sub(r"\x1b\[[0-9;]*m", "", capsys.readouterr().out)
+    assert max(map(len, text.splitlines())) <= 80
 
 
 def test_a_pipe_has_one_line_a_row_and_no_markup(capsys):
