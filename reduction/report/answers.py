@@ -59,8 +59,9 @@ class AnswerBudget:
 
     @property
     def text(self) -> str:
-        """Value, expanded uncertainty and unit."""
-        return f"{self.cell.text} {self.unit.unit}"
+        """Value, expanded uncertainty and unit; a plain number has none."""
+        unit = "" if self.unit.unit == "1" else f" {self.unit.unit}"
+        return f"{self.cell.text}{unit}"
 
     def share(self, source: str) -> float:
         """Share of a source in the variance; several errors of one source together. [1]."""

@@ -103,7 +103,7 @@ def _surface_parts(
                 *draw_contours(view, surfaces, index, planes),
             ]
         budgets = coefficient_budgets(view, surfaces, index)
-        shares = f"shares of the variance, coefficients of the {heading}"
+        shares = f"{heading}, shares of the variance"
         parts.append(
             make_part(
                 _capital(heading),

@@ -82,8 +82,12 @@ def test_contours_share_a_scale_and_veil_where_the_runs_say_less(lawful):
     veiled = ["runs say little" in [trace["name"] for trace in f.data] for f in figures]
     assert veiled == [True, False, True]
     assert ["Grey" in f.caption for f in figures] == veiled
-    middle = figures[1].data[-1]
-    assert [text for text in middle["text"] if "," in text] == ["R13, R14, R15"]
+    # the runs of the centre have one label, at one place, and each is named to the pointer
+    labels = [one["text"] for one in figures[1].layout["annotations"]]
+    assert [text for text in labels if "," in text] == ["R13, R14, R15"]
+    assert {"R13", "R14", "R15"} <= set(figures[1].data[-1]["text"])
+    assert all("bgcolor" in one for one in figures[1].layout["annotations"])
+    assert all(figure.title.startswith(f"{lawful.name}: ") for figure in figures)
 
 
 def test_the_cube_has_the_law_at_corners_edges_and_centre(lawful):

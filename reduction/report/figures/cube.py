@@ -62,7 +62,7 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
     ]
     return [
         make_figure(
-            f"{view.key}-{name}-cube", f"{words.capitalize()} on the cube",
+            f"{view.key}-{name}-cube", f"{view.name}: {words} on the cube",
             f"Value of the surface of the {words}{scale_words(name)} at corners, edges and centre"
             f" [{unit.unit}]: to the right {ends[0]}, upward {ends[1]}, away {ends[2]}. Open"
             " markers: the runs say less there than at the worst of them.",

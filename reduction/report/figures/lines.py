@@ -72,7 +72,7 @@ def draw_single_time(
         span["range"] = [float(middle - 0.5), float(middle + 0.5)]
     return [
         make_figure(
-            f"{view.key}-single-time", "Relaxation time against frequency",
+            f"{view.key}-single-time", f"{view.name}: relaxation time against frequency",
             "Relaxation time of each run, on logarithmic axes. One relaxation time would lie on the"
             " dotted level; dashed: as 1/f, which is a loss angle that does not change with"
             f" frequency. Thin: the fit, tau ~ f⁻ⁿ with n = {exponent:.4f} ({low:.4f} to"
@@ -114,14 +114,14 @@ def draw_forms(view: ExperimentView) -> list[Figure]:
         missed.append(_by_form(view, place, name, tension, measured - values))
     return [
         make_figure(
-            f"{view.key}-forms", "Stiffness forms of mooring codes",
+            f"{view.key}-forms", f"{view.name}: stiffness forms of mooring codes",
             "Apparent spring constant by each form against the measured one, a point a run;"
             " dotted: equal.",
             equal, synthetic=view.is_synthetic, height=400,
             xaxis=axis(unit.label("measured")), yaxis=axis(unit.label("by the form")),
         ),
         make_figure(
-            f"{view.key}-forms-missed", "What the forms miss",
+            f"{view.key}-forms-missed", f"{view.name}: what the forms miss",
             "Measured less form, against the mean tension: what bends here is the curve that a"
             " form of straight lines has no room for.",
             missed, synthetic=view.is_synthetic, height=400,
@@ -154,7 +154,7 @@ def draw_derived(view: ExperimentView) -> list[Figure]:
         ]  # fmt: skip
         found.append(
             make_figure(
-                f"{view.key}-derived-{name}", f"{symbol} from surfaces of E' and E''",
+                f"{view.key}-derived-{name}", f"{view.name}: {symbol} from surfaces of E' and E''",
                 f"{symbol} from smooth surfaces of E' and E'' against {symbol} of the loops of each"
                 " run; dotted: equal. A run off the line is one that its neighbours do not bear"
                 " out.",

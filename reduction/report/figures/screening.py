@@ -86,7 +86,7 @@ def _bars(
                 line(np.full(2, least), ends, name=words, colour=tint, dash=dash, width=2.2)
             )
     return make_figure(
-        f"{view.key}-{name}-effects", f"{in_words(name).capitalize()}: effects by size",
+        f"{view.key}-{name}-effects", f"{view.name}: effects on {in_words(name)} by size",
         "Size of each effect. Dashed: the least that counts, for a factor judged alone; dotted: for"
         " all of them at once. Dummies are columns that no factor uses, and show the scatter.",
         data, synthetic=view.is_synthetic, height=400,
@@ -121,7 +121,7 @@ def _half_normal(
                 }
             )  # fmt: skip
     return make_figure(
-        f"{view.key}-{name}-half-normal", f"{in_words(name).capitalize()}: half-normal plot",
+        f"{view.key}-{name}-half-normal", f"{view.name}: {in_words(name)}, half-normal plot",
         "Size of each effect against the half-normal quantile of its place. Scatter alone lies on"
         " the dotted line from zero; a factor that acts lies above it, at the right.",
         data, synthetic=view.is_synthetic, height=400,

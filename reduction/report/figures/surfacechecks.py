@@ -87,11 +87,11 @@ def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
     scale = {"type": "log"} if is_wide else {"rangemode": "tozero"}
     return [
         make_figure(
-            f"{view.key}-{name}-pareto", f"Terms of {in_words(name)} by size",
+            f"{view.key}-{name}-pareto", f"{view.name}: terms of {in_words(name)} by size",
             "Each coefficient of the coded factors over its standard uncertainty, |t|. Beyond the"
             f" dashed line a term differs from zero at {100 * CONFIDENCE:g} %, judged alone"
             f"{'; the axis is logarithmic' if is_wide else ''}.",
-            data, synthetic=view.is_synthetic, height=380, barmode="overlay",
+            data, synthetic=view.is_synthetic, height=120 + 34 * len(labels), barmode="overlay",
             xaxis=axis("|t| [1]", **scale),
             yaxis=named_axis("term [B]", labels),
         )
@@ -137,7 +137,7 @@ def _predicted(
     )
     data = [line(ends, ends, name="equal", colour=_GREY, dash="dot", showlegend=False), points]
     return make_figure(
-        f"{view.key}-{name}-predicted", f"{in_words(name).capitalize()}: against measured",
+        f"{view.key}-{name}-predicted", f"{view.name}: {in_words(name)} against measured",
         "Value of the surface against the measured one, a point a run; dotted: equal. The pointer"
         " shows the residual.",
         data, synthetic=view.is_synthetic,
@@ -160,7 +160,7 @@ def _in_order(
         _points(place, residual, list(view.runs)),
     ]  # fmt: skip
     return make_figure(
-        f"{view.key}-{name}-order", f"{in_words(name).capitalize()}: residuals in run order",
+        f"{view.key}-{name}-order", f"{view.name}: {in_words(name)}, residuals in order",
         "Measured less surface, in the order"
         f" {'the tests were made' if is_known else 'of the plan'}: a trend would be wear, heating"
         " or bedding-in that no factor of the surface holds.",
@@ -183,7 +183,7 @@ def _normal(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> Fig
         _points(score, inner[own], [view.runs[k] for k in own]),
     ]
     return make_figure(
-        f"{view.key}-{name}-normal", f"{in_words(name).capitalize()}: residuals on normal scores",
+        f"{view.key}-{name}-normal", f"{view.name}: {in_words(name)}, normal plot",
         "Residuals over their own standard deviations, against the scores of a normal sample;"
         f" dotted: as of one. Squared correlation {straight:.3f}. With few degrees of freedom such"
         " a plot shows one run far off, and little of a distribution.",

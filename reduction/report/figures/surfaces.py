@@ -61,7 +61,7 @@ def draw_surface(
     ]  # fmt: skip
     data += _points_in_space(view, surfaces, index, planes)
     held, level = view.factors[planes.held], view.levels(planes.held)[1]
-    title = f"{words.capitalize()} at {_at(view, planes.held, level)}"
+    title = f"{view.name}: {words} at {_at(view, planes.held, level)}"
     return _given(
         make_figure(
             f"{view.key}-{name}-surface", title,
@@ -118,7 +118,8 @@ def draw_contours(
         if is_thin:
             data.append(_thin_region(x, y, ratio))
         on_plane = runs_on_plane(view, planes, level)
-        data += _points_on_plane(view, planes, on_plane)
+        points, labels = _points_on_plane(view, planes, on_plane)
+        data += points
         at = _at(view, planes.held, view.levels(planes.held)[place])
         says = (
             " Grey: the runs say less there than at the worst of them (leverage above the greatest"
@@ -128,10 +129,10 @@ def draw_contours(
         )
         found.append(
             make_figure(
-                f"{view.key}-{name}-contour-{place}", f"{words.capitalize()} at {at}",
+                f"{view.key}-{name}-contour-{place}", f"{view.name}: {words} at {at}",
                 f"Contours of the {words}{scale_words(name)} at {at}. Points: the runs made there."
                 f"{says}",
-                data, synthetic=view.is_synthetic, height=380,
+                data, synthetic=view.is_synthetic, height=380, annotations=labels,
                 xaxis=axis(view.factor_label(planes.across[0])),
                 yaxis=axis(view.factor_label(planes.across[1])),
             )
@@ -198,32 +199,39 @@ def _points_in_space(
     ]  # fmt: skip
 
 
-def _points_on_plane(view: ExperimentView, planes: Planes, own: Bools) -> list[Trace]:
-    """Return the runs of a plane at the levels they reached; repeats have one label."""
+def _points_on_plane(
+    view: ExperimentView, planes: Planes, own: Bools
+) -> tuple[list[Trace], list[Trace]]:
+    """Return the runs of a plane at the levels they reached, and their labels; repeats have one."""
     if not own.any():
-        return []
+        return [], []
     cells = view.per_run("run_cell")
     x, y = (_levels_reached(view, place) for place in planes.across)
+    middle = np.mean(view.levels(planes.across[0]))
     places = np.flatnonzero(own)
-    labels = []
+    labels: list[Trace] = []
     for k in places:
         mates = [j for j in places if cells[j] == cells[k] and cells[k] > 0] or [k]
-        labels.append(", ".join(view.runs[j] for j in mates) if mates[0] == k else "")
-    side = [
-        "middle right" if x[k] < np.mean(view.levels(planes.across[0])) else "middle left"
-        for k in places
-    ]
-    return [
-        {
-            "type": "scatter", "mode": "markers+text", "name": "runs", "showlegend": False,
-            "x": plain_numbers(x[own]), "y": plain_numbers(y[own]), "cliponaxis": False,
-            "text": [plot_text(label) for label in labels], "textposition": side,
-            "textfont": {"size": 10, "color": _INK},
-            "marker": {
-                "size": 9, "color": COLOURS[1], "line": {"width": 1.5, "color": "#ffffff"},
-            },
-        }
-    ]  # fmt: skip
+        if mates[0] != k:
+            continue
+        # a veil behind it, or the numbers of the contours run through it
+        is_left = bool(x[k] < middle)
+        labels.append(
+            {
+                "text": plot_text(", ".join(view.runs[j] for j in mates)), "showarrow": False,
+                "x": plain_numbers(x[k : k + 1])[0], "y": plain_numbers(y[k : k + 1])[0],
+                "xanchor": "left" if is_left else "right", "xshift": 8 if is_left else -8,
+                "font": {"size": 10, "color": _INK}, "bgcolor": "rgba(255,255,255,0.8)",
+                "borderpad": 1,
+            }
+        )  # fmt: skip
+    points: Trace = {
+        "type": "scatter", "mode": "markers", "name": "runs", "showlegend": False,
+        "x": plain_numbers(x[own]), "y": plain_numbers(y[own]), "cliponaxis": False,
+        "text": [plot_text(view.runs[k]) for k in places],
+        "marker": {"size": 9, "color": COLOURS[1], "line": {"width": 1.5, "color": "#ffffff"}},
+    }  # fmt: skip
+    return [points], labels
 
 
 def _thin_region(x: Floats, y: Floats, ratio: Floats) -> Trace:
