@@ -26,7 +26,7 @@ from reduction.vocabulary import quantity
 __all__ = ["MOST_BYTES", "PAGE_NAME", "render_design_page", "write_design_page"]
 
 PAGE_NAME = "design-values.html"
-MOST_BYTES = 2_600_000
+MOST_BYTES = 2_500_000
 """Of the lines of campaigns on one page; of the rest it says how many archives there are."""
 _FORMAT = 1
 """Of what one page keeps for the next."""

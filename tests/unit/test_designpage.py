@@ -159,6 +159,10 @@ def test_what_has_no_room_is_told_and_not_read(processed, tmp_path, monkeypatch,
     assert opened == ["T01.nc", "T02.a.nc", "T02.b.nc"]
 
 
+def test_a_full_page_is_below_three_megabytes():
+    assert len(made.render_design_page().encode()) + made.MOST_BYTES < 3_000_000
+
+
 def test_a_line_that_cannot_be_exported_says_why():
     lines = published_sources()
     every = tuple(lines.values())
