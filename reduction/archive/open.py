@@ -11,6 +11,7 @@ from typing import Literal
 import netCDF4
 import xarray as xr
 
+from reduction.archive.seal import check_seal
 from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError, SettingsError
 
@@ -43,17 +44,20 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
     Raises
     ------
     ArchiveError
-        If there is no such file, it is not netCDF, or it has another schema.
+        If there is no such file, it is not netCDF or damaged, or it has another schema.
     SettingsError
         If Dask is wanted and not installed, or refuses the chunks.
     """
     if not path.is_file():
         raise ArchiveError(f"there is no archive {path}", hint="Run the campaign first.")
     try:
+        check_seal(path)
         with _small_cache():
             dataset = xr.open_dataset(
                 path, engine="netcdf4", decode_times=False, decode_timedelta=False
             )
+    except ArchiveError:
+        raise
     except (OSError, RuntimeError, ValueError) as error:
         raise ArchiveError(
             f"{path} is not a netCDF file",

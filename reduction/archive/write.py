@@ -11,6 +11,7 @@ import xarray as xr
 
 from reduction.archive.check import check_archive
 from reduction.archive.netcdf import write_netcdf
+from reduction.archive.seal import write_seal
 from reduction.archive.whole import whole_file
 from reduction.errors import ArchiveError
 
@@ -18,7 +19,7 @@ __all__ = ["appended_whole", "write_archive", "write_whole"]
 
 
 def write_archive(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset of `reduction.archive.dataset.to_dataset` as one netCDF file.
+    """Write a dataset of `reduction.archive.dataset.to_dataset` as one netCDF file, and seal it.
 
     Parameters
     ----------
@@ -36,6 +37,7 @@ def write_archive(dataset: xr.Dataset, path: Path) -> None:
         with whole_file(path) as part:
             write_netcdf(dataset, part)
             _refuse_faults(part, path.name)
+            write_seal(part)
     except ArchiveError:
         raise
     except (OSError, RuntimeError) as error:

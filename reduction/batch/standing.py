@@ -10,8 +10,8 @@ from typing import Any
 
 from reduction import __version__
 from reduction.archive.open import open_archive
+from reduction.archive.seal import has_seal
 from reduction.batch.survey import Survey
-from reduction.errors import ArchiveError
 
 __all__ = ["Standing", "failed_beside", "standing_product"]
 
@@ -89,12 +89,15 @@ def standing_product(
     Returns
     -------
     standing : Standing or None
-        It stands where raw hash, settings and version are the same; where others failed, also
-        where it differs only in what comes from them and was made when they did not fail.
+        It stands where it is as it was written, and raw hash, settings and version are the same;
+        where others failed, also where it differs only in what comes from them and was made when
+        they did not fail.
     """
     if not path.exists():
         return None
     try:
+        if not has_seal(path):
+            return None  # changed by another program since
         with open_archive(path) as archive:
             sums = "\n".join(source.sha256 for source in survey.sources)
             before = str(archive.attrs.get("settings"))
@@ -111,7 +114,7 @@ def standing_product(
                 notes = tuple(
                     (str(stage), str(text)) for stage, text in zip(stages, texts, strict=True)
                 )
-    except ArchiveError:
+    except OSError:
         return None  # an archive that cannot be read is made again
     if not rests_on and not set(remarks) <= {text for _, text in notes}:
         return None  # another test has failed than then
