@@ -36,7 +36,7 @@ def _default(schema: dict[str, Any], *, is_required: bool) -> str:
     value = schema.get("default")
     return (
         ""
-        if value in (None, [], {}, "")
+        if isinstance(value, dict) or value in (None, [], "")
         else f"`{str(value).lower() if isinstance(value, bool) else value}`"
     )
 

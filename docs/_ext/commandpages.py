@@ -57,6 +57,12 @@ def _default(value: object, *, is_required: bool) -> str:
     return "" if value in (None, False, "") else f"`{value}`"
 
 
+def _spellings(name: str, info: ArgumentInfo | OptionInfo) -> list[str]:
+    """How an option is written; the first that is stated stands where a default might."""
+    stated = [*(one for one in [info.default] if isinstance(one, str)), *(info.param_decls or ())]
+    return stated or [f"--{name.replace('_', '-')}"]
+
+
 def _given(callback: Callable[..., Any]) -> list[_Given]:
     hints = get_type_hints(callback, include_extras=True)
     found = []
@@ -67,9 +73,7 @@ def _given(callback: Callable[..., Any]) -> list[_Given]:
         default = parameter.default
         is_required = default is inspect.Parameter.empty
         shown = getattr(default, "value", default)
-        option = ", ".join(
-            f"`{one}`" for one in info.param_decls or [f"--{name.replace('_', '-')}"]
-        )
+        option = ", ".join(f"`{one}`" for one in _spellings(name, info))
         found.append(
             _Given(
                 names=(info.metavar or name.upper()).strip("[]") if is_argument else option,
