@@ -9,6 +9,7 @@ import pytest
 from reduction.archive.laboratory import keep_details
 from reduction.archive.open import open_archive
 from reduction.laboratory import Instrument, Item, Limit, Party, ReportDetails
+from reduction.report import clientfigures
 from reduction.report.clientfields import NOT_STATED
 from reduction.report.conformitytable import RULES
 from reduction.report.page import write_report
@@ -229,3 +230,25 @@ def test_the_page_asks_for_nothing_and_runs_nothing(client, rich_test):
     assert "default-src 'none'" in page and "<script" not in page
     assert not re.findall(r'(?:src|href)="(?!#)|url\((?!#)', page)
     assert "<svg" in page
+
+
+def test_what_the_software_did_with_a_test_stands_there_only_where_it_failed(
+    client, rich_test, tmp_path
+):
+    status = tmp_path / "status.csv"
+    head = "test,status,exit_status,message,raw_sha256,seconds\r\n"
+    status.write_text(head + "T-1,unchanged,0,,,0\r\n")
+    assert rows_of(client(ReportDetails(), rich_test), "Tests in the order")[0][-1] == "samples [1]"
+    status.write_text(head + "T-1,reduced,0,,,0\r\nT-2,failed,3,broken log,,0\r\n")
+    page = client(ReportDetails())
+    assert rows_of(page, "Tests in the order")[-1][-1] == "failed, no archive"
+    assert "T-2: broken log" in text_of(page)
+
+
+def test_a_figure_that_cannot_be_drawn_is_named(client, rich_test, monkeypatch):
+    monkeypatch.setattr(clientfigures, "can_be_drawn", lambda figure: "loops" not in figure.title)
+    page = client(ReportDetails(), rich_test)
+    assert "Not drawn on paper, and in the page of the campaign alone: T-1: loops, new" in text_of(
+        page
+    )
+    assert "T-1: modulus, new" in page.partition("<svg")[2]
