@@ -50,7 +50,7 @@ async function copy(text, what) {
 
 const STATED = [
   ["linear_density", "Linear density in air", ["kg/m", "g/m"], ["lb/ft"], "linear_density"],
-  ["wet_linear_density", "In water", ["kg/m", "g/m"], ["lb/ft"], "linear_density"],
+  ["wet_linear_density", "The same in water", ["kg/m", "g/m"], ["lb/ft"], "linear_density"],
   ["diameter", "Diameter", ["mm"], ["in"], "length"],
 ];
 
