@@ -46,7 +46,7 @@ from reduction.report.view import Status, TestView, any_synthetic
 from reduction.report.whole import WholeCampaign
 from reduction.units import UnitSystem
 
-__all__ = ["PAGE_NAME", "ClientContent", "missing_fields", "render_client_report"]
+__all__ = ["PAGE_NAME", "ClientContent", "render_client_report"]
 
 PAGE_NAME = "client-report.html"
 _MOST_COLUMNS = 5
@@ -77,11 +77,6 @@ class ClientContent:
     units: UnitSystem
 
 
-def missing_fields(details: ReportDetails, tests: Sequence[TestView]) -> list[str]:
-    """Return the labels of the fields that nobody stated."""
-    return missing_of(_groups(details, tests).values())
-
-
 def _groups(details: ReportDetails, tests: Sequence[TestView]) -> dict[str, list[Entry]]:
     return {
         "identification": identification(details, tests),
@@ -102,8 +97,10 @@ def render_client_report(content: ClientContent) -> str:
     )
     room = files("reduction.report")
     template = environment_of.from_string((room / "templates" / "client.html").read_text("utf-8"))
+    groups = _groups(details, tests)
     return template.render(
-        **_groups(details, tests),
+        **groups,
+        missing=missing_of(groups.values()),
         style=Markup(  # noqa: S704  # the style of the package; what stands on each sheet is quoted
             _sheet_style(details, label, synthetic=synthetic)
             + (room / "static" / "client.css").read_text("utf-8")
