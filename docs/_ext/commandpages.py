@@ -57,10 +57,13 @@ def _default(value: object, *, is_required: bool) -> str:
     return "" if value in (None, False, "") else f"`{value}`"
 
 
-def _spellings(name: str, info: ArgumentInfo | OptionInfo) -> list[str]:
+def _spellings(name: str, info: ArgumentInfo | OptionInfo, *, is_switch: bool) -> list[str]:
     """How an option is written; the first that is stated stands where a default might."""
     stated = [*(one for one in [info.default] if isinstance(one, str)), *(info.param_decls or ())]
-    return stated or [f"--{name.replace('_', '-')}"]
+    if stated:
+        return [one for text in stated for one in text.split("/")]
+    option = name.replace("_", "-")
+    return [f"--{option}", f"--no-{option}"] if is_switch else [f"--{option}"]
 
 
 def _given(callback: Callable[..., Any]) -> list[_Given]:
@@ -73,7 +76,9 @@ def _given(callback: Callable[..., Any]) -> list[_Given]:
         default = parameter.default
         is_required = default is inspect.Parameter.empty
         shown = getattr(default, "value", default)
-        option = ", ".join(f"`{one}`" for one in _spellings(name, info))
+        option = ", ".join(
+            f"`{one}`" for one in _spellings(name, info, is_switch=annotation is bool)
+        )
         found.append(
             _Given(
                 names=(info.metavar or name.upper()).strip("[]") if is_argument else option,
