@@ -190,7 +190,7 @@ def test_a_limit_is_held_against_the_number_of_the_archive_by_the_rule_that_is_p
     least = float(coverage_factor(float("inf"))) * u
     for rule, lower, expected in (
         ("simple acceptance", value - 0.1 * u, "conforms"),
-        ("guard band", value - 0.1 * u, "no statement"),
+        ("guard band", value - 0.1 * u, "no statement: the interval reaches over a limit"),
         ("guard band", value - 20 * least, "conforms"),
         ("guard band", value + 20 * least, "does not conform"),
         ("simple acceptance", value + 0.1 * u, "does not conform"),
@@ -217,6 +217,8 @@ def test_a_limit_of_a_number_that_is_not_there_gives_no_statement_and_says_why(
     one = replace(limit(1.0), **change)
     page = client(ReportDetails(decision_rule="guard band", limits=(one,)), rich_test)
     assert verdict_of(page).startswith(words)
+    unit = {"tangent_modulus": "MPa", "relaxation_time": "s"}[one.quantity]
+    assert rows_of(page, "Statements of conformity")[1][5] == unit
 
 
 def test_us_units_change_what_is_shown(client, rich_test):
