@@ -93,7 +93,7 @@ axes.set(
     ylabel="horizontal load [N/m]",
     title="points: published, Zhang 2015, Table 7; lines: computed",
 )
-axes.legend(loc="upper right")
+axes.legend(loc="lower center")
 
 for column, values in printed.items():
     there = np.interp(values[0], time, computed[column])
