@@ -87,7 +87,7 @@ def test_the_contents_of_a_long_page_are_searched(campaigns, visit):
     box.fill("r1")
     links = page.locator("#contents a:visible")
     assert links.all_inner_texts() == [f"R{number}" for number in range(10, 16)]
-    assert page.locator("#found").inner_text() == "6 of 21"
+    assert page.locator("#found").inner_text() == f"6 of {page.locator('#contents li').count()}"
     box.fill("quasi-static")
     assert links.all_inner_texts() == ["Q01"]
     box.press("Enter")
