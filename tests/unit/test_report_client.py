@@ -11,9 +11,9 @@ from reduction.archive.open import open_archive
 from reduction.laboratory import Instrument, Item, Limit, Party, ReportDetails
 from reduction.report import clientfigures
 from reduction.report.clientfields import NOT_STATED
-from reduction.report.conformitytable import RULES
+from reduction.report.conformitytable import RULES, conformity_table
 from reduction.report.page import write_report
-from reduction.uncertainty.combine import coverage_factor
+from reduction.report.view import TestView
 
 NASTY = (
     "</style></script><script>alert(1)</script> \"q\" 'x' & \\ \u2028\nnew line } @import url(//x)"
@@ -173,31 +173,53 @@ def test_numbers_are_those_of_the_archive(client, rich_test, tmp_path):
     assert {row[1] for row in rows[1:]} <= {"new", "used"}
 
 
-def verdict_of(page):
-    row = rows_of(page, "Statements of conformity")[1]
-    return row[-1]
+@pytest.fixture
+def judged(write, rich_test):
+    """Hold one limit against a test: the row of the table, and what stands below it."""
+
+    def judge(one, rule="guard band", units="si"):
+        with open_archive(write(rich_test)) as archive:
+            details = ReportDetails(decision_rule=rule, limits=(one,))
+            table = conformity_table(details, [TestView("t", archive, units)], units)
+        return [cell.text for cell in table.rows[0]], table.remarks
+
+    return judge
 
 
+@pytest.mark.parametrize(
+    ("rule", "distance", "expected"),
+    [
+        ("simple acceptance", -0.1, "conforms"),
+        ("guard band", -0.1, "no statement: the interval reaches over a limit"),
+        ("guard band", -40, "conforms"),
+        ("guard band", 40, "does not conform"),
+        ("simple acceptance", 0.1, "does not conform"),
+    ],
+)
 def test_a_limit_is_held_against_the_number_of_the_archive_by_the_rule_that_is_printed(
-    client, rich_test, tmp_path
+    judged, write, rich_test, rule, distance, expected
 ):
-    client(None, rich_test)
-    with open_archive(tmp_path / "T-1.nc") as archive:
-        middle = archive["strain_bin"].values[2]
+    with open_archive(write(rich_test)) as archive:
+        middle = float(archive["strain_bin"].values[2])
         value = float(archive["tangent_modulus"].values[0, 0, 2])
         u = float(archive["tangent_modulus_standard_uncertainty"].values[0, 0, 2])
-    at = {"specimen": "new", "branch": "ascending", "strain": repr(float(middle))}
-    least = float(coverage_factor(float("inf"))) * u
-    for rule, lower, expected in (
-        ("simple acceptance", value - 0.1 * u, "conforms"),
-        ("guard band", value - 0.1 * u, "no statement: the interval reaches over a limit"),
-        ("guard band", value - 20 * least, "conforms"),
-        ("guard band", value + 20 * least, "does not conform"),
-        ("simple acceptance", value + 0.1 * u, "does not conform"),
-    ):
-        page = client(ReportDetails(decision_rule=rule, limits=(limit(lower, at=at),)))
-        assert verdict_of(page) == expected
-        assert RULES[rule] in text_of(page)
+    at = {"specimen": "new", "branch": "ascending", "strain": repr(middle)}
+    row, below = judged(limit(value + distance * u, at=at), rule)
+    assert row[-1] == expected
+    assert float(row[3].split(" ± ")[0]) == pytest.approx(1e-6 * value, abs=1e-6 * u)
+    assert RULES[rule] in below
+
+
+def test_no_limit_makes_no_table():
+    assert conformity_table(ReportDetails(), [], "si") is None
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "shown"),
+    [(1e6, 2e6, "1 to 2"), (1.5e6, None, "≥ 1.5"), (None, 1.2e9, "≤ 1,200")],
+)
+def test_limits_are_shown_as_they_were_agreed(judged, lower, upper, shown):
+    assert judged(limit(lower, upper=upper))[0][4:6] == [shown, "MPa"]
 
 
 @pytest.mark.parametrize(
@@ -212,13 +234,12 @@ def test_a_limit_is_held_against_the_number_of_the_archive_by_the_rule_that_is_p
     ],
 )
 def test_a_limit_of_a_number_that_is_not_there_gives_no_statement_and_says_why(
-    client, rich_test, change, words
+    judged, change, words
 ):
     one = replace(limit(1.0), **change)
-    page = client(ReportDetails(decision_rule="guard band", limits=(one,)), rich_test)
-    assert verdict_of(page).startswith(words)
-    unit = {"tangent_modulus": "MPa", "relaxation_time": "s"}[one.quantity]
-    assert rows_of(page, "Statements of conformity")[1][5] == unit
+    row, _ = judged(one)
+    assert row[-1].startswith(words)
+    assert row[5] == {"tangent_modulus": "MPa", "relaxation_time": "s"}[one.quantity]
 
 
 def test_us_units_change_what_is_shown(client, rich_test):
