@@ -44,6 +44,7 @@ html_math_renderer = "mathml"
 
 # docstrings are numpydoc; types and shapes stand in their text
 autodoc_typehints = "none"
+add_module_names = False
 autodoc_preserve_defaults = True
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True, "no-value": True}

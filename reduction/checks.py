@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from reduction.errors import DataError, SettingsError
 from reduction.record import Bools, Floats
+from reduction.samples.search import any_sample
 
 __all__ = ["as_finite", "as_increasing", "as_positive", "as_same_shape", "as_spread"]
 
@@ -27,6 +28,11 @@ def _refuse(name: str, values: Floats, bad: Bools, what: str, needed: str) -> No
 def as_finite(name: str, values: ArrayLike) -> Floats:
     """Return the values as float64, or raise `DataError` where one is not finite."""
     array = np.asarray(values, dtype=np.float64)
+    # a mask of all samples is made where one is wrong
+    if array.ndim == 1 and not any_sample(
+        lambda part: ~np.isfinite(array[part]), array.size, array
+    ):
+        return array
     bad = ~np.isfinite(array)
     if bad.any():
         _refuse(name, array, np.atleast_1d(bad), "not finite", "finite numbers")
@@ -47,8 +53,8 @@ def as_increasing(name: str, values: ArrayLike) -> Floats:
     array = as_finite(name, values)
     if array.ndim != 1:
         raise DataError(f"{name} is not a series", found=f"shape {array.shape}", needed="1-D")
-    bad = np.concatenate([[False], np.diff(array) <= 0])
-    if bad.any():
+    if any_sample(lambda part: array[1:][part] <= array[:-1][part], array.size - 1, array):
+        bad = np.concatenate([[False], np.diff(array) <= 0])
         _refuse(name, array, bad, "not above the one before", "strictly increasing numbers")
     return array
 

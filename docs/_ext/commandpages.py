@@ -57,6 +57,15 @@ def _default(value: object, *, is_required: bool) -> str:
     return "" if value in (None, False, "") else f"`{value}`"
 
 
+def _spellings(name: str, info: ArgumentInfo | OptionInfo, *, is_switch: bool) -> list[str]:
+    """How an option is written; the first that is stated stands where a default might."""
+    stated = [*(one for one in [info.default] if isinstance(one, str)), *(info.param_decls or ())]
+    if stated:
+        return [one for text in stated for one in text.split("/")]
+    option = name.replace("_", "-")
+    return [f"--{option}", f"--no-{option}"] if is_switch else [f"--{option}"]
+
+
 def _given(callback: Callable[..., Any]) -> list[_Given]:
     hints = get_type_hints(callback, include_extras=True)
     found = []
@@ -68,7 +77,7 @@ def _given(callback: Callable[..., Any]) -> list[_Given]:
         is_required = default is inspect.Parameter.empty
         shown = getattr(default, "value", default)
         option = ", ".join(
-            f"`{one}`" for one in info.param_decls or [f"--{name.replace('_', '-')}"]
+            f"`{one}`" for one in _spellings(name, info, is_switch=annotation is bool)
         )
         found.append(
             _Given(

@@ -44,6 +44,7 @@ grid = look_up(
 )
 figure, axes = plt.subplots()
 drawn = axes.contourf(100 * mean, 100 * amplitude, grid.value / 1e3, levels=12, cmap="cividis")
+axes.grid(visible=False)
 figure.colorbar(drawn, label="apparent spring constant [kN]")
 axes.set(
     xlabel="mean tension [% of the rated break strength]",

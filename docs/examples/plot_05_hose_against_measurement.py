@@ -26,12 +26,14 @@ for event in comparison["hose_event"].values:
         above.annotate(str(event), (at, 0), rotation=90, ha="right", va="bottom")
 above.legend()
 
-# %%
-# The difference beside what the uncertainties of both allow.
-
+# below, the difference beside what the uncertainties of both allow
 half = float(comparison["coverage_factor"]) * comparison["validation_uncertainty"]
 below.fill_between(strain, -half, half, alpha=0.25, label="allowed, 95 % over the whole curve")
 below.plot(strain, measured["tension_difference"], label="predicted less measured")
 below.set(xlabel="strain of the hose [%]", ylabel="difference [N]")
 below.legend()
+
+# %%
+# And the verdict in words.
+
 print(str(comparison["verdict"].values))

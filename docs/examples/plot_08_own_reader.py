@@ -57,5 +57,8 @@ for name, modulus in zip(("ascending", "descending"), curves.tangent_modulus[0],
 figure, axes = plt.subplots()
 axes.plot(100 * curves.strain_bin, curves.tangent_modulus[0].T / 1e6, "o-")
 axes.set(
-    xlabel="strain [%]", ylabel="tangent modulus [MPa]", title="a log of its own: synthetic data"
+    ylim=(0, 12),
+    xlabel="strain [%]",
+    ylabel="tangent modulus [MPa]",
+    title="a log of its own: synthetic data",
 )

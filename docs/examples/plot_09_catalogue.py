@@ -45,6 +45,7 @@ for specimen in sorted({row["specimen"] for row in rows}):
 axes.set(
     xlabel="mean strain [%]",
     ylabel="apparent spring constant [N]",
+    yscale="log",
     title="cyclic tests of two campaigns: synthetic data",
 )
 axes.legend()

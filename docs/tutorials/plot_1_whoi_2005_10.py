@@ -62,21 +62,14 @@ for tether in (new, used):
     relaxed = float(np.mean(free[slack]))
     share = float(np.mean(free[~slack] / position[~slack]))
     strain, printed = free / relaxed - 1, share * position / relaxed - 1
-    (points,) = axes.plot(position, 100 * strain, "o", label=f"{tether.name}: marks")
-    axes.plot(
-        position,
-        100 * printed,
-        "--",
-        color=points.get_color(),
-        label=f"{tether.name}: constant share",
-    )
+    axes.plot(100 * strain, 100 * (printed - strain), "o-", label=tether.name)
     slope = np.polyfit(position[~slack], strain[~slack], 1)[0]
     print(
         f"{tether.name}: d(strain)/dp of the marks is {slope / (share / relaxed):.3f} of the constant share's"
     )
 axes.set(
-    xlabel="thimble to thimble [m]",
-    ylabel="strain of the rubber [%]",
+    xlabel="strain of the rubber by its marks [%]",
+    ylabel="constant share less marks [points of strain]",
     title="Table 3, test T-1: published, WHOI-2005-10",
 )
 axes.legend()

@@ -25,7 +25,7 @@ for verdict, number in counts_of(reproduce("CG-D-39-80")["CG-D-39-80"]).items():
 #
 # A spring :math:`K_0` stands beside a spring :math:`K_1` in series with a dashpot. With :math:`x = 2\pi f\tau`,
 #
-# .. math:: K_{ap} = \left|K_0 + K_1 \frac{i x}{1 + i x}\right|, \qquad H = \oint T\,d\varepsilon =
+# .. math:: K_{\mathrm{ap}} = \left|K_0 + K_1 \frac{i x}{1 + i x}\right|, \qquad H = \oint T\,d\varepsilon =
 #           \frac{\pi K_1 (\Delta T)^2 x}{K_0^2 + (K_0 + K_1)^2 x^2}
 #
 # Equation 4 is printed without :math:`\pi` and without the square on :math:`K_0` (`CG-1`_), and "frequency" there has

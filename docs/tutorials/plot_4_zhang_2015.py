@@ -26,8 +26,8 @@ for verdict, number in counts_of(reproduce("Zhang-2015")["Zhang-2015"]).items():
 #
 # With u the velocity of the water, D the diameter, h the depth and S_1 the section under water,
 #
-# .. math:: f_{classic} = C_D \frac{\rho}{2} D\, u|u| + C_M \rho \frac{\pi D^2}{4} \frac{du}{dt}, \qquad
-#           f_{improved} = C_D \frac{\rho}{2} h\, u|u| + C_M \rho S_1 \frac{du}{dt}
+# .. math:: f_{\mathrm{classic}} = C_D \frac{\rho}{2} D\, u|u| + C_M \rho \frac{\pi D^2}{4} \frac{du}{dt}, \qquad
+#           f_{\mathrm{improved}} = C_D \frac{\rho}{2} h\, u|u| + C_M \rho S_1 \frac{du}{dt}
 #
 # The printed wave is no wave: 20 m of length do not go with 3.57 s at 6 m of depth (`ZH-4`_), and 1.93 rad/s is not
 # :math:`2\pi/3.57` s (`ZH-3`_). Taken as printed, with 1.76 rad/s, every horizontal load of Table 7 comes back.
@@ -93,7 +93,7 @@ axes.set(
     ylabel="horizontal load [N/m]",
     title="points: published, Zhang 2015, Table 7; lines: computed",
 )
-axes.legend(loc="upper right")
+axes.legend(loc="lower center")
 
 for column, values in printed.items():
     there = np.interp(values[0], time, computed[column])

@@ -46,7 +46,7 @@ right.set(
     xlabel="winding angle [deg]",
     ylabel="axial force less exact [%]",
     title="computed",
-    ylim=(-1, 1),
+    ylim=(-0.1, 0.1),
 )
 left.legend()
 

@@ -275,9 +275,9 @@ _ROWS = chain(
             "test_slope_reading_spread",
             "peak_tension_per_decade",
             "dynamic_modulus_per_decade",
+            "peak_tension_change",
         )
     ),
-    stated("peak_tension_change", _S, SEE_PER_DECADE),
     LINE_ROWS,
     ROPE_ROWS,
     CURVE_ROWS,

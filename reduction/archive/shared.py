@@ -52,7 +52,7 @@ _OF_TEST = (
 )  # fmt: skip
 _OF_SPECIMEN = (
     "diameter", "area", "slack_strain_at_unloading", "permanent_set",
-    "peak_tension_per_decade", "dynamic_modulus_per_decade",
+    "peak_tension_per_decade", "dynamic_modulus_per_decade", "peak_tension_change",
     "bedding_first_stiffness", "bedding_last_stiffness", "bedding_first_stiffness_over_strength",
     "bedding_last_stiffness_over_strength", "bedding_stiffening", "bedding_permanent_strain",
     "dynamic_stiffness", "dynamic_stiffness_over_strength", "dynamic_stiffness_drift",

@@ -22,6 +22,7 @@ from reduction.batch.status import Status
 from reduction.batch.survey import Survey, located_again
 from reduction.campaign.plan import Campaign
 from reduction.line.product import SlowPull
+from reduction.pipeline.recall import Recall, plainly
 from reduction.pipeline.reduce import reduce_stepwise_test, reduce_test
 from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.pipeline.statedlimits import check_stated_errors
@@ -39,6 +40,7 @@ def reduce_survey(
     settings: str,
     pulls: Sequence[SlowPull | None] | None = None,
     pull_origins: Sequence[PullOrigin | None] = (),
+    recall: Recall = plainly,
 ) -> ReducedTest:
     """Reduce one surveyed test.
 
@@ -58,6 +60,8 @@ def reduce_survey(
         Slow pull of each specimen, where the test is a run of an experiment.
     pull_origins : sequence of PullOrigin or None, optional
         With what each pull was read.
+    recall : Recall
+        As in `reduction.pipeline.reduce.reduce_test`.
 
     Returns
     -------
@@ -99,12 +103,18 @@ def reduce_survey(
         pull_origins=pull_origins,
         pull_conditions=pull_conditions(campaign, survey),
         instruments=instruments,
+        recall=recall,
     )
     return replace(reduced, notes=(*reduced.notes, *notes))
 
 
 def dataset_of(
-    campaign: Campaign, survey: Survey, basis: Basis, *, command: str
+    campaign: Campaign,
+    survey: Survey,
+    basis: Basis,
+    *,
+    command: str,
+    recall: Recall = plainly,
 ) -> tuple[xr.Dataset, tuple[tuple[str, str], ...]]:
     """Reduce one surveyed test to all that its archive is to hold.
 
@@ -118,6 +128,8 @@ def dataset_of(
         What its product rests on beside its own log.
     command : str
         For the product's ``command`` attribute, without paths.
+    recall : Recall
+        As in `reduction.pipeline.reduce.reduce_test`.
 
     Returns
     -------
@@ -133,7 +145,7 @@ def dataset_of(
     """
     product = reduce_survey(
         campaign, survey, basis.models, basis.history, basis.settings, basis.pulls,
-        basis.pull_origins,
+        basis.pull_origins, recall,
     )  # fmt: skip
     kept = kept_samples(product, survey.plan.settings)
     of_archive = () if kept is None else (kept.note,)

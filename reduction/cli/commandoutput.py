@@ -27,7 +27,7 @@ from reduction.cli.plaintable import plain_table
 from reduction.errors import ReductionError, SettingsError
 from reduction.remote.scratch import in_words
 
-__all__ = ["CommandOutput", "guarded"]
+__all__ = ["INTERRUPTED", "CommandOutput", "guarded"]
 
 INTERRUPTED = 130
 

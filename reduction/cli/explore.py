@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import os
-import signal
-import threading
+import traceback
 import webbrowser
 from contextlib import suppress
 from pathlib import Path
-from types import FrameType
 from typing import cast
 
-from reduction.cli.commandoutput import CommandOutput
+from reduction.cli.commandoutput import INTERRUPTED, CommandOutput
 from reduction.cli.progress import campaign_progress
+from reduction.cli.remote import in_order
+from reduction.errors import SettingsError
 from reduction.explore.find import find_campaign
 from reduction.explore.routes import Routes
 from reduction.explore.server import ExploreServer
@@ -26,14 +26,20 @@ __all__ = ["serve"]
 def serve(
     processed: Path, *, campaign: Path | None, port: int, opens: bool, output: CommandOutput
 ) -> None:
-    """Serve the page of a campaign until Ctrl-C or SIGTERM."""
+    """Serve the page of a campaign until Ctrl-C, or until the system asks it to end."""
+    if output.quiet and not opens:
+        raise SettingsError(
+            "nobody would know the address",
+            found="--quiet and --no-browser",
+            needed="one of them at most",
+        )
     path = find_campaign(processed, campaign)
     with campaign_progress(output) as progress:
         session = Session(path, processed, progress=progress)
 
     def told_of_defect(error: Exception) -> None:
         if os.environ.get("REDUCTION_DEBUG"):
-            raise error
+            output.error("".join(traceback.format_exception(error)))
         output.error(
             f"internal error, a defect of this program: {type(error).__name__}: {error}. "
             "Set REDUCTION_DEBUG=1 to see where, and please report it."
@@ -41,7 +47,7 @@ def serve(
 
     work = Work(told_of_defect)
     units = cast("UnitSystem", output.units)
-    with ExploreServer(Routes(session, work, units), port) as server:
+    with in_order(), ExploreServer(Routes(session, work, units), port) as server:
         output.say(f"{path}: {len(session.surveys)} tests")
         output.say(f"Open {server.address}")
         output.say("Ctrl-C ends it. Only this machine is answered, and only with this address.")
@@ -51,22 +57,10 @@ def serve(
         if opens:
             with suppress(webbrowser.Error):  # the address was printed
                 webbrowser.open(server.address)
-        thread = threading.Thread(target=server.serve_forever, daemon=True, name="server")
-        thread.start()
         try:
-            _wait_for_end()
+            server.serve_forever()
+        except KeyboardInterrupt:
+            output.say("Ended.")
+            output.raise_status(INTERRUPTED)
         finally:
-            server.shutdown()
             work.close()
-
-
-def _wait_for_end() -> None:
-    """Return at SIGTERM; an interrupt from the keyboard is raised as ever."""
-    ended = threading.Event()
-
-    def end(number: int, frame: FrameType | None) -> None:
-        ended.set()
-
-    signal.signal(signal.SIGTERM, end)
-    while not ended.wait(0.5):
-        pass

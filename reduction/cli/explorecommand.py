@@ -14,6 +14,10 @@ from reduction.cli.usage import here
 __all__ = ["explore"]
 
 
+def _here(path: Path | None) -> Path | None:
+    return None if path is None else here(path)
+
+
 def explore(
     processed_dir: Annotated[
         Path,
@@ -27,6 +31,7 @@ def explore(
             metavar="CAMPAIGN.toml",
             help="Where the campaign is, if not in raw/CAMPAIGN/ beside processed/.",
             show_default=False,
+            callback=_here,
         ),
     ] = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Of 127.0.0.1; 0: a free one.")] = 0,

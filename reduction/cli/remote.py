@@ -22,7 +22,7 @@ from reduction.remote.mirror import copied, mirrored, put_at_end
 from reduction.remote.place import allowed, base_name, below
 from reduction.remote.scratch import renamed, scratch_folder
 
-__all__ = ["campaign_at", "local_sources", "product_folders", "report_folder"]
+__all__ = ["campaign_at", "in_order", "local_sources", "product_folders", "report_folder"]
 
 # a machine that is shut down or a queue that ends a job; a terminal that is closed, where there are
 _REQUESTS = [one for one in Signals if one.name in ("SIGTERM", "SIGHUP")]
@@ -47,7 +47,7 @@ def campaign_at(address: str, *, allow_remote: bool, output: CommandOutput) -> I
         Copies of its files are gone when the block ends.
     """
     with ExitStack() as opened:
-        opened.enter_context(_in_order())
+        opened.enter_context(in_order())
         with campaign_progress(output) as bar:
             campaign = opened.enter_context(
                 staged_campaign(
@@ -61,7 +61,7 @@ def campaign_at(address: str, *, allow_remote: bool, output: CommandOutput) -> I
 
 
 @contextmanager
-def _in_order() -> Iterator[None]:
+def in_order() -> Iterator[None]:
     """Take a request to end as an interruption: lock, workers and copies are put away first.
 
     One that the caller ignores, as ``nohup`` does, stays ignored.
@@ -184,7 +184,7 @@ def local_sources(
         If there is no archive, or it cannot be copied.
     """
     with ExitStack() as opened:
-        opened.enter_context(_in_order())
+        opened.enter_context(in_order())
         opened.enter_context(renamed(output.names))
         found = []
         for source in sources:

@@ -33,7 +33,8 @@ _FORMAT = 1
 _TIMES = 3
 _SCRIPTS = (
     "format.js", "student.js", "surface.js", "curve.js", "loads.js", "lookup.js", "shown.js",
-    "identify.js", "thin.js", "linetype.js", "dynamics.js", "moordyn.js", "chart.js", "page.js",
+    "identify.js", "thin.js", "linetype.js", "dynamics.js", "moordyn.js", "data.js", "chart.js",
+    "form.js", "answer.js", "type.js", "page.js",
 )  # fmt: skip
 _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
 _OF_LINES = (

@@ -8,6 +8,7 @@ from math import isfinite, nan
 
 import numpy as np
 
+from reduction.record import Floats
 from reduction.report.htmltable import (
     NOT_GIVEN,
     Cell,
@@ -35,11 +36,32 @@ _QUANTITIES: tuple[tuple[str, str, Kind], ...] = (
     ("test_dissipation_spring_constant", "dissipation spring constant", "tension"),
     ("test_relaxation_time", "relaxation time", "time"),
     ("dynamic_stiffness", "dynamic stiffness", "tension"),
+    ("tensile_strength", "tensile strength", "tension"),
+    ("strain_at_failure", "strain at failure", "strain"),
+    ("pull_peak_tension", "greatest tension of the pull", "tension"),
+    ("interval_modulus", "modulus between readings", "stress"),
     ("relaxation_drop", "tension lost in", "strain"),
     ("relaxation_rate_per_decade", "tension lost per decade of time in", "strain"),
     ("creep_rate_per_decade", "strain gained per decade of time in", "strain"),
     ("long_time_tension", "tension that is tended to in", "tension"),
+    ("slack_strain_at_unloading", "strain where it goes slack", "strain"),
+    ("permanent_set", "growth of the slack length", "strain"),
 )
+_CURVES: tuple[tuple[str, str, str, Kind, Kind], ...] = (
+    ("tangent_modulus", "strain_bin", "modulus", "stress", "strain"),
+    (
+        "quasi_static_spring_constant", "tension_grid", "quasi-static spring constant", "tension",
+        "tension",
+    ),
+    (
+        "tangent_modulus_first_loading", "first_loading_strain_bin", "modulus of the first loading",
+        "stress", "strain",
+    ),
+    (
+        "branch_tension_first_loading", "first_loading_strain_bin",
+        "tension of the first loading", "tension", "strain",
+    ),
+)  # fmt: skip
 _PLACES = (0.1, 0.5, 0.9)
 Key = tuple[str, ...]
 
@@ -81,9 +103,9 @@ def answer_table(before: TestView | None, after: TestView | None) -> Table | Non
     view = after or before
     if view is None:
         return None
-    strains = _common_strains([one for one in (before, after) if one is not None])
-    old = {} if before is None else dict(_answers(before, strains))
-    new = {} if after is None else dict(_answers(after, strains))
+    places = _common_places([one for one in (before, after) if one is not None])
+    old = {} if before is None else dict(_answers(before, places))
+    new = {} if after is None else dict(_answers(after, places))
     rows = [_row(old.get(key), new.get(key)) for key in dict.fromkeys([*old, *new])]
     if not rows:
         return None
@@ -95,7 +117,7 @@ def answer_table(before: TestView | None, after: TestView | None) -> Table | Non
         remarks=[
             f"±: expanded uncertainty U, 95 %{f' ({factors})' if factors else ''}. Both columns"
             " are of one log and share its errors: a difference beyond a part of U is the choice"
-            " of settings, not chance. Moduli at a strain are read between the bins."
+            " of settings, not chance. Numbers of a curve are read between its points."
         ],
     )  # fmt: skip
 
@@ -114,7 +136,7 @@ def _row(old: _Answer | None, new: _Answer | None) -> list[Cell]:
     if old is None or new is None or not isfinite(new.value - old.value):
         return [*head, missing, missing, missing]
     if not _is_same_range(old, new):
-        return [*head, words("over another range"), missing, missing]
+        return [*head, words("another range"), missing, missing]
     moved = new.value - old.value
     share = 100 * moved / abs(old.value) if old.value else nan
     over = abs(moved) / old.half if isfinite(old.half) and old.half > 0 else nan
@@ -141,35 +163,49 @@ def _signed(value: float, factor: float) -> Cell:
     return Cell(f"{sign}{cell.text}", repr(float(value)) if isfinite(value) else "", True)
 
 
-def _common_strains(views: list[TestView]) -> dict[tuple[str, str], list[float]]:
-    """Strains at which every view has a modulus: the middle of the range and near its ends."""
-    ranges: dict[tuple[str, str], list[tuple[float, float]]] = {}
+def _common_places(views: list[TestView]) -> dict[Key, list[float]]:
+    """Places at which every view has a number of a curve: the middle of its range, near its ends.
+
+    In SI, by quantity, specimen and branch.
+    """
+    ranges: dict[Key, list[tuple[float, float]]] = {}
     for view in views:
-        strain, modulus = view.array("strain_bin"), view.array("tangent_modulus")
-        if strain is None or modulus is None:
-            continue
-        for index, specimen in enumerate(view.specimens):
-            for place, branch in enumerate(view.texts("branch_name")):
-                known = strain[np.isfinite(modulus[index, place])]
-                if known.size > 1:
-                    ends = (float(known[0]), float(known[-1]))
-                    ranges.setdefault((specimen, branch), []).append(ends)
+        for name, along, *_ in _CURVES:
+            axis, curves = view.array(along), _rows_of(view, name)
+            for key, row in curves.items():
+                known = np.isfinite(row)
+                if axis is not None and known.sum() > 1:
+                    ends = (float(axis[known][0]), float(axis[known][-1]))
+                    ranges.setdefault((name, *key), []).append(ends)
     found = {}
     for key, known_ends in ranges.items():
         low, high = max(one for one, _ in known_ends), min(one for _, one in known_ends)
         if len(known_ends) == len(views) and low < high:
-            digits = 2 if high - low > 0.08 else 4
+            # as few digits as tell the places apart
+            digits = 1 - int(np.floor(np.log10(high - low)))
             rounded = [round(low + place * (high - low), digits) for place in _PLACES]
             found[key] = [one for one in rounded if low <= one <= high]
     return found
 
 
-def _answers(
-    view: TestView, strains: dict[tuple[str, str], list[float]]
-) -> Iterator[tuple[Key, _Answer]]:
+def _rows_of(view: TestView, name: str, values: Floats | None = None) -> dict[Key, Floats]:
+    """Curves of a quantity by specimen and, where it has them, branch."""
+    values = view.array(name) if values is None else values
+    if values is None:
+        return {}
+    branches = view.texts("branch_name") if values.ndim > 2 else ("",)
+    rows = values.reshape(len(view.specimens), len(branches), -1)
+    return {
+        (specimen, branch): rows[index, place]
+        for index, specimen in enumerate(view.specimens)
+        for place, branch in enumerate(branches)
+    }
+
+
+def _answers(view: TestView, places: dict[Key, list[float]]) -> Iterator[tuple[Key, _Answer]]:
     if "cycle" in view.data.sizes:
         yield ("cycles",), _Answer("whole cycles", Shown("", 1.0), view.n_cycles)
-    yield from _at_strains(view, strains)
+    yield from _on_curves(view, places)
     for name, said, kind in _QUANTITIES:
         values = view.array(name)
         if values is None:
@@ -189,25 +225,25 @@ def _answers(
             yield (name, *(f"{dim}={index}" for dim, index in at.items())), answer
 
 
-def _at_strains(
-    view: TestView, strains: dict[tuple[str, str], list[float]]
-) -> Iterator[tuple[Key, _Answer]]:
-    """Moduli at some strains, between the bins by a straight line."""
-    strain, modulus = view.array("strain_bin"), view.array("tangent_modulus")
-    if strain is None or modulus is None:
-        return
-    spread = expanded_of(view, "tangent_modulus", modulus)
-    unit = shown("stress", view.units)
-    for (specimen, branch), wanted in strains.items():
-        place = (view.specimens.index(specimen), view.texts("branch_name").index(branch))
-        known = np.isfinite(modulus[place])
-        for one in wanted:
-            value, half, factor = (
-                float(np.interp(one, strain[known], row[place][known]))
-                for row in (modulus, spread.half, spread.factor)
-            )
-            said = f"modulus at {100 * one:g} %, {branch}, {specimen}"
-            yield ("at", specimen, branch, repr(one)), _Answer(said, unit, value, half, factor)
+def _on_curves(view: TestView, places: dict[Key, list[float]]) -> Iterator[tuple[Key, _Answer]]:
+    """Numbers of curves at some places, between the points by a straight line."""
+    for name, along, said, kind, of_axis in _CURVES:
+        axis, values = view.array(along), view.array(name)
+        if axis is None or values is None:
+            continue
+        spread = expanded_of(view, name, values)
+        halves, factors = _rows_of(view, name, spread.half), _rows_of(view, name, spread.factor)
+        unit, place_unit = shown(kind, view.units), shown(of_axis, view.units)
+        for key, row in _rows_of(view, name).items():
+            known = np.isfinite(row)
+            for one in places.get((name, *key), ()):
+                value, half, factor = (
+                    float(np.interp(one, axis[known], of[known]))
+                    for of in (row, halves[key], factors[key])
+                )
+                at = f"{said} at {one * place_unit.factor:.4g} {place_unit.unit}"
+                text = ", ".join(filter(None, (at, key[1], key[0])))
+                yield (name, *key, repr(one)), _Answer(text, unit, value, half, factor)
 
 
 def _range(view: TestView, place: tuple[int, ...]) -> tuple[float, float] | None:

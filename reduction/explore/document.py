@@ -86,7 +86,8 @@ def change_document(
     ]
     is_same = text.digest == session.text.digest
     old, new = (views[0], views[0]) if is_same else views
-    left_out = after.survey.plan.settings.cycles.break_in_cycles
+    of_cycles = [one.survey.plan.settings.cycles for one in (before, after)]
+    left_out = (of_cycles[0].break_in_cycles, of_cycles[1].break_in_cycles)
     table = answer_table(old, new)
     return {
         "test": test,
@@ -102,7 +103,7 @@ def change_document(
         "is_standing": before.is_standing,
         "seconds": after.seconds,
         "rows": after.survey.n_rows,
-        "is_slow": after.seconds > _SLOW,
+        "is_slow": not is_same and after.seconds > _SLOW,
     }
 
 

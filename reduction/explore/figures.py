@@ -27,15 +27,17 @@ _KEPT = "#009E73"
 _TINTS = {"ascending": COLOURS[0], "descending": COLOURS[1]}
 
 
-def draw_change(before: TestView | None, after: TestView | None, *, left_out: int) -> list[Figure]:
+def draw_change(
+    before: TestView | None, after: TestView | None, *, left_out: tuple[int, int]
+) -> list[Figure]:
     """Draw what a change does to a test.
 
     Parameters
     ----------
     before, after : TestView or None
         As campaign.toml is, and as it would be; None where the test cannot be reduced so.
-    left_out : int
-        First cycles that are left out of every mean, after the change.
+    left_out : tuple of int
+        First cycles that are left out of every mean, before and after the change.
 
     Returns
     -------
@@ -48,7 +50,8 @@ def draw_change(before: TestView | None, after: TestView | None, *, left_out: in
     return [
         *_moduli(before, after),
         *_differences(before, after),
-        *(_with_windows(one, view, left_out) for one in draw_record(view)),
+        *_one_cycle(before, after, left_out),
+        *(_with_windows(one, view, left_out[1]) for one in draw_record(view)),
         *draw_loops(view),
         *draw_pull(view),
         *draw_holds(view),
@@ -156,6 +159,72 @@ def _differences(before: TestView | None, after: TestView | None) -> list[Figure
                 )
             )  # fmt: skip
     return found
+
+
+def _one_cycle(
+    before: TestView | None, after: TestView | None, left_out: tuple[int, int]
+) -> list[Figure]:
+    """The cycle in the middle, with the part of its branches that enters the means."""
+    view = after or before
+    if view is None or view.n_cycles == 0:
+        return []
+    time, number = view.array("time"), view.array("cycle_number")
+    channel = _control_of(view)
+    if time is None or number is None or channel is None:
+        return []
+    label, values = channel
+    cycle = view.stored_near(np.array([(view.n_cycles + 1) // 2], dtype=np.float64))[0]
+    own = np.flatnonzero(number == cycle)
+    if own.size == 0:
+        return []
+    first, last = float(time[own[0]]), float(time[own[-1]])
+    some = own[keep_extremes(time[own], values[own], limit=POINTS)]
+    data = [line(time[some], values[some], name="cycle", colour=_OLD, width=1.0, x_digits=9)]
+    parts = [("in the means, as it is", before, left_out[0], "#E69F00", 9.0, 0.6)]
+    parts.append(("in the means, changed", after, left_out[1], _KEPT, 3.0, 1.0))
+    for name, one, out, tint, width, opacity in parts:
+        if one is None or (one is before and before is after):
+            continue
+        data += _kept_between(one, first, last, out, name, tint, width, opacity)
+    unit = shown("time", view.units)
+    return [
+        make_figure(
+            "cycle", f"{view.id}: trim of cycle {cycle:.0f}",
+            "The cycle in the middle of the test. Thick: the samples at a constant rate, which are"
+            " what enters the means; the ends are cut off.",
+            data, synthetic=view.is_synthetic, height=320, is_wide=True,
+            xaxis=axis(unit.label("time")), yaxis=axis(label),
+        )
+    ]  # fmt: skip
+
+
+def _control_of(view: TestView) -> tuple[str, Floats] | None:
+    """Label and values, as shown, of the channel on which reversals are found."""
+    position, tension = position_of(view), view.array("tension")
+    if view.attribute("control") == "load" or position is None:
+        if tension is None:
+            return None
+        force = shown("tension", view.units)
+        return force.label("tension, mean of the specimens"), tension.mean(axis=0) * force.factor
+    length = shown("length", view.units)
+    return length.label(position[0]), position[1] * length.factor
+
+
+def _kept_between(
+    view: TestView, first: float, last: float, left_out: int, name: str, tint: str, width: float,
+    opacity: float,
+) -> list[Trace]:  # fmt: skip
+    """Samples between two times that enter the means, a gap between windows."""
+    kept, time, channel = _in_means(view, left_out), view.array("time"), _control_of(view)
+    if kept is None or time is None or channel is None:
+        return []
+    own = np.flatnonzero(kept & (time >= first) & (time <= last))
+    if own.size == 0:
+        return []
+    window = np.cumsum(np.diff(own, prepend=own[0]) > 1, dtype=np.int64)
+    some = keep_extremes(time[own], channel[1][own], limit=POINTS)
+    x, y = with_gaps(window[some], time[own][some], channel[1][own][some])
+    return [line(x, y, name=name, colour=tint, width=width, opacity=opacity, x_digits=9)]
 
 
 def _with_windows(figure: Figure, view: TestView, left_out: int) -> Figure:

@@ -28,6 +28,7 @@ from reduction.campaign.load import load_campaign
 from reduction.campaign.plan import Campaign
 from reduction.errors import ReductionError, SettingsError
 from reduction.explore.file import CampaignText
+from reduction.explore.memory import Memory
 from reduction.explore.records import KeptRecords
 
 __all__ = ["Made", "Session"]
@@ -89,15 +90,17 @@ class Session:
         self.path = path
         self._processed = processed
         self._records = KeptRecords()
+        self._memory = Memory()
         self._made: dict[tuple[str, str], Made] = {}
         self._load(progress or Silent())
 
     def _load(self, progress: Progress) -> None:
-        self.text = CampaignText.read(self.path)
-        self.campaign = load_campaign(self.path, text=self.text.text)
-        first = survey_campaign(self.campaign, progress=progress)
+        text = CampaignText.read(self.path)
+        campaign = load_campaign(self.path, text=text.text)
+        first = survey_campaign(campaign, progress=progress)
         first.kept.clear()
-        self.surveys = first.surveys
+        # all of it, or what was there before
+        self.text, self.campaign, self.surveys = text, campaign, first.surveys
         self._made.clear()
         self._settings: dict[str, str] = {}
 
@@ -170,7 +173,9 @@ class Session:
             try:
                 basis = now.basis(survey)
                 is_standing = self._is_standing(survey, basis)
-                dataset, _ = dataset_of(now.campaign, survey, basis, command=COMMAND)
+                dataset, _ = dataset_of(
+                    now.campaign, survey, basis, command=COMMAND, recall=self._memory
+                )
             except Exception as failure:
                 # one text of many that are tried, even where the failure is a defect here
                 error = as_reduction_error(failure)

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_increasing, as_same_shape
 from reduction.errors import DataError
 from reduction.record import Floats, freeze_arrays
+from reduction.samples.blocks import sample_blocks
 
 __all__ = ["Blocks", "logarithmic_blocks"]
 
@@ -97,9 +98,16 @@ def logarithmic_blocks(
             found="no samples" if time.size == 0 else f"{time[0]:g} s",
             needed="a positive time",
         )
-    number = np.floor(np.log10(time / time[0]) * per_decade).astype(np.intp)
-    first = np.flatnonzero(np.diff(number, prepend=-1))
-    count = np.diff(first, append=time.size).astype(np.float64)
-    return Blocks(
-        np.add.reduceat(time, first) / count, np.add.reduceat(series, first) / count, count
-    )
+    begin = time[0]
+    last = int(np.log10(time[-1] / begin) * per_decade)
+    sums = np.zeros((3, last + 1))
+    for part in sample_blocks(time.size, time, series):
+        number = np.floor(np.log10(time[part] / begin) * per_decade).astype(np.intp)
+        first = np.flatnonzero(np.diff(number, prepend=-1))
+        here = np.minimum(number[first], last)  # rounding of a logarithm may pass the last one
+        count = np.diff(first, append=number.size)
+        np.add.at(sums[0], here, np.add.reduceat(time[part], first))
+        np.add.at(sums[1], here, np.add.reduceat(series[part], first))
+        np.add.at(sums[2], here, count)
+    elapsed_sum, value_sum, count = sums[:, sums[2] > 0]
+    return Blocks(elapsed_sum / count, value_sum / count, count)

@@ -18,6 +18,10 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_increasing, as_same_shape
 from reduction.record import Floats
+from reduction.samples.blocks import BLOCK, finite_extremes, sample_blocks
+from reduction.samples.columns import chosen, mean_of
+from reduction.samples.scratch import let_go
+from reduction.samples.search import last_sample
 
 __all__ = ["Ramp", "begins_inside", "find_ramp"]
 
@@ -93,30 +97,34 @@ def find_ramp(
     """
     seconds = as_increasing("time", time)
     seconds, place, load = as_same_shape(time=seconds, position=position, tension=tension)
-    reach, _ = _way_back(place, band)
-    if reach.size == 0:
+    way = _way_back(place, band)
+    if way is None:
         return None
     # The last sample within the band of the far end: a standstill there is no part of the ramp.
-    first = place.size - 1 - int(np.flatnonzero(reach >= reach.max() - band)[0])
+    first = last_sample(
+        lambda part: way.sign * (place[part] - place[-1]) >= way.reach - band,
+        way.first, place.size, place,
+    )  # fmt: skip
     seconds, place, load = seconds[first:], place[first:], load[first:]
     end = float(seconds[-1])
-    rise = load[-1] - load[0]
-    added = (load - load[0]) / rise if rise > 0 else (place - place[0]) / (place[-1] - place[0])
-    before = float(np.trapezoid(added, seconds))
-    left, step = end - seconds, np.diff(seconds)
-    # Exact where both factors are straight between samples: a ramp may have few of them.
-    middle = (left[1:] + left[:-1]) * (added[1:] + added[:-1]) / 2
-    square = float(step @ (left[1:] * added[1:] + left[:-1] * added[:-1] + 2 * middle)) / 3
+    adds = load if load[-1] > load[0] else place
+    lowest, rise = float(adds[0]), float(adds[-1] - adds[0])
+    before = square = 0.0
+    for part in sample_blocks(seconds.size, seconds, adds, overlap=1):
+        added, left = (adds[part] - lowest) / rise, end - seconds[part]
+        before += float(np.trapezoid(added, seconds[part]))
+        # Exact where both factors are straight between samples: a ramp may have few of them.
+        middle = (left[1:] + left[:-1]) * (added[1:] + added[:-1]) / 2
+        both = left[1:] * added[1:] + left[:-1] * added[:-1] + 2 * middle
+        square += float(np.diff(seconds[part]) @ both) / 3
     centre = end - before
     spread = max(0.0, square - before**2)
-    upper = np.abs(place - place[-1]) <= 0.5 * abs(place[-1] - place[0])
-    stroke = np.ptp(place[upper])
     return Ramp(
         start_time=float(seconds[0]),
         end_time=end,
         centre_time=min(end, max(float(seconds[0]), centre)),
         duration=min(end - float(seconds[0]), float(np.sqrt(12 * spread))),
-        stiffness=float(np.polyfit(place[upper], load[upper], 1)[0]) if stroke > 0 else np.nan,
+        stiffness=_upper_slope(place, load),
     )
 
 
@@ -145,18 +153,52 @@ def begins_inside(position: ArrayLike, *, band: float) -> bool:
     >>> begins_inside([0.0, 1.0, 2.0], band=0.1), begins_inside([5.0, 0.0, 1.0, 2.0], band=0.1)
     (False, True)
     """
-    return _way_back(np.asarray(position, dtype=np.float64), band)[1]
+    way = _way_back(np.asarray(position, dtype=np.float64), band)
+    return way is not None and way.turned
 
 
-def _way_back(place: Floats, band: float) -> tuple[Floats, bool]:
-    """Distance from the last sample, backwards through the last motion; whether a turn ends it.
+@dataclass(frozen=True)
+class _Way:
+    """The last motion of a record: its first sample, or one before it, and how far it came.
 
-    Positive in the direction from which the crosshead came; empty without motion.
+    ``reach`` is its greatest distance from the last sample, times ``sign`` positive in the
+    direction from which the crosshead came; ``turned`` is true where a turn begins it.
     """
-    away = place - place[-1]
-    distant = np.flatnonzero(np.abs(away) > band)
-    if distant.size == 0:
-        return np.empty(0), False
-    back = (away * np.sign(away[distant[-1]]))[::-1]
-    turned = np.flatnonzero(np.maximum.accumulate(back) - back > band)
-    return (back[: turned[0]], True) if turned.size else (back, False)
+
+    first: int
+    sign: float
+    reach: float
+    turned: bool
+
+
+def _way_back(place: Floats, band: float) -> _Way | None:
+    """The last motion, looked for backwards from the last sample; None without motion."""
+    end = place[-1]
+    distant = last_sample(lambda part: np.abs(place[part] - end) > band, 0, place.size, place)
+    if distant is None:
+        return None
+    sign, reach = float(np.sign(place[distant] - end)), -np.inf
+    for stop in range(place.size, 0, -BLOCK):
+        back = sign * (place[max(stop - BLOCK, 0) : stop] - end)[::-1]
+        reached = np.maximum(np.maximum.accumulate(back), reach)
+        let_go(place)
+        turned = np.flatnonzero(reached - back > band)
+        if turned.size:
+            at = int(turned[0])
+            return _Way(stop - at, sign, float(reached[at]), turned=True)
+        reach = float(reached[-1])
+    return _Way(0, sign, reach, turned=False)
+
+
+def _upper_slope(place: Floats, load: Floats) -> float:
+    """Slope of tension on position over the last half of a stroke; NaN where it has none."""
+    half = 0.5 * abs(place[-1] - place[0])
+    x, y = chosen(lambda part: np.abs(place[part] - place[-1]) <= half, place, load)
+    middle, level = mean_of(x), mean_of(y)
+    square = product = 0.0
+    for part in sample_blocks(x.size, x, y):
+        off = x[part] - middle
+        square += float(off @ off)
+        product += float(off @ (y[part] - level))
+    low, high = finite_extremes(x)
+    return product / square if high > low else float("nan")

@@ -9,6 +9,7 @@ References
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -23,6 +24,7 @@ from reduction.holds.relaxation import Rate, rate_per_decade, value_at_times
 from reduction.holds.select import select_hold
 from reduction.holds.support import SIGNIFICANT, Ends, Hold, hold_ends, reasons_against
 from reduction.phases.standstill import Standstills
+from reduction.samples.columns import chosen, mean_of, shifted
 from reduction.settings import HoldSettings
 
 __all__ = ["reduce_holds"]
@@ -38,8 +40,10 @@ def _rate(hold: Hold, ends: Ends) -> Rate | None:
             "is not known"
         )
         return None
-    kept = hold.since_centre > 0
-    blocks = logarithmic_blocks(hold.since_centre[kept], hold.tension[kept] / ends.initial)
+    since = hold.since_centre
+    later = int(np.searchsorted(since, 0.0, side="right"))
+    blocks = logarithmic_blocks(since[later:], hold.tension[later:])
+    blocks = replace(blocks, value=blocks.value / ends.initial)
     try:
         slope = rate_per_decade(blocks, ramp_duration=hold.ramp_duration)
     except DataError as error:
@@ -66,8 +70,8 @@ def _prony(hold: Hold, ends: Ends, settings: HoldSettings) -> PronyFit | None:
     ramp_end = float(hold.time[0])
     if hold.ramp is not None:
         ramp_end = max(ramp_end, hold.ramp.centre_time + hold.ramp.duration / 2)
-    kept = hold.time > ramp_end
-    blocks = logarithmic_blocks(hold.time[kept] - ramp_end, hold.tension[kept])
+    later = int(np.searchsorted(hold.time, ramp_end, side="right"))
+    blocks = logarithmic_blocks(shifted(hold.time[later:], ramp_end), hold.tension[later:])
     try:
         return fit_prony(
             blocks.elapsed,
@@ -89,14 +93,12 @@ def _creep(hold: Hold) -> Rate | None:
             "is not known"
         )
         return None
-    kept = (hold.since_centre > 0) & np.isfinite(hold.strain)
+    since, strain = hold.since_centre, hold.strain
+    series = chosen(
+        lambda part: (since[part] > 0) & np.isfinite(strain[part]), since, strain, hold.tension
+    )
     try:
-        return creep_rate(
-            hold.since_centre[kept],
-            hold.strain[kept],
-            hold.tension[kept],
-            ramp_duration=hold.ramp_duration,
-        )
+        return creep_rate(*series, ramp_duration=hold.ramp_duration)
     except DataError as error:
         hold.refusals.append(f"rate per decade: {error.problem}")
         return None
@@ -143,16 +145,14 @@ def _result(
     prony: PronyFit | None = None
     tension_at = strain_at = (nothing, nothing)
     ends = Ends(*(np.nan,) * 6)
-    known = np.isfinite(hold.strain)
+    times_known, known = chosen(lambda part: np.isfinite(hold.strain[part]), hold.time, hold.strain)
     if hold.time.size < 3:
         hold.refusals.append(f"everything: {hold.time.size} samples in the hold")
     else:
         ends = hold_ends(hold)
-        tension_at = value_at_times(hold.time - hold.start_time, hold.tension, times)
-        if known.sum() > 1:
-            strain_at = value_at_times(
-                hold.time[known] - hold.start_time, hold.strain[known], times
-            )
+        tension_at = value_at_times(shifted(hold.time, hold.start_time), hold.tension, times)
+        if known.size > 1:
+            strain_at = value_at_times(shifted(times_known, hold.start_time), known, times)
         reasons = reasons_against(hold, ends, settings) if kind == "relaxation" else []
         hold.refusals.extend(f"drop, rate per decade, Prony series: {one}" for one in reasons)
         if kind == "creep":
@@ -168,7 +168,7 @@ def _result(
         kind=kind,
         hold_start_time=hold.start_time,
         hold_duration=hold.duration,
-        hold_strain=float(np.mean(hold.strain[known])) if known.any() else np.nan,
+        hold_strain=mean_of(known) if known.size else np.nan,
         hold_initial_tension=ends.initial,
         hold_final_tension=ends.final,
         relaxation_drop=drop.value,

@@ -24,6 +24,9 @@ from reduction.holds.blocks import Blocks
 from reduction.moduli.noise import sample_noise
 from reduction.moduli.separable import lag_one_inflation
 from reduction.record import Floats
+from reduction.samples.blocks import sample_blocks
+from reduction.samples.columns import chosen, mean_of, median_step_reaches
+from reduction.samples.scratch import let_go
 
 __all__ = [
     "RAMP_TIMES_LEFT_OUT",
@@ -123,13 +126,13 @@ def end_mean(values: ArrayLike, *, n_samples: int, at_end: bool) -> tuple[float,
     >>> mean
     3.0
     """
-    series = np.asarray(values, dtype=np.float64)
-    series = series[np.isfinite(series)]
+    whole = np.asarray(values, dtype=np.float64)
+    (series,) = chosen(lambda part: np.isfinite(whole[part]), whole)
     noise, quantum = sample_noise(series)
     count = max(1, min(n_samples, series.size))
     stretch = series[-count:] if at_end else series[:count]
     variance = noise**2 / count + (quantum**2 / 12 if noise < quantum / 2 else 0.0)
-    return float(stretch.mean()), float(np.sqrt(variance))
+    return mean_of(stretch), float(np.sqrt(variance))
 
 
 def rate_per_decade(blocks: Blocks, *, ramp_duration: float) -> Rate:
@@ -230,18 +233,26 @@ def value_at_times(
         first, last = np.searchsorted(time, [0.9 * wanted, 1.1 * wanted])
         if last - first < 4:
             # Too few samples for a line of their own: the two beside the time.
-            close = after == 0 or time[after] - time[after - 1] <= max(0.2 * wanted, _step(time))
-            if close:
-                found[index], spread[index] = np.interp(wanted, time, series), noise
+            gap = float(time[after] - time[after - 1]) if after else 0.0
+            if gap <= 0.2 * wanted or median_step_reaches(time, 1.5, gap):
+                beside = slice(max(after - 1, 0), after + 1)
+                found[index] = np.interp(wanted, time[beside], series[beside])
+                spread[index] = noise
             continue
-        x, y = time[first:last] - wanted, series[first:last]
-        mean = x.mean()
-        square = float((x - mean) @ (x - mean))
-        slope = float((x - mean) @ y) / square
-        found[index] = y.mean() - slope * mean
-        spread[index] = noise * np.sqrt(1 / x.size + mean**2 / square)
+        found[index], spread[index] = _on_line(
+            time[first:last], series[first:last], wanted, noise=noise
+        )
+        let_go(time, series)
     return found, spread
 
 
-def _step(time: Floats) -> float:
-    return float(np.median(np.diff(time))) * 1.5
+def _on_line(time: Floats, series: Floats, wanted: float, *, noise: float) -> tuple[float, float]:
+    """Value of the regression of a series at a time, and its standard uncertainty."""
+    count = time.size
+    mean, square, product = mean_of(time) - wanted, 0.0, 0.0
+    for part in sample_blocks(count, time, series):
+        off = (time[part] - wanted) - mean
+        square += float(off @ off)
+        product += float(off @ series[part])
+    value = mean_of(series) - product / square * mean
+    return value, noise * float(np.sqrt(1 / count + mean**2 / square))

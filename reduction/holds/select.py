@@ -14,8 +14,10 @@ import numpy as np
 from reduction.holds.ramp import Ramp, begins_inside, find_ramp
 from reduction.holds.support import Hold
 from reduction.phases.standstill import Standstills
-from reduction.record import Floats, Integers
+from reduction.record import Bools, Floats
 from reduction.samples.blocks import sample_blocks
+from reduction.samples.columns import chosen
+from reduction.samples.scratch import empty_like
 
 __all__ = ["select_hold"]
 
@@ -24,27 +26,30 @@ _LOOKED_BACK = 1 << 16
 holds."""
 
 
-def _finite_rows(time: Floats, *series: Floats) -> Integers:
-    """Rows whose values are finite."""
-    finite = np.isfinite(time)
+def _finite_times(part: slice, time: Floats, *series: Floats) -> Floats:
+    """Times of the samples of a part, -inf where one of their values is not finite."""
+    finite = np.isfinite(time[part])
     for one in series:
-        finite &= np.isfinite(one)
-    return np.flatnonzero(finite)
+        finite &= np.isfinite(one[part])
+    return np.where(finite, time[part], -np.inf)
 
 
-def _sound_rows(time: Floats, *series: Floats, after: float = -np.inf) -> Integers:
-    """Rows whose values are finite and whose time is later than all before."""
-    rows = _finite_rows(time, *series)
-    latest = np.maximum.accumulate(np.concatenate([[after], time[rows]]))
-    return rows[np.diff(latest) > 0]
+def _is_sound(time: Floats, *series: Floats, after: float = -np.inf) -> Bools:
+    """Which samples have finite values and a time that is later than all before."""
+    is_sound, latest = empty_like(time, dtype=bool), after
+    for part in sample_blocks(time.size, time, *series, is_sound):
+        known = _finite_times(part, time, *series)
+        reached = np.maximum.accumulate(np.concatenate([[latest], known]))
+        np.greater(known, reached[:-1], out=is_sound[part])
+        latest = float(reached[-1])
+    return is_sound
 
 
 def _latest(time: Floats, *series: Floats) -> float:
-    """Latest time of rows whose values are finite."""
+    """Latest time of samples whose values are finite."""
     latest = -np.inf
     for part in sample_blocks(time.size, time, *series):
-        rows = _finite_rows(time[part], *(one[part] for one in series))
-        latest = time[part][rows].max(initial=latest)
+        latest = _finite_times(part, time, *series).max(initial=latest)
     return float(latest)
 
 
@@ -55,13 +60,12 @@ def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) ->
         n_looked = min(max(2 * n_looked, _LOOKED_BACK), time.size)
         start = time.size - n_looked
         whole = time, moved, answer
-        rows = start + _sound_rows(
-            *(one[start:] for one in whole), after=_latest(*(one[:start] for one in whole))
-        )
-        before = [one[rows] for one in whole]
-        if rows.size > 2 and begins_inside(before[1], band=band):
+        looked = [one[start:] for one in whole]
+        is_sound = _is_sound(*looked, after=_latest(*(one[:start] for one in whole)))
+        before = chosen(is_sound.__getitem__, *looked)
+        if before[0].size > 2 and begins_inside(before[1], band=band):
             break
-    return find_ramp(*before, band=band) if rows.size > 2 else None
+    return find_ramp(*before, band=band) if before[0].size > 2 else None
 
 
 def select_hold(
@@ -121,8 +125,8 @@ def select_hold(
     first, last = int(standstills.first[index]), int(standstills.last[index])
     begin = int(standstills.first[index - 1]) if index else 0
     inside = slice(first, last + 1)
-    rows = first + _sound_rows(time[inside], position[inside], tension[inside])
-    seconds, place, load, stretch = (one[rows] for one in (time, position, tension, strain))
+    held = [one[inside] for one in (time, position, tension, strain)]
+    seconds, place, load, stretch = chosen(_is_sound(*held[:3]).__getitem__, *held)
     # under load control the machine moves the tension, and the length answers
     moved, answer, band = position, tension, standstills.position_tolerance
     if standstills.tension_tolerance is not None:

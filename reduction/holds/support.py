@@ -17,6 +17,8 @@ from reduction.holds.ramp import Ramp
 from reduction.holds.relaxation import end_mean, relaxation_drop
 from reduction.moduli.steps import find_steps
 from reduction.record import Floats
+from reduction.samples.blocks import BLOCK, sample_blocks
+from reduction.samples.columns import chosen, median_step_reaches, shifted
 from reduction.settings import HoldSettings
 
 __all__ = ["SIGNIFICANT", "Ends", "Hold", "hold_ends", "reasons_against"]
@@ -68,7 +70,7 @@ class Hold:
     @property
     def strain_uncertainty(self) -> float:
         """Of its mean strain (type A); NaN with fewer than two readings. [1]."""
-        known = self.strain[np.isfinite(self.strain)]
+        (known,) = chosen(lambda part: np.isfinite(self.strain[part]), self.strain)
         if known.size < 2:
             return float("nan")
         return end_mean(known, n_samples=known.size, at_end=True)[1]
@@ -76,7 +78,8 @@ class Hold:
     @property
     def since_centre(self) -> Floats:
         """Time from the centre of the ramp, or from the first sample where none is known. [s]."""
-        return self.time - (self.time[0] if self.ramp is None else self.ramp.centre_time)
+        centre = self.time[0] if self.ramp is None else self.ramp.centre_time
+        return shifted(self.time, float(centre))
 
     @property
     def ramp_duration(self) -> float:
@@ -157,14 +160,16 @@ def hold_ends(hold: Hold) -> Ends:
 
 def _step_reason(hold: Hold) -> str | None:
     """Name a step of tension inside the hold, where there is one."""
-    gaps = np.diff(hold.time)
-    if hold.time.size < FEWEST_SAMPLES or gaps.max() > 3 * np.median(gaps):
+    if hold.time.size < FEWEST_SAMPLES or not median_step_reaches(
+        hold.time, 3, _longest_step(hold.time)
+    ):
         return None
     size = -(-hold.time.size // STEP_BLOCKS)
     whole = hold.time.size // size * size
-    series = hold.tension[:whole].reshape(-1, size).mean(axis=1)
-    if series.size < 24:
+    if whole < 24 * size:
         return None
+    parts = sample_blocks(whole, hold.tension, size=size * max(1, BLOCK // size))
+    series = np.concatenate([hold.tension[part].reshape(-1, size).mean(axis=1) for part in parts])
     steps = find_steps(series, false_alarm=STEP_FALSE_ALARM)
     if not steps:
         return None
@@ -173,6 +178,13 @@ def _step_reason(hold: Hold) -> str | None:
     return (
         f"tension steps by {largest.size:.3g} N at {when:.0f} s into the hold, which "
         "relaxation does not explain (a slip of the splice?)"
+    )
+
+
+def _longest_step(time: Floats) -> float:
+    return max(
+        float(np.diff(time[part]).max(initial=0.0))
+        for part in sample_blocks(time.size, time, overlap=1)
     )
 
 

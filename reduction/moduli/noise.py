@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
+from reduction.samples.blocks import sample_blocks
 
 __all__ = ["sample_noise"]
 
@@ -51,6 +52,10 @@ def sample_noise(values: ArrayLike) -> tuple[float, float]:
     if series.size < 2:
         raise DataError("no noise can be read from one sample", found=f"{series.size}", needed="2")
     steps = np.diff(np.unique(series[:4096]))
-    steps = steps[steps > 1e-9 * max(1e-300, float(np.max(np.abs(series))))]
-    noise = float(np.sqrt(np.mean(np.diff(series) ** 2) / 2))
+    greatest, squares = [], 0.0
+    for part in sample_blocks(series.size, series, overlap=1):
+        greatest.append(np.max(np.abs(series[part])))
+        squares += float(np.sum(np.diff(series[part]) ** 2))
+    steps = steps[steps > 1e-9 * max(1e-300, float(np.max(greatest)))]
+    noise = float(np.sqrt(squares / (series.size - 1) / 2))
     return noise, float(steps.min()) if steps.size else 0.0

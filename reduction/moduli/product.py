@@ -191,6 +191,7 @@ class PeakTrend:
     dynamic_modulus_per_decade: Floats
     dynamic_modulus_per_decade_standard_uncertainty: Floats
     peak_tension_change: Floats
+    peak_tension_change_standard_uncertainty: Floats
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

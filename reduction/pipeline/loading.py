@@ -13,6 +13,7 @@ from reduction.moduli.first_loading import first_loading_curves
 from reduction.moduli.product import ElastomerFit, ModulusCurves
 from reduction.moduli.stress_at import stress_at_strain
 from reduction.pipeline.locate import Located
+from reduction.pipeline.recall import Recall, plainly
 from reduction.product import History
 from reduction.record import Bools, Floats, Specimen, areas_of
 from reduction.samples.search import first_sample
@@ -23,7 +24,13 @@ __all__ = ["parts_of_first_loading"]
 
 
 def _elastomers(
-    name: str, strain: Floats, stress: Floats, earlier_maximum_strain: float, *, is_first: bool
+    name: str,
+    strain: Floats,
+    stress: Floats,
+    earlier_maximum_strain: float,
+    *,
+    is_first: bool,
+    recall: Recall,
 ) -> tuple[tuple[ElastomerFit, ...], str]:
     """Hyperelastic laws of one first loading, or the reason why there are none."""
     known = np.isfinite(stress)
@@ -36,7 +43,7 @@ def _elastomers(
             f"({reached}); is the kind of the test right, and where strain is zero?"
         )
     try:
-        fits = fit_elastomers(strain[known], stress[known], specimen=name)
+        fits = recall(fit_elastomers, strain[known], stress[known], specimen=name)
     except (DataError, FitError) as error:
         return (), f"{name}: no hyperelastic law from the first loading: {error}"
     if is_first:
@@ -81,6 +88,7 @@ def parts_of_first_loading(
     history: History | None,
     *,
     kind: str,
+    recall: Recall = plainly,
 ) -> tuple[dict[str, Any], list[str]]:
     """The first rise of a record that begins slack: curve; of rubber, stress and laws too.
 
@@ -144,6 +152,7 @@ def parts_of_first_loading(
             rise[index] / area[index],
             float(earlier[index]),
             is_first=is_first[index],
+            recall=recall,
         )
         for index, name in enumerate(names)
         if rubber[index]

@@ -10,7 +10,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.resources import files
 
@@ -32,33 +32,25 @@ from reduction.report.clientfields import (
     method,
     missing_of,
 )
+from reduction.report.clientfigures import chosen_figures, chosen_parts, drawings, not_drawn
 from reduction.report.conformitytable import conformity_table
 from reduction.report.designtables import design_tables
-from reduction.report.figure import Figure
-from reduction.report.figures.campaign import draw_all_moduli
 from reduction.report.htmltable import Table, factors_of, make_table, number, words
 from reduction.report.instruments import instrument_sentences, instrument_table
-from reduction.report.section import Part, Section
+from reduction.report.section import Section
 from reduction.report.specimentables import specimen_notes, specimen_table
 from reduction.report.style import shorten
 from reduction.report.summary import Finding, test_table
 from reduction.report.uncertainty import DRAWN, factor_words
-from reduction.report.vector import can_be_drawn, vector_of
 from reduction.report.view import Status, TestView, any_synthetic
 from reduction.report.whole import WholeCampaign
 from reduction.units import UnitSystem
 
-__all__ = ["PAGE_NAME", "ClientContent", "missing_fields", "render_client_report"]
+__all__ = ["PAGE_NAME", "ClientContent", "render_client_report"]
 
 PAGE_NAME = "client-report.html"
 _MOST_COLUMNS = 5
-_BANDS = (
-    " Bands: ± expanded uncertainty, the inner of scatter alone, the outer of all that is known."
-)
-_HOLDS = "Holds"
-_OF_HOLDS = ("relaxation", "creep")
-_TABLES = ("Stepwise readings", "Slow pull", _HOLDS)
-_FIGURES = ("Modulus against strain", "Loops", "Slow pull", "Stepwise readings", _HOLDS)
+_TABLES = ("Stepwise readings", "Slow pull", "Holds")
 _IN_FULL = {
     "K_ap": "apparent spring constant K_ap", "H": "hysteresis energy H",
     "K_1": "dissipation spring constant K_1", "tau": "relaxation time tau",
@@ -85,20 +77,6 @@ class ClientContent:
     units: UnitSystem
 
 
-@dataclass(frozen=True)
-class _Drawing:
-    """A figure with its caption; a wide one takes the whole width of the page."""
-
-    vector: Markup
-    caption: str
-    is_wide: bool = False
-
-
-def missing_fields(details: ReportDetails, tests: Sequence[TestView]) -> list[str]:
-    """Return the labels of the fields that nobody stated."""
-    return missing_of(_groups(details, tests).values())
-
-
 def _groups(details: ReportDetails, tests: Sequence[TestView]) -> dict[str, list[Entry]]:
     return {
         "identification": identification(details, tests),
@@ -113,13 +91,16 @@ def render_client_report(content: ClientContent) -> str:
     details, tests, units = content.details, content.tests, content.units
     synthetic = any_synthetic(tests) or content.whole.is_synthetic
     label = f"Report {details.number or NOT_STATED}, revision {details.revision}"
+    figures = list(chosen_figures(tests, content.sections))
     environment_of = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     room = files("reduction.report")
     template = environment_of.from_string((room / "templates" / "client.html").read_text("utf-8"))
+    groups = _groups(details, tests)
     return template.render(
-        **_groups(details, tests),
+        **groups,
+        missing=missing_of(groups.values()),
         style=Markup(  # noqa: S704  # the style of the package; what stands on each sheet is quoted
             _sheet_style(details, label, synthetic=synthetic)
             + (room / "static" / "client.css").read_text("utf-8")
@@ -132,12 +113,13 @@ def render_client_report(content: ClientContent) -> str:
         items=item_table(details, tests),
         specimens=specimen_table(tests, units) if tests else None,
         specimen_notes=specimen_notes(tests),
-        tests=test_table(tests, content.statuses) if tests or content.statuses else None,
+        tests=_tests(content),
         calibration=calibration_table(details, tests),
         instruments=instrument_table(tests, units),
         instrument_notes=instrument_sentences(tests),
         results=_results(content),
-        drawings=_drawings(content),
+        drawings=drawings(figures),
+        not_drawn=not_drawn(figures),
         conformity=conformity_table(details, tests, units),
         doubts=[one for one in content.faults if one.severity in ("failure", "warning")],
         statements=_STATEMENTS,
@@ -153,7 +135,7 @@ def _results(content: ClientContent) -> list[Table]:
     found += [table for view in content.tests if (table := _answers(view)) is not None]
     found += [
         replace(table, caption=f"{section.title}: {table.caption}")
-        for section, part in _parts(content, _TABLES)
+        for section, part in chosen_parts(content.tests, content.sections, _TABLES)
         for table in part.tables
     ]
     return [*found, *content.whole.answers]
@@ -221,33 +203,17 @@ def _by_columns(table: Table) -> list[Table]:
     return found
 
 
-def _parts(content: ClientContent, headings: Collection[str]) -> Iterator[tuple[Section, Part]]:
-    """Give parts of the sections of the tests; of holds those that a test was made for."""
-    kinds = {view.key: view.kind for view in content.tests}
-    for section in content.sections:
-        for part in section.parts:
-            is_asked = part.heading in headings
-            if is_asked and (part.heading != _HOLDS or kinds.get(section.key) in _OF_HOLDS):
-                yield section, part
-
-
-def _drawings(content: ClientContent) -> list[_Drawing]:
-    wide = [one for one in draw_all_moduli(content.tests) if can_be_drawn(one)]
-    narrow = [
-        one for _, part in _parts(content, _FIGURES) for one in part.figures if can_be_drawn(one)
-    ]
-    return [
-        *(_drawing(one, is_wide=True) for one in wide),
-        *(_drawing(one, is_wide=False) for one in narrow),
-    ]
-
-
-def _drawing(figure: Figure, *, is_wide: bool) -> _Drawing:
-    size = {"width": 680.0, "height": 360.0} if is_wide else {"width": 440.0, "height": 262.0}
-    caption, *about = figure.caption.split(" Inner band:")
-    caption += _BANDS if about else ""
-    # the drawing escapes what it is given
-    return _Drawing(Markup(vector_of(figure, **size)), caption, is_wide)  # noqa: S704
+def _tests(content: ClientContent) -> Table | None:
+    """Return the tests; of what the software did with each only that it failed."""
+    if not (content.tests or content.statuses):
+        return None
+    table = test_table(content.tests, content.statuses)
+    if any(row.status == "failed" for row in content.statuses) or len(content.statuses) > len(
+        content.tests
+    ):
+        return table
+    rows = tuple(row[:-1] for row in table.rows)
+    return replace(table, columns=table.columns[:-1], rows=rows)
 
 
 def _raw_file_table(tests: Sequence[TestView], *, synthetic: bool) -> Table | None:

@@ -15,6 +15,7 @@ from reduction.report.view import TestView, any_synthetic
 from reduction.uncertainty.budget import Budget
 from reduction.uncertainty.conformity import conformity
 from reduction.units import UnitSystem, display_unit
+from reduction.vocabulary import quantity
 
 __all__ = ["RULES", "conformity_table"]
 
@@ -32,6 +33,7 @@ RULES: dict[DecisionRule, str] = {
     ),
 }
 _IN_MEGA = 1e6
+_REACHES = "no statement: the interval reaches over a limit"
 
 
 def conformity_table(
@@ -61,9 +63,9 @@ def _row(one: Limit, view: TestView | None, rule: DecisionRule, units: UnitSyste
             raise ReductionError("there is no archive of the test")
         budget = budget_from_archive(view.data, one.quantity, one.at)
     except (ReductionError, ValueError) as error:
-        unit = Shown("", 1.0)
+        unit = _unit(quantity(one.quantity).unit, units)
         return [
-            *head, words(""), _limits(one, unit), words("SI"), words(one.source),
+            *head, words(""), _limits(one, unit), words(superscript(unit.unit)), words(one.source),
             Cell(f"no statement: {getattr(error, 'problem', error)}"),
         ]  # fmt: skip
     shown = _unit(budget.unit, units)
@@ -75,7 +77,7 @@ def _row(one: Limit, view: TestView | None, rule: DecisionRule, units: UnitSyste
         _limits(one, shown),
         words(superscript(shown.unit)),
         words(one.source),
-        words(verdict),
+        words(verdict if verdict != "no statement" else _REACHES),
     ]
 
 

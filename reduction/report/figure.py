@@ -150,10 +150,11 @@ def band(
 def axis(label: str, **more: Any) -> dict[str, Any]:
     """Return an axis with its title; the unit is part of the label.
 
-    A number on it is written out: the thousands of plotly are a k that reads like a unit.
+    A number on it is written out: the thousands of plotly are a k that reads like a unit, and a
+    logarithmic axis takes the format of the pointer for its ticks.
     """
     return {
-        "title": {"text": label}, "hoverformat": ".4~g", "exponentformat": "none",
+        "title": {"text": label}, "hoverformat": ",.4~r", "exponentformat": "none",
         "separatethousands": True, **more,
     }  # fmt: skip
 

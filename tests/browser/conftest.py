@@ -7,7 +7,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from commandruns import run_campaign
+from commandruns import reduction, run_campaign
+from manytests import wait_for, write_many
 from playwright.sync_api import sync_playwright
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
@@ -17,6 +18,18 @@ QUIET = (
 )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class Products:
+    """Where the archives and the page of a campaign are."""
+
+    processed: Path
+    reports: Path
+
+    @property
+    def page(self):
+        return self.reports / "index.html"
+
+
 @dataclass
 class Visit:
     """A page in a tab of its own, and what it said and asked for since it was opened."""
@@ -24,6 +37,20 @@ class Visit:
     page: object
     errors: list[str] = field(default_factory=list)
     requests: list[str] = field(default_factory=list)
+
+    def open_section(self, title):
+        """Open a section by its link in the contents, and wait until its first figure is drawn."""
+        self.page.get_by_role("link", name=title, exact=True).first.click()
+        section = self.page.locator(f'section[data-title="{title}"]')
+        section.locator(".plot.js-plotly-plot").first.wait_for()
+        return section
+
+    def drawn(self, key):
+        """Go to a figure, wait until it is drawn, and return its plot."""
+        plot = self.page.locator(f"#{key} .plot")
+        plot.scroll_into_view_if_needed()
+        self.page.locator(f"#{key} .plot.js-plotly-plot .main-svg").first.wait_for()
+        return plot
 
     @property
     def beyond(self):
@@ -82,15 +109,51 @@ def visit(browser):
         context.close()
 
 
+def made_once(folder, make):
+    """Make a folder in the first process of the tests that needs it; the others wait for it."""
+    try:
+        folder.mkdir()
+    except FileExistsError:
+        wait_for((folder / "made").is_file, seconds=300)
+    else:
+        try:
+            make(folder)
+        finally:
+            (folder / "made").touch()
+    return folder
+
+
 @pytest.fixture(scope="session")
-def campaigns(tmp_path_factory):
+def shared_folder(tmp_path_factory):
+    """One folder for all processes of these tests."""
+    base = tmp_path_factory.getbasetemp()
+    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+
+@pytest.fixture(scope="session")
+def campaigns(shared_folder):
     """Every campaign of the project, run by the command: its name, and where its products are."""
-    made = {}
 
     def run(name):
-        if name not in made:
-            made[name] = run_campaign(name, tmp_path_factory.mktemp("browser"))
-            assert made[name].done.returncode == 0, made[name].done.stderr
-        return made[name]
+        def make(folder):
+            done = run_campaign(name, folder).done
+            assert done.returncode == 0, done.stderr
+
+        folder = made_once(shared_folder / f"browser-{name}", make)
+        return Products(folder / "processed" / name, folder / "reports" / name)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def small(shared_folder):
+    """A campaign of three short tests, which is there in seconds."""
+
+    def make(folder):
+        campaign = write_many(folder / "raw", 2, n_cycles=12)
+        places = ["--processed", folder / "processed", "--reports", folder / "reports"]
+        done = reduction("run", campaign, *places)
+        assert done.returncode == 0, done.stderr
+
+    folder = made_once(shared_folder / "browser-small", make)
+    return Products(folder / "processed" / "many", folder / "reports" / "many")

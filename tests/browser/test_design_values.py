@@ -179,6 +179,12 @@ def small(tmp_path_factory):
     return page, name
 
 
+def open_type(page):
+    """Open the part of the line type, and wait until it is written."""
+    page.locator("#type summary").click()
+    page.locator("#type-text > *").first.wait_for()
+
+
 def test_numbers_are_written_by_the_rules_of_python(small, visit):
     chance = np.random.default_rng(SEED)
     ties = [0.5, 1.5, 2.5, 0.125, 0.375, 1234.5, 1235.5, 12345.5, 100002.5, 99999.5, 2.0**-20, 1e22]
@@ -219,7 +225,7 @@ def link(page, **state):
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 def test_the_page_is_sound_for_everybody(small, visit, width, dark):
     shown = visit(small[0], width=width, dark=dark)
-    shown.page.locator("#type summary").click()
+    open_type(shown.page)
     assert shown.faults() == []
     assert shown.page.evaluate("document.documentElement.scrollWidth") <= width
     assert shown.page.locator("#charts svg").count() == 3
@@ -233,7 +239,7 @@ def test_names_stand_as_text(small, visit):
     shown.page.locator("#filter-group").select_option("<h1>campaign</h1>")
     assert name in shown.page.locator("#line option").first.text_content()
     assert name in shown.page.locator("#answer-title").text_content()
-    shown.page.locator("#type summary").click()
+    open_type(shown.page)
     assert "<s>no</s> curve" in shown.page.locator("#type-text").inner_text()
     assert "<b>note</b>" in shown.page.locator("#notes").inner_text()
     assert "<h1>campaign</h1>: T-2.nc cannot be read: <b>no</b> archive" in (
@@ -321,13 +327,17 @@ def test_a_line_type_is_copied(small, visit):
         link(small[0], line="nylon-double-braid-0.5in-new"),
         permissions=["clipboard-read", "clipboard-write"],
     )
-    shown.page.locator("#type summary").click()
+    open_type(shown.page)
     assert "needed linear_density above zero" in shown.page.locator("#type-text").inner_text()
     shown.page.locator("#stated-linear_density").fill("0.12")
-    shown.page.locator("#type-form-of").select_option("static-dynamic")
+    shown.page.locator("select#type-form").select_option("static-dynamic")
     shown.page.get_by_role("button", name="Copy nylon").click()
     shown.page.get_by_text("nylon_double_braid_0_5in_new_line.dat copied").wait_for()
     text = shown.page.evaluate("navigator.clipboard.readText()")
     assert text.startswith("MoorDyn input file with one line type")
     assert "found at frequency 0.3, mean tension 5978.4, tension amplitude 2419.8 (SI)" in text
+    # a mass a length is that of one line
+    shown.page.locator("#line").select_option("nylon-double-braid-1in-new")
+    assert shown.page.locator("#stated-linear_density").input_value() == ""
+    assert "needed linear_density above zero" in shown.page.locator("#type-text").inner_text()
     assert shown.errors == []

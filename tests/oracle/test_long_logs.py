@@ -14,6 +14,7 @@ from reduction.batch.reduce import reduce_survey
 from reduction.batch.survey import survey_log
 from reduction.campaign.load import load_campaign
 from reduction.cycles import runs
+from reduction.holds import ramp, support
 from reduction.ingest import constant
 from reduction.ingest.parts import Parts
 from reduction.moduli import tensionlevel
@@ -113,7 +114,8 @@ def test_a_log_on_disk_gives_the_numbers_of_one_in_memory(on_disk, campaign, nam
 @pytest.mark.parametrize(("campaign", "name"), TESTS)
 def test_the_length_of_the_blocks_is_in_no_number(monkeypatch, campaign, name, length):
     expected = reduced(campaign, name)
-    for module in (blocks, intervals, search, runs, constant, tensionlevel, still_blocks):
+    cut = (blocks, intervals, search, runs, constant, tensionlevel, still_blocks, ramp, support)
+    for module in cut:
         monkeypatch.setattr(module, "BLOCK", length)
     monkeypatch.setitem(blocks.sample_blocks.__kwdefaults__, "size", length)
     assert_same(reduced(campaign, name), expected, relative=1e-12)
@@ -153,3 +155,56 @@ def test_a_log_four_times_as_long_takes_no_more_memory(tmp_path):
 
     # 1.2 million rows more are 200 MB more in memory: 160 bytes a row and two specimens
     assert peak(1_600_000) - peak(400_000) < 60
+
+
+HOLD = """
+import sys
+from pathlib import Path
+import numpy as np
+from reduction.holds.reduce import reduce_holds
+from reduction.phases.standstill import Standstills
+from reduction.samples.scratch import ColumnWriter
+from reduction.settings import HoldSettings
+n_samples, kind = int(sys.argv[1]), sys.argv[2]
+rest = n_samples // 4  # at slack, and as long a ramp; then the hold
+columns = [ColumnWriter(Path(sys.argv[3])) for _ in range(4)]
+for low in range(0, n_samples, 50_000):
+    row = np.arange(low, min(low + 50_000, n_samples))
+    since = np.maximum(row / rest - 2, 0)
+    missing = np.where(row % 1000 == 3, np.nan, 0.0)
+    strain = np.clip(row / rest - 1, 0, 1)
+    load = 400 * strain + 0.02 * np.sin(row) + missing
+    if kind == "creep":
+        strain = strain + 0.01 * np.log1p(9 * since)
+    else:
+        load = load - 60 * (1 - np.exp(-since / 0.2))
+    for column, part in zip(columns, (row / 100, 5 * (1 + strain), load, strain), strict=True):
+        column.append(part)
+time, position, tension, strain = (column.finish() for column in columns)
+first, last = np.array([0, 2 * rest]), np.array([rest, n_samples - 1])
+stand = Standstills(
+    first, last, time[first], time[last], np.array([5.0, 10.0]), np.array([[0.0, 350.0]]),
+    np.array([True, False]), 0.05, 5.0, 1.0 if kind == "creep" else None,
+)
+[hold] = reduce_holds(
+    time, position, tension[None], strain[None], stand, specimens=("synthetic",),
+    settings=HoldSettings(), kind=kind,
+)
+assert np.isfinite(hold.prony_time if kind == "relaxation" else hold.hold_strain).all(), hold
+peak = [line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM")]
+print(int(peak[0]) / 1024)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no /proc to read the peak from")
+@pytest.mark.parametrize("kind", ["relaxation", "creep"])
+def test_a_hold_six_times_as_long_takes_no_more_memory(tmp_path, kind):
+    def peak(n_samples):
+        done = subprocess.run(
+            [sys.executable, "-c", HOLD, str(n_samples), kind, tmp_path],
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        return float(done.stdout)
+
+    # 2.5 million samples more, all in memory, are 250 MB more
+    assert peak(3_000_000) - peak(500_000) < 60

@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -157,6 +158,11 @@ def test_what_has_no_room_is_told_and_not_read(processed, tmp_path, monkeypatch,
     assert kept == {"newer": ["T01 one", "T02.a one"], "many": []}
     assert found["left_out"] == [["many", 3], ["newer", 1]]
     assert opened == ["T01.nc", "T02.a.nc", "T02.b.nc"]
+
+
+def test_every_script_is_on_the_page_once():
+    there = {one.name for one in files("reduction.designpage").joinpath("static").iterdir()}
+    assert sorted(made._SCRIPTS) == sorted(there - {"page.css"})
 
 
 def test_a_full_page_is_below_three_megabytes():

@@ -50,6 +50,7 @@ def numbers(test):
     return {
         "peak_tension_per_decade": test.trend.peak_tension_per_decade[0],
         "dynamic_modulus_per_decade": test.trend.dynamic_modulus_per_decade[0],
+        "peak_tension_change": test.trend.peak_tension_change[0],
         "dynamic_stiffness": dynamic.dynamic_stiffness[0, 0],
         "dynamic_stiffness_drift": dynamic.drift_per_cycle[0, 0],
         "dynamic_mean_tension": dynamic.mean_tension[0, 0],
@@ -94,3 +95,14 @@ def test_a_diameter_is_in_the_trend_of_the_modulus_twice(rich_test):
     size = np.sqrt(4 * AREA / np.pi)
     assert found["dynamic_modulus_per_decade"] == pytest.approx(-2 * value * 1e-5 / size)
     assert found["peak_tension_per_decade"] == 0
+
+
+def test_a_gain_is_in_no_change_and_a_zero_is_in_one_by_what_the_peaks_lose(rich_test):
+    assert found_by(rich_test, InstrumentErrors("new", tension_gain=1e-3))[
+        "peak_tension_change"
+    ] == pytest.approx(0, abs=1e-15)
+    found = found_by(rich_test, InstrumentErrors("new", tension_offset=0.5))
+    peaks = steps_of(rich_test).loops.peak_tension[0]
+    # (last + d) / (first + d) to first order in d
+    wanted = 0.5 * (peaks[0] - peaks[-1]) / peaks[0] ** 2
+    assert found["peak_tension_change"] == pytest.approx(wanted, rel=1e-9)

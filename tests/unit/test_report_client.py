@@ -9,10 +9,11 @@ import pytest
 from reduction.archive.laboratory import keep_details
 from reduction.archive.open import open_archive
 from reduction.laboratory import Instrument, Item, Limit, Party, ReportDetails
+from reduction.report import clientfigures
 from reduction.report.clientfields import NOT_STATED
-from reduction.report.conformitytable import RULES
+from reduction.report.conformitytable import RULES, conformity_table
 from reduction.report.page import write_report
-from reduction.uncertainty.combine import coverage_factor
+from reduction.report.view import TestView
 
 NASTY = (
     "</style></script><script>alert(1)</script> \"q\" 'x' & \\ \u2028\nnew line } @import url(//x)"
@@ -82,6 +83,7 @@ def test_what_is_not_stated_is_called_so_field_by_field(client, rich_test):
     missing = {label for label, text in found.items() if text == NOT_STATED}
     assert set(FIELDS) - missing == {"Revision"}
     assert found["Revision"] == "0 (first issue)"
+    assert "not stated in this report are Report number, Date of issue, Laboratory" in text_of(page)
     for name in ("identification", "condition on receipt"):
         at = rows_of(page, "Items as they were received")[0].index(name)
         assert {row[at] for row in rows_of(page, "Items as they were received")[1:]} == {NOT_STATED}
@@ -171,31 +173,53 @@ def test_numbers_are_those_of_the_archive(client, rich_test, tmp_path):
     assert {row[1] for row in rows[1:]} <= {"new", "used"}
 
 
-def verdict_of(page):
-    row = rows_of(page, "Statements of conformity")[1]
-    return row[-1]
+@pytest.fixture
+def judged(write, rich_test):
+    """Hold one limit against a test: the row of the table, and what stands below it."""
+
+    def judge(one, rule="guard band", units="si"):
+        with open_archive(write(rich_test)) as archive:
+            details = ReportDetails(decision_rule=rule, limits=(one,))
+            table = conformity_table(details, [TestView("t", archive, units)], units)
+        return [cell.text for cell in table.rows[0]], table.remarks
+
+    return judge
 
 
+@pytest.mark.parametrize(
+    ("rule", "distance", "expected"),
+    [
+        ("simple acceptance", -0.1, "conforms"),
+        ("guard band", -0.1, "no statement: the interval reaches over a limit"),
+        ("guard band", -40, "conforms"),
+        ("guard band", 40, "does not conform"),
+        ("simple acceptance", 0.1, "does not conform"),
+    ],
+)
 def test_a_limit_is_held_against_the_number_of_the_archive_by_the_rule_that_is_printed(
-    client, rich_test, tmp_path
+    judged, write, rich_test, rule, distance, expected
 ):
-    client(None, rich_test)
-    with open_archive(tmp_path / "T-1.nc") as archive:
-        middle = archive["strain_bin"].values[2]
+    with open_archive(write(rich_test)) as archive:
+        middle = float(archive["strain_bin"].values[2])
         value = float(archive["tangent_modulus"].values[0, 0, 2])
         u = float(archive["tangent_modulus_standard_uncertainty"].values[0, 0, 2])
-    at = {"specimen": "new", "branch": "ascending", "strain": repr(float(middle))}
-    least = float(coverage_factor(float("inf"))) * u
-    for rule, lower, expected in (
-        ("simple acceptance", value - 0.1 * u, "conforms"),
-        ("guard band", value - 0.1 * u, "no statement"),
-        ("guard band", value - 20 * least, "conforms"),
-        ("guard band", value + 20 * least, "does not conform"),
-        ("simple acceptance", value + 0.1 * u, "does not conform"),
-    ):
-        page = client(ReportDetails(decision_rule=rule, limits=(limit(lower, at=at),)))
-        assert verdict_of(page) == expected
-        assert RULES[rule] in text_of(page)
+    at = {"specimen": "new", "branch": "ascending", "strain": repr(middle)}
+    row, below = judged(limit(value + distance * u, at=at), rule)
+    assert row[-1] == expected
+    assert float(row[3].split(" ± ")[0]) == pytest.approx(1e-6 * value, abs=1e-6 * u)
+    assert RULES[rule] in below
+
+
+def test_no_limit_makes_no_table():
+    assert conformity_table(ReportDetails(), [], "si") is None
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "shown"),
+    [(1e6, 2e6, "1 to 2"), (1.5e6, None, "≥ 1.5"), (None, 1.2e9, "≤ 1,200")],
+)
+def test_limits_are_shown_as_they_were_agreed(judged, lower, upper, shown):
+    assert judged(limit(lower, upper=upper))[0][4:6] == [shown, "MPa"]
 
 
 @pytest.mark.parametrize(
@@ -210,11 +234,12 @@ def test_a_limit_is_held_against_the_number_of_the_archive_by_the_rule_that_is_p
     ],
 )
 def test_a_limit_of_a_number_that_is_not_there_gives_no_statement_and_says_why(
-    client, rich_test, change, words
+    judged, change, words
 ):
     one = replace(limit(1.0), **change)
-    page = client(ReportDetails(decision_rule="guard band", limits=(one,)), rich_test)
-    assert verdict_of(page).startswith(words)
+    row, _ = judged(one)
+    assert row[-1].startswith(words)
+    assert row[5] == {"tangent_modulus": "MPa", "relaxation_time": "s"}[one.quantity]
 
 
 def test_us_units_change_what_is_shown(client, rich_test):
@@ -229,3 +254,25 @@ def test_the_page_asks_for_nothing_and_runs_nothing(client, rich_test):
     assert "default-src 'none'" in page and "<script" not in page
     assert not re.findall(r'(?:src|href)="(?!#)|url\((?!#)', page)
     assert "<svg" in page
+
+
+def test_what_the_software_did_with_a_test_stands_there_only_where_it_failed(
+    client, rich_test, tmp_path
+):
+    status = tmp_path / "status.csv"
+    head = "test,status,exit_status,message,raw_sha256,seconds\r\n"
+    status.write_text(head + "T-1,unchanged,0,,,0\r\n")
+    assert rows_of(client(ReportDetails(), rich_test), "Tests in the order")[0][-1] == "samples [1]"
+    status.write_text(head + "T-1,reduced,0,,,0\r\nT-2,failed,3,broken log,,0\r\n")
+    page = client(ReportDetails())
+    assert rows_of(page, "Tests in the order")[-1][-1] == "failed, no archive"
+    assert "T-2: broken log" in text_of(page)
+
+
+def test_a_figure_that_cannot_be_drawn_is_named(client, rich_test, monkeypatch):
+    monkeypatch.setattr(clientfigures, "can_be_drawn", lambda figure: "loops" not in figure.title)
+    page = client(ReportDetails(), rich_test)
+    assert "Not drawn on paper, and in the page of the campaign alone: T-1: loops, new" in text_of(
+        page
+    )
+    assert "T-1: modulus, new" in page.partition("<svg")[2]

@@ -75,4 +75,6 @@ def test_numbers_on_an_axis_are_written_out_unless_it_says_otherwise():
     plain = axis("tension [N]")
     assert plain["exponentformat"] == "none"
     assert plain["separatethousands"] is True
+    # no power of ten: of four digits, rounded, in thousands
+    assert plain["hoverformat"] == ",.4~r"
     assert axis("cycles [1]", exponentformat="power")["exponentformat"] == "power"

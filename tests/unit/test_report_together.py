@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.figures.campaign import draw_all_moduli, draw_parts
+from reduction.report.figures.campaign import draw_all_moduli, draw_parts, draw_static_dynamic
 from reduction.report.figures.ratios import draw_ratios
 from reduction.report.figures.together import draw_specimens_together
 from reduction.report.view import TestView
@@ -89,6 +89,29 @@ def test_long_tests_and_parts_of_them_are_left_out_and_named():
     assert max(y for trace in figure.data for y in trace["y"] if y is not None) < 2.1
     (alone,) = draw_specimens_together(views[1:])
     assert "Not in it" not in alone.caption
+
+
+def test_one_test_of_one_specimen_has_nothing_beside_it():
+    assert draw_specimens_together([make_view("T-1", [0.9, 1.1], 1.0, specimens=("new",))]) == []
+
+
+def test_static_moduli_have_bars_over_the_curves():
+    static = xr.Dataset(
+        {
+            "interval_modulus": ("interval", [1e6, np.nan, 2e6]),
+            "interval_modulus_standard_uncertainty": ("interval", [1e5, np.nan, np.nan]),
+            "interval_strain": ("interval", [0.9, 1.0, 1.1]),
+            "interval_branch": ("interval", [1, 1, 1]),
+        },
+        {S: ["new"]}, {"test": "weights"},
+    )  # fmt: skip
+    dynamic = make_view("T-1", [0.9, 1.1], 1.0)
+    figures = draw_static_dynamic([dynamic, TestView("static", static)])
+    points = figures[0].data[-1]
+    assert points["y"] == [1.0, 2.0]
+    # none where none is known
+    assert points["error_y"]["array"] == pytest.approx([0.196, 0.0], abs=1e-3)
+    assert "bars, ±: expanded uncertainty, 95 %" in figures[0].caption
 
 
 def test_without_a_curve_there_is_no_figure():

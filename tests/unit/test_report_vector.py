@@ -120,10 +120,36 @@ def test_the_axis_has_room_for_its_longest_number():
     assert points(vector_of(wide))[0][0] > points(vector_of(figure(straight())))[0][0] + 25
 
 
+def test_two_panels_stand_one_above_the_other_over_one_axis():
+    drawn = vector_of(
+        figure(
+            straight("low"), straight("high", yaxis="y2"), xaxis=axis("x", range=[0, 100]),
+            yaxis=axis("below", range=[0, 2], domain=[0.0, 0.4]),
+            yaxis2=axis("above", range=[0, 2], domain=[0.5, 1.0]),
+        ),
+        width=465.6, height=278.0,
+    )  # fmt: skip
+    paths = [
+        one.get("d")
+        for one in tree(drawn).iter(f"{SVG}path")
+        if one.get("fill") == "none" and one.get("stroke-width") == "1.8"
+    ]
+    # 200 high: the lower takes 80 of it, the upper 100
+    assert paths[:2] == [
+        "M53.60 234.00L253.60 194.00L453.60 154.00",
+        "M53.60 134.00L253.60 84.00L453.60 34.00",
+    ]
+    assert {"below", "above", "x"} <= set(texts(drawn))
+    assert texts(drawn).count("60") == 1
+
+
 def test_only_lines_and_markers_on_one_pair_of_axes_can_be_drawn():
     assert can_be_drawn(figure(straight()))
     assert can_be_drawn(figure(straight(), yaxis=axis("y", type="log")))
     assert not can_be_drawn(figure(straight(), yaxis=axis("y", type="category")))
     assert not can_be_drawn(figure(straight(), yaxis2=axis("y")))
+    halves = {"yaxis": axis("y", domain=[0, 0.5]), "yaxis2": axis("y", domain=[0.5, 1])}
+    assert can_be_drawn(figure(straight(), **halves))
+    assert not can_be_drawn(figure(straight(), **halves, xaxis2=axis("x")))
     assert not can_be_drawn(figure(straight() | {"type": "bar"}))
     assert not can_be_drawn(figure())

@@ -81,6 +81,9 @@ function chartOf({ line, quantity, branch, levels, name, found, x: [xUnit, xFact
   root.append(svg("rect", {
     x: CHART.left, y: CHART.top, width: box, height: tall, class: "untested",
   }), svg("rect", { x: toX(low), y: CHART.top, width: toX(high) - toX(low), height: tall, class: "tested" }));
+  for (const [from, to] of curve?.gaps ?? []) {
+    root.append(svg("rect", { x: toX(from), y: CHART.top, width: toX(to) - toX(from), height: tall, class: "untested" }));
+  }
   const ticks = ticksOf(yFactor * bottom, yFactor * top, 4);
   const thousands = thousandsOf(Math.max(...ticks.map(Math.abs)));
   for (const tick of ticks) {
@@ -108,10 +111,12 @@ function chartOf({ line, quantity, branch, levels, name, found, x: [xUnit, xFact
     }));
   }
   root.append(svg("rect", { x: CHART.left, y: CHART.top, width: box, height: tall, class: "frame" }));
-  if (found && Number.isFinite(found.value) && Number.isFinite(chosen)) {
-    const [x, y] = [toX(chosen), toY(found.value)];
-    root.append(svg("line", { x1: x, x2: x, y1: CHART.top, y2: CHART.top + tall, class: "cross" }),
-      svg("circle", { cx: x, cy: y, r: 5, class: "point" }));
+  if (Number.isFinite(chosen)) {
+    const x = toX(chosen);
+    root.append(svg("line", { x1: x, x2: x, y1: CHART.top, y2: CHART.top + tall, class: "cross" }));
+    if (found && Number.isFinite(found.value)) {
+      root.append(svg("circle", { cx: x, cy: toY(found.value), r: 5, class: "point" }));
+    }
   }
   root.append(
     svg("text", { x: CHART.left + box / 2, y: CHART.height - 6, class: "label middle" }, xShown),

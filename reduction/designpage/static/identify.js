@@ -1,7 +1,5 @@
 // K_1 and tau of a line from K_ap, H and K_0, how well they are known, and the line forwards.
 
-const AMPLITUDE_NAMES = ["apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant"];
-
 function identifyByAmplitude(apparent, energy, amplitude, frequency, rest) {
   const loop = [apparent, energy, amplitude, frequency];
   let reason = loop.some(Number.isNaN) ? 3 : loop.every((one) => one > 0 && one < Infinity) ? 0 : 4;

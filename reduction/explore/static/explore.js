@@ -13,7 +13,7 @@ const foldAgain = () => {};
     test: "stated for this test", defaults: "from [defaults]", table: "stands in the table of tests: change it there",
     default: "not stated: the default", found: "not stated: found in the record",
   };
-  const CURVES = /^(modulus|difference)-/;
+  const CURVES = /^(modulus|difference)-|^cycle$/;
   const PAUSE = 150; // a slider is at rest for so long before a change is asked for, in ms
   const wide = matchMedia("(min-width: 1100px)"); // settings stand beside the answers, and not above them
   const unsaved = new Map(); // changes by test, and in them texts by key

@@ -15,7 +15,7 @@ from reduction.cycles.product import Loops
 from reduction.line.programme import BeddingIn, DynamicStiffness
 from reduction.line.tensile import TensilePull
 from reduction.moduli.product import PeakTrend
-from reduction.moduli.trend import FEWEST_CYCLES, slope_per_decade
+from reduction.moduli.trend import FEWEST_CYCLES, cycles_at_an_end, slope_per_decade
 from reduction.pipeline.shared.blocks import blocks_of_cycles, cycles_of_test
 from reduction.pipeline.shared.loops import of_loops
 from reduction.product import ReducedTest
@@ -175,10 +175,20 @@ def _of_trend(
             "dynamic_modulus_per_decade": slope_per_decade(
                 modulus[:, start:], first_cycle=start + 1
             )[0],
+            "peak_tension_change": _of_change(loops.peak_tension[index], peak),
         },
     )
     value = np.asarray(trend.dynamic_modulus_per_decade[index])
     return with_diameter(found, errors, {"dynamic_modulus_per_decade": value}, area=area)
+
+
+def _of_change(peak: Floats, of_peak: Floats) -> Floats:
+    """What errors of the peaks, one row a component, make of the last ones over the first."""
+    n_ends = cycles_at_an_end(peak.size)
+    first, last = peak[:n_ends].mean(), peak[-n_ends:].mean()
+    of_first, of_last = of_peak[:, :n_ends].mean(axis=1), of_peak[:, -n_ends:].mean(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray((of_last - last / first * of_first) / first)
 
 
 def _of_dynamic(

@@ -25,7 +25,12 @@ from reduction.report.figure import (
 )
 from reduction.report.figures.ratios import heights
 from reduction.report.style import DASHES, colour, marked, marker, plot_text, shown
-from reduction.report.uncertainty import expanded_of, plus_minus_of_tests
+from reduction.report.uncertainty import (
+    NORMAL,
+    expanded_of,
+    factor_words,
+    plus_minus_of_tests,
+)
 from reduction.report.view import TestView, all_specimens, any_synthetic
 from reduction.units import UnitSystem
 from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
@@ -110,9 +115,10 @@ def draw_static_dynamic(tests: Sequence[TestView]) -> list[Figure]:
         found.append(
             make_figure(
                 f"campaign-static-{branch}", f"Static against dynamic, {branch}",
-                "Interval moduli of the stepwise tests (markers) over the tangent moduli of the"
-                f" cyclic tests (lines), {branch}.",
-                data, synthetic=any_synthetic(tests), height=420,
+                "Interval moduli of the stepwise tests (markers; bars, ±: expanded uncertainty,"
+                f" 95 %, {factor_words([NORMAL])}) over the tangent moduli of the cyclic tests"
+                f" (lines), {branch}.",
+                data, synthetic=any_synthetic(tests), height=420, is_wide=True,
                 xaxis=axis(in_strain.label("strain")),
                 yaxis=axis(in_stress.label("modulus"), rangemode="tozero"),
             )
@@ -131,12 +137,14 @@ def _static(view: TestView, branch: str, index: int, factor: float) -> Trace:
     if strain is None or modulus is None or own is None:
         return line(np.empty(0), np.empty(0), name=view.id, colour=colour(index))
     chosen = (own == BRANCH_VALUES[branch]) & np.isfinite(modulus)
+    half = np.nan_to_num(expanded_of(view, "interval_modulus", modulus).half[chosen] * factor)
     return {
         "type": "scatter",
         "mode": "markers",
         "name": plot_text(f"{view.id} (static)"),
         "x": plain_numbers(100.0 * strain[chosen]),
         "y": plain_numbers(modulus[chosen] * factor),
+        "error_y": {"type": "data", "array": plain_numbers(half), "width": 4},
         "marker": {**marker(index, size=11), "line": {"width": 1, "color": "#8C8C8C"}},
     }
 

@@ -18,7 +18,6 @@ from reduction.report.figure import (
     make_figure,
     plain_numbers,
 )
-from reduction.report.figures.trends import LONG
 from reduction.report.style import PHASE_FILLS, Shown, colour, plot_text, shown
 from reduction.report.view import TestView
 from reduction.vocabulary import PHASE_VALUES
@@ -29,6 +28,8 @@ TIME_DIGITS = 9
 MOST_PHASES = 150
 FLAG_POINTS = 400
 WHOLE_CYCLES = 8
+DENSE = 300
+"""More cycles than this cannot be told apart on the width of a page."""
 LONG_RECORD = 7200.0
 """A longer record is shown in hours. [s]"""
 SECONDS_IN_AN_HOUR = 3600.0
@@ -61,7 +62,7 @@ def draw_record(view: TestView) -> list[Figure]:
         time, in_time = time / seconds, Shown("h", 1.0)
     data: list[Trace] = []
     # a line through so many cycles is a block of colour that hides the specimen behind it
-    is_dense = view.is_whole and view.n_cycles > LONG
+    is_dense = view.is_whole and view.n_cycles > DENSE
     position = position_of(view)
     if position is not None:
         words, values = position
@@ -127,7 +128,9 @@ def _series(
 ) -> Trace:
     """Return one channel against time: a line, or of many cycles what lies between its extremes."""
     if is_dense:
-        middle, least, greatest = least_and_greatest(time, values)
+        # more than a cycle in each, or the edges would follow the cycles in steps
+        most = min(POINTS // 4, 2 * view.n_cycles // 3)
+        middle, least, greatest = least_and_greatest(time, values, n_intervals=most)
         return band(
             middle, least, greatest, name=name, colour=tint, alpha=0.3, showlegend=True,
             line={"width": 1, "color": tint}, **more,

@@ -40,6 +40,8 @@ def draw_specimens_together(tests: Sequence[TestView]) -> list[Figure]:
     units = chosen[0].units
     in_stress, in_strain = shown("stress", units), shown("strain", units)
     names = all_specimens(chosen)
+    if len(chosen) == len(names) == 1:  # nothing to be seen together
+        return []
     envelopes = [_envelope(chosen, name, order, in_stress) for order, name in enumerate(names)]
     data = [trace for trace in envelopes if trace is not None]
     labels: list[Trace] = []

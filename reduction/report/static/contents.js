@@ -59,3 +59,19 @@ if (filter) {
     if (event.key === "Enter") links.find((link) => !link.hidden)?.querySelector("a").click();
   });
 }
+
+// the list of contents marks the section that is at the top of the screen
+const list = document.querySelector("nav");
+const atTop = new IntersectionObserver((seen) => {
+  for (const { target, isIntersecting } of seen) {
+    const link = list?.querySelector(`a[href="#${target.getAttribute("aria-labelledby")}"]`);
+    if (!link) continue;
+    if (!isIntersecting) {
+      link.removeAttribute("aria-current");
+      continue;
+    }
+    link.setAttribute("aria-current", "true");
+    if (list.scrollHeight > list.clientHeight) list.scrollTop = link.offsetTop - list.clientHeight / 2;
+  }
+}, { rootMargin: "-10% 0px -85%" });
+document.querySelectorAll("main > section").forEach((section) => atTop.observe(section));

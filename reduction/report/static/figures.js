@@ -10,7 +10,8 @@ let printing = false;
 // the two blues, lighter by one step each: the darker one fades on a dark page
 const ON_DARK = [["#56B4E9", "#B3E0FF"], ["#0072B2", "#4AA3DF"]];
 const AXIS = 52; // ticks and title under a plot, in CSS pixels
-const LINE = 18; // a line of a title
+const TITLE = 14; // letters of a title
+const LINE = 18; // a line of one
 const RAISED = 10; // by which plotly draws a title of several lines too high
 // what an A4 or Letter page with 15 mm margins holds, in CSS pixels: one figure, or two abreast
 const PAPER = { wide: 655, narrow: 318 };
@@ -42,13 +43,23 @@ const readFigure = (plot, isDark = false) => {
 };
 
 // plotly cuts a title that is longer than its figure
+const ruler = document.createElement("canvas").getContext("2d");
 const brokenTitle = (text, width) => {
-  const most = Math.max(16, Math.floor((width - 24) / 7.4));
+  ruler.font = `${TITLE}px ${getComputedStyle(document.body).fontFamily}`;
+  const fits = (line) => ruler.measureText(plain(line)).width <= width - 24;
   const lines = [""];
   for (const word of text.split(" ")) {
     const last = lines.at(-1);
-    if (last && plain(`${last} ${word}`).length > most) lines.push(word);
-    else lines[lines.length - 1] = last ? `${last} ${word}` : word;
+    if (last && fits(`${last} ${word}`)) {
+      lines[lines.length - 1] = `${last} ${word}`;
+      continue;
+    }
+    if (last) lines.push("");
+    // a word that is longer than a line is broken where it has to be
+    for (const letter of word.match(/&\w+;|./gu) ?? []) {
+      if (lines.at(-1) && !fits(lines.at(-1) + letter)) lines.push("");
+      lines[lines.length - 1] += letter;
+    }
   }
   return lines;
 };
@@ -69,7 +80,7 @@ const themed = (layout, title, { legend, height, colours }) => {
     legend: { orientation: "h", x: 0, y: 0, yref: "container", yanchor: "bottom", tracegroupgap: 0, font: { size: 11 }, ...layout.legend },
     hoverlabel: { namelength: 40 },
     hovermode: "closest",
-    title: { ...layout.title, text: title.join("<br>"), x: 0.01, xanchor: "left", y: 1 - (8 + (more && RAISED)) / height, yanchor: "top", yref: "container", font: { size: 14 } },
+    title: { ...layout.title, text: title.join("<br>"), x: 0.01, xanchor: "left", y: 1 - (8 + (more && RAISED)) / height, yanchor: "top", yref: "container", font: { size: TITLE } },
   };
   if (layout.title.subtitle) {
     result.title.subtitle = { ...layout.title.subtitle, font: { size: 11, color: colours.bad } };
@@ -139,6 +150,7 @@ const draw = (plot) => {
   drawn.add(plot);
   Plotly.react(plot, data, layout, {
     responsive: true, displaylogo: false, modeBarButtonsToRemove: ["toImage", "lasso2d", "select2d"],
+    showSendToCloud: false, plotlyServerURL: "", // plotly has a button that sends a figure to its maker
   });
   if (isNew) plot.on("plotly_click", (clicked) => chooseAt(plot, clicked.points[0]));
 };

@@ -1,0 +1,31 @@
+"""docs/client-report.md: its example is read, and every key of ``[report]`` is explained."""
+
+import re
+import tomllib
+from pathlib import Path
+
+from reduction.campaign import reportspec
+from reduction.campaign.reportspec import ReportSection
+
+PAGE = (Path(__file__).parents[2] / "docs" / "client-report.md").read_text(encoding="utf-8")
+SECTIONS = [
+    one
+    for one in vars(reportspec).values()
+    if isinstance(one, type) and issubclass(one, reportspec._Section) and one.model_fields
+]
+
+
+def test_the_example_can_be_read():
+    (example,) = re.findall(r"```toml\n(.*?)```", PAGE, re.S)
+    found = ReportSection.model_validate(tomllib.loads(example)["report"])
+    assert found.issued == "2026-03-05" and found.limits[0].upper == "1.2 MPa"
+
+
+def test_every_key_is_explained():
+    assert len(SECTIONS) == 7
+    keys = {name for section in SECTIONS for name in section.model_fields}
+    assert not {key for key in keys if f"`{key}`" not in PAGE}
+
+
+def test_both_rules_are_explained_as_they_are_written():
+    assert set(re.findall(r'^- `"([\w ]+)"`:', PAGE, re.M)) == set(reportspec.DecisionRule.__args__)
