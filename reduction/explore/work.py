@@ -100,7 +100,8 @@ class Work:
                 told("begun")
                 job.document = job.work(told)
             except Superseded:
-                job.status, job.document = 409, {"error": "a newer change was asked for"}
+                # not of interest any more, and no fault
+                job.document = {"state": "superseded", "error": "a newer change was asked for"}
             except ReductionError as error:
                 job.status, job.document = 422, {"error": str(error)}
             except Exception as error:

@@ -60,7 +60,7 @@ const foldAgain = () => {};
       say(`${found.stage} … ${found.seconds.toFixed(0)} s`);
       found = await post("/api/job", { job: found.job });
     }
-    return number === undefined || number === newest ? found : null;
+    return number === undefined || (number === newest && found.state !== "superseded") ? found : null;
   };
 
   const setTests = (campaign) => {
@@ -106,9 +106,11 @@ const foldAgain = () => {};
 
   const move = (key, text) => {
     const now = new Map(changes());
+    if (text === (now.get(key) ?? base.get(key) ?? "")) return; // left as it was
     if (text === (base.get(key) ?? "")) now.delete(key);
     else now.set(key, text);
     unsaved.set(test(), now);
+    part("review").disabled = true; // until what follows is seen
     clearTimeout(timer);
     timer = setTimeout(change, PAUSE);
   };
@@ -264,11 +266,19 @@ const foldAgain = () => {};
   };
 
   const change = async () => {
+    clearTimeout(timer);
     const number = ++newest;
     document.body.classList.add("busy");
     say("at work …");
     const found = await asked("/api/change", { test: test(), changes: Object.fromEntries(changes()) }, number);
-    if (!found) return;
+    if (!found) {
+      // what a page beside this one asked for was newer
+      if (number === newest) {
+        document.body.classList.remove("busy");
+        say("Another page of this explorer was quicker. Move a setting, or choose the test, again.");
+      }
+      return;
+    }
     document.body.classList.remove("busy");
     if (found.settings) show(found);
     else {
