@@ -13,6 +13,8 @@ from reduction.samples.scratch import give_back, let_go
 
 __all__ = ["run_blocks"]
 
+_TOGETHER = 1 << 20  # samples of blocks that run at a time, if one is long
+
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -22,6 +24,7 @@ def run_blocks(
     items: Iterable[Item],
     *,
     samples: Sequence[NDArray[Any]] = (),
+    longest: int = 1,
 ) -> list[Result]:
     """Results of a function for each item, in the order of the items.
 
@@ -37,6 +40,9 @@ def run_blocks(
         The blocks.
     samples : sequence of ndarray
         Series that the blocks read or write; those on disk are let go behind each block.
+    longest : int
+        Samples of the longest block: of long ones fewer run at a time, lest their memory grows
+        with the processors. [1]
 
     Returns
     -------
@@ -60,7 +66,7 @@ def run_blocks(
         let_go(*samples)
         return result
 
-    n_workers = min(_n_processors(), len(todo))
+    n_workers = min(_n_processors(), len(todo), max(1, _TOGETHER // longest))
     if n_workers < 2:
         results = [run(item) for item in todo]
     else:

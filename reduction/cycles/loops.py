@@ -171,7 +171,7 @@ def close_loops(
             )
 
     samples = (time, tension, strain, measured)
-    run_blocks(measure_block, cycles.blocks(_BLOCK), samples=samples)
+    run_blocks(measure_block, cycles.blocks(_BLOCK), samples=samples, longest=cycles.longest)
     shape = (tension.shape[0], cycles.n_cycles)
     tables = {name: empty_like(tension, shape=shape) for name in _FIELDS}
     uncertainty = {
@@ -216,7 +216,7 @@ def _sine_period(time: Floats, tension: Floats, cycles: Cycles, period: Floats) 
         force, _ = bridge_gaps(tension[0, low:high], first, last)
         turns[block] = phase_turns(*fundamental(force, basis)[:2], basis, time[low:high])
 
-    run_blocks(find, blocks, samples=(time, tension))
+    run_blocks(find, blocks, samples=(time, tension), longest=cycles.longest)
     last_turn = np.append(turns[1:], np.nan)
     # the last cycle of a run ends where it would go on
     ends_run = np.append(cycles.last[:-1] != cycles.first[1:], True)

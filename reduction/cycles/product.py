@@ -64,6 +64,11 @@ class Cycles:
         """Number of whole cycles."""
         return int(self.first.shape[0])
 
+    @property
+    def longest(self) -> int:
+        """Samples of the longest cycle."""
+        return int((self.last - self.first).max(initial=0)) + 1
+
     def blocks(self, n_samples: int) -> list[slice]:
         """Runs of whole cycles of about so many samples together, one cycle at least."""
         number = (self.first - self.first[:1]) // n_samples

@@ -17,7 +17,7 @@ from reduction.moduli.cells import sums_by_cell
 from reduction.moduli.product import CycleIdentity
 from reduction.moduli.tangent import pair_specimens
 from reduction.record import Floats
-from reduction.samples.blocks import take_samples
+from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.workers import run_blocks
 
 __all__ = ["check_identity"]
@@ -30,6 +30,7 @@ _WORTH_A_NOTE = 0.005
 _LEAST_SPREAD = 0.5  # of the variance that samples spread evenly over a piece have
 _TIE = 1e-9  # of a piece: rounding decides no side
 _BLOCK_SAMPLES = 1 << 17  # near the cache, yet long enough for threads to pay
+_PART = 1 << 18  # samples of a longer block of which sums are taken together
 
 
 def _tension_change(
@@ -45,7 +46,17 @@ def _tension_change(
     change = np.empty((cycles.n_cycles, 2))
 
     def fit_block(block: slice) -> None:
-        samples = slice(int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1)
+        begins, ends = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
+        sums: Floats | float = 0.0
+        for part in sample_blocks(ends - begins, *series, size=_PART):
+            sums = sums + sums_of(block, slice(begins + part.start, begins + part.stop))
+        of_branch = _add_shared_reversals(
+            np.asarray(sums).reshape(5, -1, n_pieces), strain, tension, cycles, block,
+            reference=reference,
+        )  # fmt: skip
+        change[block] = _mean_slope(of_branch, n_pieces)
+
+    def sums_of(block: slice, samples: slice) -> Floats:
         number, side = cycles.cycle_number[samples], cycles.branch[samples]
         n_branches = 2 * (block.stop - block.start)
         own = slice(2 * block.start, 2 * block.stop)
@@ -64,14 +75,10 @@ def _tension_change(
         used = (branch >= 0) & (branch < n_branches) & (side > 0) & np.isfinite(u) & np.isfinite(y)
         cell[~used] = n_cells  # one more, which is cut off
         adds = sums_by_cell(cell, n_cells + 1)
-        sums = np.stack([(adds @ one)[:n_cells] for one in (np.ones_like(u), u, y, u * u, u * y)])
-        of_branch = _add_shared_reversals(
-            sums.reshape(5, -1, n_pieces), strain, tension, cycles, block, reference=reference
-        )
-        change[block] = _mean_slope(of_branch, n_pieces)
+        return np.stack([(adds @ one)[:n_cells] for one in (np.ones_like(u), u, y, u * u, u * y)])
 
-    samples = (strain, tension, cycles.cycle_number, cycles.branch)
-    run_blocks(fit_block, cycles.blocks(_BLOCK_SAMPLES), samples=samples)
+    series = (strain, tension, cycles.cycle_number, cycles.branch)
+    run_blocks(fit_block, cycles.blocks(_BLOCK_SAMPLES), samples=series)
     return change, stroke
 
 

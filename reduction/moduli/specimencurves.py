@@ -14,13 +14,15 @@ import numpy as np
 from reduction.cycles.product import Cycles
 from reduction.moduli.grid import StrainGrid
 from reduction.moduli.groups import CycleGroups
-from reduction.moduli.moments import accumulate_moments, fit_windows
+from reduction.moduli.moments import BranchMoments, accumulate_moments, fit_windows
 from reduction.moduli.running import RunningStatistics
 from reduction.record import Floats, Integers
-from reduction.samples.blocks import take_samples
+from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.workers import run_blocks
 
 __all__ = ["SpecimenCurves"]
+
+_PART = 1 << 18  # samples of a block of which sums are taken together
 
 
 @dataclass(frozen=True)
@@ -65,12 +67,46 @@ def _curve_of_sample(
     return curve
 
 
-def _reduce_block(
+def _block_moments(
     strain: Floats,
     tension: Floats,
     *,
-    curve: Integers,
-    reference: float,
+    cycles: Cycles,
+    groups: CycleGroups,
+    block: tuple[int, int, slice],
+    references: list[float],
+    grid: StrainGrid,
+) -> list[tuple[BranchMoments, int]]:
+    """Moments of each specimen over a block, and its samples off the grid; long blocks in parts."""
+    start, stop, samples = block
+    found: list[tuple[BranchMoments, int]] = []
+    series = (strain, tension, cycles.cycle_number, cycles.branch, cycles.is_constant_rate)
+    for part in sample_blocks(samples.stop - samples.start, *series, size=_PART):
+        here = slice(samples.start + part.start, samples.start + part.stop)
+        curve = _curve_of_sample(cycles, groups, start, stop, here)
+        of_part = [
+            accumulate_moments(
+                strain[row, here],
+                tension[row, here],
+                curve=curve,
+                n_curves=4 * (stop - start),
+                grid=grid,
+                tension_reference=reference,
+            )
+            for row, reference in enumerate(references)
+        ]
+        found = (
+            [(one + other, n + m) for (one, n), (other, m) in zip(found, of_part, strict=True)]
+            if found
+            else of_part
+        )
+    return found
+
+
+def _reduce_block(
+    moments: BranchMoments,
+    *,
+    n_outside: int,
     grid: StrainGrid,
     minimum_count: int,
     weight: Floats,
@@ -79,14 +115,6 @@ def _reduce_block(
 ) -> SpecimenCurves:
     """Curves of one block and specimen; its first ``n_break_in`` groups are in no mean."""
     n_groups = weight.size
-    moments, n_outside = accumulate_moments(
-        strain,
-        tension,
-        curve=curve,
-        n_curves=4 * n_groups,
-        grid=grid,
-        tension_reference=reference,
-    )
     shape = (2, n_groups, 2, grid.n_bins)
     trimmed = moments.curves(0, 2 * n_groups)
     whole = trimmed + moments.curves(2 * n_groups, 4 * n_groups)
@@ -125,21 +153,22 @@ def reduce_specimens(
     sizes = np.diff(np.append(groups.first, cycles.n_cycles)).astype(np.float64)
 
     def reduce_block(block: tuple[int, int, slice]) -> list[SpecimenCurves]:
-        start, stop, samples = block
-        curve = _curve_of_sample(cycles, groups, start, stop, samples)
+        start, stop, _ = block
+        found = _block_moments(
+            strain, tension, cycles=cycles, groups=groups, block=block, references=references,
+            grid=grid,
+        )  # fmt: skip
         return [
             _reduce_block(
-                strain[row, samples],
-                tension[row, samples],
-                curve=curve,
-                reference=reference,
+                moments,
+                n_outside=n_outside,
                 grid=grid,
                 minimum_count=minimum_count,
                 weight=sizes[start:stop],
                 n_break_in=int(np.count_nonzero(groups.is_break_in[start:stop])),
                 chosen=selected[(selected >= start) & (selected < stop)] - start,
             )
-            for row, reference in enumerate(references)
+            for moments, n_outside in found
         ]
 
     samples = (strain, tension, cycles.cycle_number, cycles.branch, cycles.is_constant_rate)

@@ -29,6 +29,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,7 +38,7 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.phases.intervals import median_step
 from reduction.record import Floats, Integers, freeze_arrays
-from reduction.samples.blocks import take_samples
+from reduction.samples.blocks import BLOCK, sample_blocks, take_samples
 
 __all__ = ["LAG_REFUSALS", "LagEstimate", "lag_by_turns"]
 
@@ -171,9 +172,11 @@ def _of_specimen(
 ) -> tuple[float, float, int, int]:
     """Lag, its uncertainty, turns used, and code of the refusal."""
     # window and lag may each move by half a reach
-    window = turns[:, None] + np.arange(-2 * reach, 2 * reach + 1)
-    read = take_samples(position, window) + take_samples(tension, window)
-    turns = turns[np.isfinite(read).all(axis=1)]
+    is_read = np.ones(turns.size, dtype=bool)
+    for some, window in _windows(turns, -2 * reach, 2 * reach + 1):
+        read = take_samples(position, window) + take_samples(tension, window)
+        is_read[some] &= np.isfinite(read).all(axis=1)
+    turns = turns[is_read]
     if turns.size < _FEWEST_TURNS:
         return np.nan, np.nan, turns.size, LAG_REFUSALS["few_turns"]
     step, most = median_step(time[turns[0] : turns[-1]]), reach // 2
@@ -226,29 +229,37 @@ def _combined(lags: Floats, jump: Floats) -> tuple[float, float]:
 def _corners(
     time: Floats, series: Floats, turns: Integers, width: int
 ) -> tuple[Floats, Floats, Floats]:
-    """Times of the corners of a series, their sharpness, and the jumps of its slope."""
-    window = turns[:, None] + np.arange(-width, width + 1)
-    at_turn = take_samples(time, turns)
-    since = take_samples(time, window) - at_turn[:, None]
-    root, sharp, jump = _crossing(since, take_samples(series, window))
-    return at_turn + root, sharp, jump
+    """Times of the corners of a series, their sharpness, and the jumps of its slope.
 
-
-def _crossing(since: Floats, values: Floats) -> tuple[Floats, Floats, Floats]:
-    """Time at which parabolas of both sides cross, sharpness of the turn, jump of the slope.
-
-    The sample of the turn itself is left out: it lies on either side.
+    The sample of the turn itself is in no parabola: it lies on either side.
     """
-    width = since.shape[1] // 2
-    scale = np.abs(since).max(axis=1, keepdims=True)
+    at_turn = take_samples(time, turns)
+    scale = np.zeros(turns.size)
+    for some, window in _windows(turns, -width, width + 1):
+        since = take_samples(time, window) - at_turn[some, None]
+        scale[some] = np.maximum(scale[some], np.abs(since).max(axis=1))
     sides = []
-    for part in (slice(0, width), slice(width + 1, None)):
-        at = since[:, part] / scale
-        basis = np.stack([np.ones_like(at), at, at**2], axis=-1)
-        gram = np.einsum("tsi,tsj->tij", basis, basis)
-        sums = np.einsum("tsi,ts->ti", basis, values[:, part])
-        sides.append(np.linalg.solve(gram, sums[..., None])[..., 0])
-    before, after = sides
+    for first, stop in ((-width, 0), (1, width + 1)):
+        gram, sums = np.zeros((turns.size, 3, 3)), np.zeros((turns.size, 3))
+        for some, window in _windows(turns, first, stop):
+            at = (take_samples(time, window) - at_turn[some, None]) / scale[some, None]
+            basis = np.stack([np.ones_like(at), at, at**2], axis=-1)
+            gram[some] += np.einsum("tsi,tsj->tij", basis, basis)
+            sums[some] += np.einsum("tsi,ts->ti", basis, take_samples(series, window))
+        sides.append(np.asarray(np.linalg.solve(gram, sums[..., None])[..., 0], np.float64))
+    root, sharp, jump = _crossing(*sides)
+    return at_turn + root * scale, sharp, jump / scale
+
+
+def _windows(turns: Integers, first: int, stop: int) -> Iterator[tuple[slice, Integers]]:
+    """Samples from ``first`` up to ``stop`` after each turn, some turns and samples at a time."""
+    for some in sample_blocks(turns.size, size=max(1, BLOCK // (stop - first))):
+        for part in sample_blocks(stop - first, size=BLOCK):
+            yield some, turns[some, None] + np.arange(first + part.start, first + part.stop)
+
+
+def _crossing(before: Floats, after: Floats) -> tuple[Floats, Floats, Floats]:
+    """Time at which parabolas of both sides cross, sharpness of the turn, jump of the slope."""
     height, slope, bend = (after - before).T
     # mean slope of each side, over the whole of it
     mean = np.abs(before[:, 1] - before[:, 2]) + np.abs(after[:, 1] + after[:, 2])
@@ -257,4 +268,4 @@ def _crossing(since: Floats, values: Floats) -> tuple[Floats, Floats, Floats]:
         for _ in range(_NEWTON_STEPS):
             root = root - (height + root * (slope + root * bend)) / (slope + 2 * root * bend)
         root = np.where(np.abs(root) < 0.5, root, np.nan)
-        return root * scale[:, 0], np.abs(slope) / mean, slope / scale[:, 0]
+        return root, np.abs(slope) / mean, slope

@@ -92,6 +92,19 @@ def test_size_of_a_block_changes_nothing(triangle, monkeypatch):
     assert pieces.identity_residual == pytest.approx(whole.identity_residual, abs=1e-12)
 
 
+def test_a_cycle_longer_than_a_part_is_summed_part_by_part(triangle, monkeypatch):
+    strain, cycles = triangle(n_cycles=6, per_cycle=400)
+    tension = loop(strain, cycles, lost=2.0)
+    args = strain[None], tension[None]
+    whole = check_identity(*args, area=[AREA], cycles=cycles)
+    monkeypatch.setattr(identity, "_PART", 37)
+    parted = check_identity(*args, area=[AREA], cycles=cycles)
+    for name in ("identity_residual", "stroke_mean_modulus_difference"):
+        np.testing.assert_allclose(
+            getattr(parted, name), getattr(whole, name), rtol=1e-9, atol=1e-12
+        )
+
+
 def test_dead_specimen_is_nan_and_leaves_the_other_alone(triangle):
     strain, cycles = triangle(n_cycles=6, per_cycle=200)
     both = np.stack([loop(strain, cycles), np.full_like(strain, np.nan)])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError
-from reduction.moduli import groups
+from reduction.moduli import groups, specimencurves
 from reduction.moduli.grid import strain_grid
 from reduction.moduli.tangent import tangent_curves
 from reduction.settings import ModulusSettings
@@ -185,6 +185,18 @@ def test_size_of_a_block_changes_nothing(triangle, monkeypatch):
         one, other = getattr(whole, item.name), getattr(pieces, item.name)
         if isinstance(one, np.ndarray):
             assert one == pytest.approx(other, rel=1e-9, nan_ok=True), item.name
+
+
+def test_a_cycle_longer_than_a_part_is_summed_part_by_part(triangle, monkeypatch):
+    strain, cycles = triangle(n_cycles=3, per_cycle=400)
+    noisy = law(strain) + np.random.default_rng(8).normal(0, 0.5, strain.size)
+    strain = np.where(np.arange(strain.size) == 100, np.nan, strain)
+    whole = curves_of(strain, noisy, cycles)
+    monkeypatch.setattr(specimencurves, "_PART", 37)
+    parted = curves_of(strain, noisy, cycles)
+    for name in ("tangent_modulus", "tangent_modulus_standard_uncertainty"):
+        np.testing.assert_allclose(getattr(parted, name), getattr(whole, name), rtol=1e-9)
+    np.testing.assert_array_equal(parted.tangent_modulus_count, whole.tangent_modulus_count)
 
 
 def test_grid_of_the_whole_record_can_be_given(triangle):

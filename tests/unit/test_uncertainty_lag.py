@@ -5,6 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from reduction.errors import DataError
+from reduction.uncertainty import lag as lag_module
 from reduction.uncertainty.lag import LAG_REFUSALS, lag_by_turns
 
 FINE, HALF, LAST = 0.002, 5.0, 118.0
@@ -107,6 +108,18 @@ def test_samples_that_are_missing_take_their_turn_with_them():
     found = estimate(time, place, force)
     assert found.lag == pytest.approx([0.03], abs=5e-4)
     assert found.n_turns[0] < estimate(time, place, place).n_turns[0]
+
+
+@pytest.mark.parametrize("block", [7, 100, 500])
+def test_turns_are_read_in_blocks_of_any_length(monkeypatch, block):
+    time, position, tension = log("loss at all rates", lag=0.03, rate=40.0, noise=1e-4)
+    tension[1234] = np.nan
+    whole = estimate(time, position, tension)
+    monkeypatch.setattr(lag_module, "BLOCK", block)
+    found = estimate(time, position, tension)
+    assert found.n_turns == whole.n_turns
+    assert found.lag == pytest.approx(whole.lag, rel=1e-9)
+    assert found.standard_uncertainty == pytest.approx(whole.standard_uncertainty, rel=1e-9)
 
 
 def test_few_turns_and_few_samples_are_refused():

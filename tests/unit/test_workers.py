@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -46,6 +47,23 @@ def test_a_process_uses_no_more_processors_than_it_is_told_to(
     monkeypatch.setattr(os, "sched_getaffinity", lambda pid: {0, 1, 2}, raising=False)
     monkeypatch.setenv("OMP_NUM_THREADS", asked)
     assert workers._n_processors() == used
+
+
+@pytest.mark.parametrize(("longest", "most"), [(1, 4), (1 << 18, 4), (1 << 19, 2), (1 << 21, 1)])
+def test_of_long_blocks_fewer_run_at_a_time(
+    longest: int, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    class Pool(ThreadPoolExecutor):
+        def __init__(self, n_workers: int) -> None:
+            asked.append(n_workers)
+            super().__init__(n_workers)
+
+    monkeypatch.setattr(workers, "_n_processors", lambda: 4)
+    monkeypatch.setattr(workers, "ThreadPoolExecutor", Pool)
+    assert run_blocks(str, range(9), longest=longest) == [str(item) for item in range(9)]
+    assert asked == ([most] if most > 1 else [])
 
 
 def test_the_moduli_have_the_same_bytes_on_any_number_of_processors(
