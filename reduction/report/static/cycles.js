@@ -51,18 +51,28 @@ const tidy = (value) => (value === null ? "?" : grouped(Number(value.toPrecision
 /** Choose the cycle of a point that a reader clicked. */
 const chooseAt = (plot, point) => {
   const section = plot.closest("section");
-  const test = tests.get(section);
-  if (!test) return;
+  if (!tests.has(section)) return;
   const meta = plot.layout.meta;
   if (point.data.meta?.cycle) choose(section, point.data.meta.cycle);
   else if (meta?.cycles === "number") choose(section, Math.round(point.x));
-  else if (meta?.cycles === "time") {
-    const time = point.x * meta.seconds;
+};
+
+// in a record any place is at a time, whether a point is near or not
+for (const plot of plots) {
+  plot.addEventListener("click", (event) => {
+    const section = plot.closest("section");
+    const test = tests.get(section);
+    const meta = plot.layout?.meta;
+    if (!test || meta?.cycles !== "time" || !event.target.closest(".draglayer")) return;
+    const axis = plot._fullLayout.xaxis;
+    const across = event.clientX - plot.getBoundingClientRect().left - axis._offset;
+    if (across < 0 || across > axis._length) return;
+    const time = axis.p2d(across) * meta.seconds;
     const place = test.start.findIndex((from, at) => from !== null && from <= time && time <= test.end[at]);
     if (place >= 0) choose(section, test.numbers[place]);
     else test.state.textContent = `No listed cycle was at ${tidy(time)} s`;
-  }
-};
+  });
+}
 
 /** Say under a figure what it lacks of the chosen cycle. */
 const say = (plot, text) => {

@@ -73,7 +73,8 @@ const tableOf = ({ data, layout }) => {
     const line = plain(trace.name ?? trace.type);
     if (Array.isArray(trace.z?.[0])) {
       const bar = trace.colorbar?.title?.text ?? "";
-      const depth = layout.scene ? heading(layout.scene.zaxis, "z") : `${plain(layout.title.text)} [${plain(bar)}]`;
+      const flat = bar ? `${plain(layout.title.text)} [${plain(bar)}]` : `${line} [1]`;
+      const depth = layout.scene ? heading(layout.scene.zaxis, "z") : flat;
       const at = (grid, row, column) => (Array.isArray(grid[0]) ? grid[row][column] : null);
       trace.z.forEach((values, row) => values.forEach((value, column) => add(line, {
         [across]: at(trace.x, row, column) ?? trace.x[column],
@@ -89,7 +90,8 @@ const tableOf = ({ data, layout }) => {
       continue;
     }
     const length = Math.max(trace.x?.length ?? 0, trace.y?.length ?? 0);
-    const more = trace.hovertemplate?.match(/([\w ]+) %\{customdata/)?.[1].trim();
+    const what = trace.hovertemplate?.match(/([\w ]+) %\{customdata/)?.[1].trim();
+    const more = what && `${what} ${upward.match(/\[[^\]]*\]$/)?.[0] ?? ""}`.trim();
     for (let place = 0; place < length; place += 1) {
       const values = {
         [across]: named(xaxis, trace.x?.[place] ?? null), [upward]: named(yaxis, trace.y?.[place] ?? null),
