@@ -386,7 +386,10 @@ def rich_test():
         ),
         pulls=(make_pull(np.random.default_rng(3)), None),
         rope_step=make_rope_step(np.random.default_rng(4)),
-        trend=PeakTrend(**{item.name: array(rng, 2) for item in fields(PeakTrend)}),
+        trend=PeakTrend(
+            **{item.name: array(rng, 2) for item in fields(PeakTrend)[:-1]},
+            peak_tension_change_standard_uncertainty=np.array([0.01, 0.02]),
+        ),
         slips=make_slips(rng),
         ratios=(make_ratio(rng), make_ratio(rng)),
         elastomers=make_elastomers("new"),

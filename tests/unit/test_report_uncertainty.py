@@ -1,6 +1,7 @@
 """What the page says of uncertainty: expanded, by source, and what is stated of the instruments."""
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -22,6 +23,7 @@ from reduction.report.instruments import (
 from reduction.report.linetables import line_table
 from reduction.report.section import make_section
 from reduction.report.sources import bar_look, in_order
+from reduction.report.style import Shown
 from reduction.report.surfacetables import answer_table, coefficient_table
 from reduction.report.surfaceuncertainty import (
     expanded_of_coefficients,
@@ -394,3 +396,18 @@ def test_a_test_of_scatter_alone_is_named_beside_one_with_what_it_shares():
     )
     for views in ([new], [old], [new, make_view(test="T-2")]):
         assert "reduce" not in plus_minus_of_tests([2.0], views, ["segment_modulus"])
+
+
+def test_words_of_a_bar_are_broken_and_the_figure_grows_with_their_lines():
+    answers = answer_budgets(make_view())
+    (short,) = draw_budgets(make_view(), answers)
+    long = [replace(one, words=f"B9, {one.words} by tension amplitude") for one in answers]
+    (tall,) = draw_budgets(make_view(), long)
+    assert all(text.count("<br>") == 2 for text in tall.layout["yaxis"]["ticktext"])
+    assert tall.height - short.height == 17 * len(answers)
+
+
+def test_a_number_without_a_unit_has_none_behind_it():
+    (one, *_) = answer_budgets(make_view())
+    assert replace(one, unit=Shown("1", 1.0)).text.split(" ± ")[1].count(" ") == 0
+    assert one.text.endswith(f" {one.unit.unit}")

@@ -15,8 +15,8 @@ from reduction.report.view import TestView
 __all__ = ["draw_budgets", "draw_coefficient_budgets"]
 
 _HATCHED = " Hatched: of the same thing as the plain bar of that colour."
-_PER_BAR, _AROUND = 34, 110
-"""Height of a bar with its words, and of title and axis. [px]"""
+_PER_LINE, _AROUND = 17, 110
+"""Height of a line of the words of a bar, and of title and axis. [px]"""
 
 
 def draw_budgets(view: TestView, answers: Sequence[AnswerBudget]) -> list[Figure]:
@@ -41,15 +41,17 @@ def draw_coefficient_budgets(
 
 def _figure(key: str, title: str, own: Sequence[AnswerBudget], synthetic: bool) -> Figure:
     sources = AnswerBudget.sources_of(own)
-    names = [f"{one.words}\n{one.text}" for one in own]
+    # short lines: what they are wide, the bars are short of on a narrow screen
+    names = [f"{one.words}\n{one.text}".replace(" by ", "\nby ") for one in own]
+    lines = max(name.count("\n") + 1 for name in names)
     return make_figure(
         key, title,
         "Share of each source in the variance of a number, which stands with its expanded"
         f" uncertainty.{_HATCHED if any(map(is_hatched, sources)) else ''}",
         _bars(own, sources), synthetic=synthetic, spoken=_spoken(own),
-        height=_AROUND + _PER_BAR * len(own),
+        height=_AROUND + _PER_LINE * lines * len(own),
         barmode="stack", bargap=0.25, legend={"traceorder": "normal"},
-        xaxis={"title": {"text": "share of the variance [%]"}, "range": [0, 100]},
+        xaxis={"title": {"text": "share [%]"}, "range": [0, 100]},
         yaxis={**named_axis("number [its unit]", names), "autorange": "reversed"},
     )  # fmt: skip
 

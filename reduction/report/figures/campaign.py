@@ -116,7 +116,7 @@ def draw_static_dynamic(tests: Sequence[TestView]) -> list[Figure]:
             make_figure(
                 f"campaign-static-{branch}", f"Static against dynamic, {branch}",
                 "Interval moduli of the stepwise tests (markers; bars, ±: expanded uncertainty,"
-                f" 95 %, {factor_words([NORMAL])}) over the tangent moduli of the cyclic tests"
+                f" 95 % ({factor_words([NORMAL])})) over the tangent moduli of the cyclic tests"
                 f" (lines), {branch}.",
                 data, synthetic=any_synthetic(tests), height=420, is_wide=True,
                 xaxis=axis(in_strain.label("strain")),
