@@ -215,6 +215,8 @@ def run_campaign(
             executor=executor,
             progress=progress,
         )
+        # here, where it is still a file of this machine
+        client = None if result.report is None else _client_report(result.report)
     if result.tests or not (campaign.outcomes or campaign.hoses):
         output.show(_status_table(result.tests))
     _say_results(output, results_found(campaign))
@@ -239,12 +241,11 @@ def run_campaign(
         "processed": str(result.processed),
         "tables": [str(path) for path in result.tables],
         "report": None if result.report is None else str(result.report),
-        "client_report": None,
+        "client_report": None if client is None else str(client),
     }
     if result.report is not None:
         output.say(f"report:   {result.report}")
-        client = _client_report(result.report, output)
-        document["client_report"] = None if client is None else str(client)
+    _say_client_report(client, output)
     document["design_values"] = refresh_design_page(processed_here, reports_here, output)
     output.answer(document)
     _report_failures(output, result.tests, result.parts)
@@ -269,7 +270,8 @@ def report_again(
         )
         output.say(f"report: {page}")
         written["reports"].append(str(page))
-        client = _client_report(page, output)
+        client = _client_report(page)
+        _say_client_report(client, output)
         if client is not None:
             written["client_reports"].append(str(client))
             if is_printed:
@@ -284,13 +286,15 @@ def report_again(
     output.answer(written | {"design_values": refresh_design_page(root, reports, output)})
 
 
-def _client_report(page: Path, output: CommandOutput) -> Path | None:
-    """Say where the report to the client is, where there is one."""
+def _client_report(page: Path) -> Path | None:
+    """Report to the client beside the page of a campaign, where there is one."""
     client = page.with_name(PAGE_NAME)
-    if not client.exists():
-        return None
-    output.say(f"report to the client: {client}")
-    return client
+    return client if client.exists() else None
+
+
+def _say_client_report(client: Path | None, output: CommandOutput) -> None:
+    if client is not None:
+        output.say(f"report to the client: {client}")
 
 
 def _printed(client: Path, output: CommandOutput) -> Path:

@@ -154,6 +154,26 @@ def test_a_second_run_finds_everything_unchanged_and_writes_what_it_did(
     assert [row[:2] for row in rows[1:]] == [["A", "reduced_with_notes"], ["B", "unchanged"]]
 
 
+def test_what_the_laboratory_states_goes_with_the_archives_and_is_taken_away_with_them(
+    processed, command, tmp_path
+):
+    campaign = processed.objects["bucket/raw/campaign.toml"]
+    processed.objects["bucket/raw/campaign.toml"] = campaign + b'\n[report]\nnumber = "17"\n'
+    answer = json.loads(command(*RUN, "--json", cwd=tmp_path).stdout)
+    assert [test["status"] for test in answer["tests"]] == ["unchanged"] * 2
+    assert answer["client_report"] == "s3://bucket/reports/small/client-report.html"
+    assert b'"number": "17"' in processed.objects["bucket/processed/small/report.json"]
+    page = processed.objects["bucket/reports/small/client-report.html"]
+    again = command(
+        "report", "s3://bucket/processed/small", "--reports", tmp_path / "pages", "--allow-remote"
+    )
+    assert again.returncode == 0, again.stderr
+    assert (tmp_path / "pages" / "small" / "client-report.html").read_bytes() == page
+    processed.objects["bucket/raw/campaign.toml"] = campaign
+    assert json.loads(command(*RUN, "--json", cwd=tmp_path).stdout)["client_report"] is None
+    assert "bucket/processed/small/report.json" not in processed.objects
+
+
 def test_logs_behind_signed_addresses_leave_no_secret_anywhere(here, command, tmp_path):
     raw = tmp_path / "raw"
     shutil.copytree(here / "raw", raw)
