@@ -31,6 +31,7 @@ extensions = [
     "sharedreferences",
     "mathml",
     "sourcelinks",
+    "accessible",
     "madepages",
 ]
 exclude_patterns = ["_build", "_ext", "examples", "tutorials"]

@@ -38,7 +38,8 @@ def _inline(writer: Any, node: nodes.math) -> None:
 
 
 def _block(writer: Any, node: nodes.math_block) -> None:
-    writer.body.append(writer.starttag(node, "div", CLASS="math"))
+    # one that is wider than the page is scrolled, by the keyboard too
+    writer.body.append(writer.starttag(node, "div", CLASS="math", TABINDEX="0"))
     writer.body.append(_mathml(node, as_block=True))
     writer.body.append("</div>\n")
     raise nodes.SkipNode

@@ -211,3 +211,25 @@ def test_every_figure_says_what_its_numbers_are(script):
     assert figures
     for one in figures:
         assert re.search(r"synthetic|published|computed|made-up", one), one[:200]
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "index",
+        "method",
+        "errata",
+        "gallery/index",
+        "tutorial/plot_1_whoi_2005_10",
+        "reference/commands",
+    ],
+)
+def test_a_page_opens_from_the_disk_and_is_as_wide_as_the_screen(name, width, built, visit):
+    opened = visit(built / f"{name}.html", width=width)
+    assert not opened.errors
+    assert not opened.beyond
+    assert opened.page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
+    if width == 1280:
+        own = [one for one in opened.faults() if "scrollable-region-focusable" not in one]
+        assert not own

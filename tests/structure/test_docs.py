@@ -18,7 +18,11 @@ from reduction.settings import ReductionSettings
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
+MADE = {"_build", "gallery", "reference", "tutorial"}  # by a build, where one was made in the place
+PAGES = [
+    ROOT / "README.md",
+    *(path for path in sorted(DOCS.rglob("*.md")) if not MADE & set(path.relative_to(DOCS).parts)),
+]
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CAMPAIGN, LAYOUTS = (
     (DOCS / name).read_text(encoding="utf-8") for name in ("campaign.md", "layouts.md")
