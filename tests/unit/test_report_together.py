@@ -64,11 +64,12 @@ def test_a_specimen_has_one_colour_and_one_entry_in_the_legend():
     assert {trace["line"]["dash"] for trace in curves} == {"solid", "dash"}
 
 
-def test_each_test_is_named_once_at_the_end_of_its_curve():
+def test_each_test_is_named_once_above_the_highest_of_its_curves():
     views = [make_view("T-1", [0.9, 1.1], 1.0), make_view("<b>", [0.5, 1.5], 2.0)]
     (figure,) = draw_specimens_together(views)
     labels = [(one["text"], one["x"], one["y"]) for one in figure.layout["annotations"]]
-    assert labels == [("T-1", 110.0, 1.0), ("&lt;b&gt;", 150.0, 2.0)]
+    # the second specimen is twice as stiff
+    assert labels == [("T-1", 110.0, 2.0), ("&lt;b&gt;", 150.0, 4.0)]
 
 
 def test_labels_of_many_tests_would_cover_the_curves():

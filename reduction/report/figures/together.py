@@ -44,7 +44,7 @@ def draw_specimens_together(tests: Sequence[TestView]) -> list[Figure]:
         return []
     envelopes = [_envelope(chosen, name, order, in_stress) for order, name in enumerate(names)]
     data = [trace for trace in envelopes if trace is not None]
-    labels: list[Trace] = []
+    by_test: dict[str, list[Trace]] = {}
     for order, name in enumerate(names):
         is_first = True
         for view in chosen:
@@ -53,8 +53,8 @@ def draw_specimens_together(tests: Sequence[TestView]) -> list[Figure]:
             traces = _curves(view, name, order, is_first=is_first)
             is_first = is_first and not traces
             data += traces
-            if traces and not any(one["text"] == plot_text(view.id, 20) for one in labels):
-                labels.append(_label(view, traces[0]))
+            by_test.setdefault(view.id, []).extend(traces)
+    labels = [_label(name, traces) for name, traces in by_test.items() if traces]
     if not any(trace["name"] in map(plot_text, names) for trace in data):
         return []
     left = [view.id for view in curved if view not in chosen]
@@ -98,13 +98,17 @@ def _curves(view: TestView, specimen: str, order: int, *, is_first: bool) -> lis
     return found
 
 
-def _label(view: TestView, trace: Trace) -> Trace:
-    """Return the name of a test, at the end of its curve."""
-    known = [place for place, value in enumerate(trace["y"]) if value is not None]
+def _label(name: str, traces: Sequence[Trace]) -> Trace:
+    """Return the name of a test, above the highest of its curves."""
+    height, place = max(
+        (y, x)
+        for trace in traces
+        for x, y in zip(trace["x"], trace["y"], strict=True)
+        if y is not None
+    )
     return {
-        "text": plot_text(view.id, 20), "x": trace["x"][known[-1]], "y": trace["y"][known[-1]],
-        "showarrow": False, "xanchor": "left", "yanchor": "bottom", "xshift": 4,
-        "font": {"size": 11},
+        "text": plot_text(name, 20), "x": place, "y": height, "showarrow": False,
+        "xanchor": "center", "yanchor": "bottom", "yshift": 3, "font": {"size": 11},
     }  # fmt: skip
 
 
