@@ -191,11 +191,24 @@ def _one_cycle(
         make_figure(
             "cycle", f"{view.id}: trim of cycle {cycle:.0f}",
             "The cycle in the middle of the test. Thick: the samples at a constant rate, which are"
-            " what enters the means; the ends are cut off.",
+            f" what enters the means; the ends are cut off. {_cut_off(before, after)}",
             data, synthetic=view.is_synthetic, height=320, is_wide=True,
             xaxis=axis(unit.label("time")), yaxis=axis(label),
         )
     ]  # fmt: skip
+
+
+def _cut_off(before: TestView | None, after: TestView | None) -> str:
+    """Say how much of the branches of all cycles is cut off."""
+    said = []
+    for words, view in (("as it is", before), ("changed", after)):
+        kept = (
+            None if view is None or (view is before and words == "changed") else _in_means(view, 0)
+        )
+        branch = None if view is None else view.array("branch")
+        if kept is not None and branch is not None and (branch > 0).any():
+            said.append(f"{100 * (1 - kept.sum() / (branch > 0).sum()):.2g} % {words}")
+    return f"Of the samples of all branches: {', '.join(said)}." if said else ""
 
 
 def _control_of(view: TestView) -> tuple[str, Floats] | None:

@@ -4,6 +4,7 @@ import http.client
 import json
 import socket
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 from types import SimpleNamespace
@@ -364,3 +365,20 @@ def test_a_newer_change_ends_an_older_one_that_waits(server, session):
 @pytest.mark.parametrize("number", [99, -1, "1", None, 1.5])
 def test_work_that_is_not_known_is_said(server, number):
     assert ask(server, "POST", "/api/job", {"job": number}).status == 404
+
+
+def test_changes_at_once_do_not_mix(server):
+    def change(number):
+        told = {"test": f"T{number}", "changes": {}}
+        found = json.loads(ask(server, "POST", "/api/change", told).text)
+        while found["state"] == "running":
+            found = json.loads(ask(server, "POST", "/api/job", {"job": found["job"]}).text)
+        return number, found
+
+    with ThreadPoolExecutor(8) as pool:
+        answers = list(pool.map(change, range(24)))
+    own = [found["error"] == f"no such test: T{number}" for number, found in answers]
+    others = [found["state"] == "superseded" for _, found in answers]
+    assert all(one != other for one, other in zip(own, others, strict=True))
+    newest = max(answers, key=lambda one: one[1]["job"])
+    assert newest[1]["error"] == f"no such test: T{newest[0]}"

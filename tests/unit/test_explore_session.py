@@ -352,14 +352,22 @@ def test_a_segment_over_another_range_has_no_difference(session):
 
 
 def test_the_page_is_sent_settings_figures_answers_and_the_diff(session):
-    text = session.changed("T-1", {"cycles.trim_threshold": "0.9"})
+    text = session.changed("T-1", {"cycles.trim_threshold": "0.8"})
     before, after = session.made("T-1", session.text), session.made("T-1", text)
     found = change_document(session, "T-1", text, before, after, "us")
     assert [one["key"] for one in found["figures"]][:2] == ["modulus-0", "modulus-1"]
     assert {"record", "loops-0", "difference-1"} <= {one["key"] for one in found["figures"]}
-    assert "+reduction.cycles.trim_threshold = 0.9" in found["diff"].splitlines()
+    assert "+reduction.cycles.trim_threshold = 0.8" in found["diff"].splitlines()
+    cut = []
+    for one in (before, after):
+        cycles = one.survey.located.cycles
+        of_branches = cycles.branch > 0
+        cut.append(100 * (1 - cycles.is_constant_rate[of_branches].mean()))
+    (cycle,) = (one for one in found["figures"] if one["key"] == "cycle")
+    assert cut[0] > cut[1] > 0
+    assert f"{cut[0]:.2g} % as it is, {cut[1]:.2g} % changed" in cycle["caption"]
     settings = {one["key"]: one for one in found["settings"]}
-    assert settings["cycles.trim_threshold"]["value"] == "0.9"
+    assert settings["cycles.trim_threshold"]["value"] == "0.8"
     assert settings["cycles.trim_threshold"]["place"] == "test"
     assert settings["modulus.strain_bin_width"]["shown"] == "1 %"
     assert settings["modulus.strain_bin_width"]["place"] == "defaults"
