@@ -2,7 +2,7 @@
 
     python benchmarks/reduction_over_parse.py [ROWS] [REPEATS] [memory | disk]
 
-Columns lie where a run puts them, in memory up to 64 MB of text and else on disk, or where asked.
+Columns lie where a run puts them, in memory up to 32 MB of text and else on disk, or where asked.
 The two run in turn, A B A B ..., each in a process of its own, so that the ratio holds when
 the machine's speed drifts; hashing of the raw file is part of the reduction.  The file
 is generated (synthetic) in the folder BENCHMARK_DATA, or a temporary one.

@@ -25,7 +25,7 @@ class Parts:
         Where the scratch files of its columns lie.
     """
 
-    in_memory: int = 64 << 20
+    in_memory: int = 32 << 20
     n_bytes: int = 16 << 20
     folder: Path = field(default_factory=scratch_folder)
 

@@ -33,6 +33,7 @@ __all__ = [
 _MALLOC_TRIM = getattr(ctypes.CDLL(None), "malloc_trim", None) if os.name == "posix" else None
 
 _ON_DISK_FROM = 1 << 20  # bytes; less is not worth a file
+_LONG = 1 << 22  # bytes of a series from which what its stages have freed is worth giving back
 
 
 class _ScratchMap(mmap.mmap):
@@ -63,12 +64,14 @@ def let_go(*arrays: NDArray[Any]) -> None:
 
 
 def give_back(*arrays: NDArray[Any]) -> None:
-    """Give what earlier work has freed back to the system, if any of the arrays is on disk.
+    """Give what earlier work has freed back to the system, if any of the arrays is long or on disk.
 
     The C library keeps what is freed, in pieces between what is not: half of the memory of a
     long log after a few stages.
     """
-    if _MALLOC_TRIM is not None and any(is_on_disk(array) for array in arrays):
+    if _MALLOC_TRIM is not None and any(
+        array.nbytes >= _LONG or is_on_disk(array) for array in arrays
+    ):
         _MALLOC_TRIM(0)
 
 

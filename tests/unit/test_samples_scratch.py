@@ -8,7 +8,13 @@ import pytest
 
 from reduction.errors import DataError
 from reduction.samples import scratch
-from reduction.samples.scratch import ColumnWriter, empty_like, is_on_disk, scratch_folder
+from reduction.samples.scratch import (
+    ColumnWriter,
+    empty_like,
+    give_back,
+    is_on_disk,
+    scratch_folder,
+)
 
 
 @pytest.mark.parametrize("kind", [np.float64, np.int64, np.uint16])
@@ -99,3 +105,21 @@ def test_a_limit_on_address_space_is_told(tmp_path, monkeypatch):
 def test_a_folder_that_is_not_there_is_told(tmp_path):
     with pytest.raises(DataError, match="no scratch file can be made for a long log; found .*no"):
         ColumnWriter(tmp_path / "no")
+
+
+def test_what_stages_of_a_long_series_have_freed_is_given_back(tmp_path, monkeypatch):
+    asked = []
+    monkeypatch.setattr(scratch, "_MALLOC_TRIM", asked.append)
+    writer = ColumnWriter(tmp_path)
+    writer.append(np.zeros(3))
+    long = np.empty(scratch._LONG, dtype=bool)
+    give_back(np.zeros(3), long[1:])
+    assert asked == []
+    for arrays in ([long], [np.zeros(3), long], [writer.finish()]):
+        give_back(*arrays)
+    assert asked == [0, 0, 0]
+
+
+def test_no_system_but_one_is_asked_to_give_back(monkeypatch):
+    monkeypatch.setattr(scratch, "_MALLOC_TRIM", None)
+    give_back(np.empty(scratch._LONG, dtype=bool))
