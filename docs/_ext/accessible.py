@@ -1,4 +1,7 @@
-"""What a page lacks for people who do not see it: the level of the headings above the lists."""
+"""What pages lack for people who do not see them, or use no mouse.
+
+The headings above the lists get their level, and what is scrolled sideways can be reached by key.
+"""
 
 from __future__ import annotations
 
@@ -9,18 +12,22 @@ from sphinx.application import Sphinx
 __all__ = ["setup"]
 
 _LAST = 900
-_HEADING = 'role="heading"'
+_INSTEAD = {
+    'role="heading"': 'role="heading" aria-level="2"',
+    '<div class="highlight"><pre>': '<div class="highlight"><pre tabindex="0">',
+}
 
 
-def _with_levels(
+def _improve(
     app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: object
 ) -> None:
     for name in ("body", "furo_navigation_tree"):
         if isinstance(context.get(name), str):
-            context[name] = context[name].replace(_HEADING, f'{_HEADING} aria-level="2"')
+            for text, better in _INSTEAD.items():
+                context[name] = context[name].replace(text, better)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """After the theme has made its lists."""
-    app.connect("html-page-context", _with_levels, priority=_LAST)
+    app.connect("html-page-context", _improve, priority=_LAST)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
