@@ -1,8 +1,7 @@
 """Strength and life on the page: what stands in it, and that nothing stands without data."""
 
-import json
-
 import pytest
+from pagefigures import figures_of
 
 from reduction.archive.outcomes import outcomes_to_dataset
 from reduction.archive.write import write_archive
@@ -201,7 +200,5 @@ def test_an_archive_that_cannot_be_read_is_told_and_not_shown(page, tmp_path):
     assert "outcomes.nc" in html and 'id="outcomes"' not in html
 
 
-def test_figures_are_json_that_a_script_can_hold(page):
-    html = page().read_text(encoding="utf-8")
-    start = html.index('id="outcomes-lives-0-data">') + len('id="outcomes-lives-0-data">')
-    assert json.loads(html[start : html.index("</script>", start)])["data"]
+def test_figures_are_on_the_page_as_a_script_reads_them(page):
+    assert figures_of(page())["outcomes-lives-0"]["data"]
