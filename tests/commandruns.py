@@ -1,10 +1,13 @@
 """The command in a process of its own, and a campaign of the project that it ran."""
 
+import json
 import os
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+
+from manytests import wait_for
 
 ROOT = Path(__file__).parents[1]
 
@@ -33,4 +36,38 @@ def run_campaign(name, folder, *options, **environment):
         "run", ROOT / "raw" / name / "campaign.toml", "--processed", folder / "processed",
         "--reports", folder / "reports", *options, **environment,
     )  # fmt: skip
+    return Run(folder / "processed" / name, folder / "reports" / name, done)
+
+
+def shared_by_processes(tmp_path_factory):
+    """One folder for all processes of the tests."""
+    base = tmp_path_factory.getbasetemp()
+    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+
+def made_once(folder, make):
+    """Make a folder in the first process of the tests that needs it; the others wait for it."""
+    try:
+        folder.mkdir()
+    except FileExistsError:
+        wait_for((folder / "made").is_file, seconds=300)
+    else:
+        try:
+            make(folder)
+        finally:
+            (folder / "made").touch()
+    return folder
+
+
+def run_once(name, shared):
+    """A campaign of the project, run once for all tests that only read what it made."""
+
+    def make(folder):
+        done = run_campaign(name, folder, "--json").done
+        said = [done.returncode, done.stdout, done.stderr]
+        (folder / "said.json").write_text(json.dumps(said), encoding="utf-8")
+
+    folder = made_once(shared / f"campaign-{name}", make)
+    said = json.loads((folder / "said.json").read_text(encoding="utf-8"))
+    done = subprocess.CompletedProcess(["reduction", "run", name], *said)
     return Run(folder / "processed" / name, folder / "reports" / name, done)

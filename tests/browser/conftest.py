@@ -7,8 +7,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from commandruns import reduction, run_campaign
-from manytests import wait_for, write_many
+from commandruns import made_once, reduction, run_once, shared_by_processes
+from manytests import write_many
 from playwright.sync_api import sync_playwright
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
@@ -109,44 +109,20 @@ def visit(browser):
         context.close()
 
 
-def made_once(folder, make):
-    """Make a folder in the first process of the tests that needs it; the others wait for it."""
-    try:
-        folder.mkdir()
-    except FileExistsError:
-        wait_for((folder / "made").is_file, seconds=300)
-    else:
-        try:
-            make(folder)
-        finally:
-            (folder / "made").touch()
-    return folder
-
-
 @pytest.fixture(scope="session")
-def shared_folder(tmp_path_factory):
-    """One folder for all processes of these tests."""
-    base = tmp_path_factory.getbasetemp()
-    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
-
-
-@pytest.fixture(scope="session")
-def campaigns(shared_folder):
+def campaigns(tmp_path_factory):
     """Every campaign of the project, run by the command: its name, and where its products are."""
 
     def run(name):
-        def make(folder):
-            done = run_campaign(name, folder).done
-            assert done.returncode == 0, done.stderr
-
-        folder = made_once(shared_folder / f"browser-{name}", make)
-        return Products(folder / "processed" / name, folder / "reports" / name)
+        ran = run_once(name, shared_by_processes(tmp_path_factory))
+        assert ran.done.returncode == 0, ran.done.stderr
+        return Products(ran.processed, ran.reports)
 
     return run
 
 
 @pytest.fixture(scope="session")
-def small(shared_folder):
+def small(tmp_path_factory):
     """A campaign of three short tests, which is there in seconds."""
 
     def make(folder):
@@ -155,5 +131,5 @@ def small(shared_folder):
         done = reduction("run", campaign, *places)
         assert done.returncode == 0, done.stderr
 
-    folder = made_once(shared_folder / "browser-small", make)
+    folder = made_once(shared_by_processes(tmp_path_factory) / "small", make)
     return Products(folder / "processed" / "many", folder / "reports" / "many")

@@ -4,7 +4,7 @@ import contextlib
 from dataclasses import dataclass
 
 import pytest
-from commandruns import ROOT, reduction, run_campaign
+from commandruns import ROOT, reduction, run_once, shared_by_processes
 from typer.testing import CliRunner
 
 from reduction.cli.main import app
@@ -36,9 +36,9 @@ def process():
 
 @pytest.fixture(scope="session")
 def synthetic(tmp_path_factory):
-    return run_campaign("tmt-synthetic", tmp_path_factory.mktemp("synthetic"), "--json")
+    return run_once("tmt-synthetic", shared_by_processes(tmp_path_factory))
 
 
 @pytest.fixture(scope="session")
 def static(tmp_path_factory):
-    return run_campaign("buoy-technology-1997", tmp_path_factory.mktemp("static"))
+    return run_once("buoy-technology-1997", shared_by_processes(tmp_path_factory))
