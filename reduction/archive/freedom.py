@@ -4,6 +4,8 @@ References
 ----------
 .. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty in
    measurement," 4.2.6, G.4.1 (Welch and Satterthwaite).
+.. [2] J. von Neumann, R. H. Kent, H. R. Bellinson and B. I. Hart, "The mean square successive
+   difference," Ann. Math. Statist., vol. 12, no. 2, pp. 153-162, 1941.
 """
 
 from __future__ import annotations
@@ -34,6 +36,8 @@ _ONCE = ("bedding_", "pull_", "tensile_strength", "strain_at_failure", "permanen
 _LAST = ("dynamic_stiffness", "dynamic_mean_tension", "dynamic_tension_amplitude")
 _OF_SURFACE = ("_point_value", "_stationary_point", "_eigenvalue")
 _LINES = ("_per_decade", "_per_cycle", "_change", "_drift")
+# from the differences of neighbouring cycles, of which each cycle is in two
+_OF_NEIGHBOURS = frozenset({"peak_tension_change"})
 _READINGS = {"diameter": "diameter_reading", "area": "diameter_reading"}
 # bins are those of the cycles that reach them
 _COUNTS = {"tangent_modulus": "tangent_modulus_count", "branch_tension": "branch_tension_count",
@@ -64,8 +68,10 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
     -----
     Stated, where the archive states it: of a regression over runs, of a ratio.  Readings less one;
     cycles less one, or two for a line over them, of those that reach the number or of all after the
-    break-in; infinite for a regression on the samples of one rise, pull or hold, and where a single
-    cycle leaves nothing but that ([1]_, 4.2.6).
+    break-in; 2 (n - 1)^2 / (3 n - 4) for the differences of n neighbours, whose mean square has the
+    variance 4 (3 n - 4) sigma^4 / (n - 1)^2 about 2 sigma^2 ([2]_); infinite for a regression on
+    the samples of one rise, pull or hold, and where a single cycle leaves nothing but that
+    ([1]_, 4.2.6).
 
     Examples
     --------
@@ -96,6 +102,9 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
     if name.startswith(_LAST) and "dynamic_cycles" in archive:
         last = np.asarray(archive["dynamic_cycles"].values, dtype=np.float64)
         return np.maximum(last - fitted, 1.0)
+    if name in _OF_NEIGHBOURS:
+        n_cycles = max(archive.sizes.get("cycle", 0), 2)
+        return np.asarray(2.0 * (n_cycles - 1) ** 2 / (3 * n_cycles - 4))
     settings = json.loads(str(archive.attrs.get("settings") or "{}"))
     break_in = settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0)
     return np.asarray(max(archive.sizes.get("cycle", 0) - break_in - fitted, 1.0))

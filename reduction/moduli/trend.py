@@ -134,8 +134,8 @@ def change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
 
     Raises
     ------
-    DataError
-        Never by itself.
+    ValueError
+        If the values are not numbers in rows of one length.
 
     Notes
     -----
