@@ -104,9 +104,10 @@ def over_intervals(
         low = int(first[at])
         end = int(np.searchsorted(reached, low + BLOCK, side="right"))
         if end <= at:  # longer than a block
-            high, end = int(stop[at]), at + 1
-            starts = range(low, high, BLOCK)
-            parts = [operation.reduce(series[i : min(i + BLOCK, high)]) for i in starts]
+            own, end = series[low : int(stop[at])], at + 1
+            parts = [
+                operation.reduce(own[part]) for part in sample_blocks(own.size, own, size=BLOCK)
+            ]
             results[at] = operation.reduce(np.array(parts))
         else:
             bounds = np.column_stack([first[at:end], stop[at:end]]).ravel() - low

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.samples import intervals
+from reduction.samples import blocks, intervals
 from reduction.samples.intervals import interval_labels, over_intervals
 from reduction.samples.scratch import ColumnWriter
 
@@ -34,3 +34,14 @@ def test_no_intervals_come_to_nothing():
     none = np.empty(0, dtype=np.int64)
     assert over_intervals(np.add, np.arange(3.0), none, none).size == 0
     assert interval_labels(np.zeros(2), none, none, none).tolist() == [0, 0]
+
+
+def test_a_long_interval_is_let_go_as_it_is_passed(tmp_path, monkeypatch):
+    passed = []
+    monkeypatch.setattr(intervals, "BLOCK", 10)
+    monkeypatch.setattr(blocks, "_SPAN", 40)
+    monkeypatch.setattr(blocks, "let_go", lambda *series: passed.append(len(series)))
+    series = on_disk(tmp_path, np.arange(100.0))
+    found = over_intervals(np.add, series, np.array([5]), np.array([95]))
+    assert found.tolist() == [series[5:95].sum()]
+    assert passed == [1] * 5
