@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import xarray as xr
@@ -182,7 +182,8 @@ class Session:
         also = () if text.digest == self.text.digest else self._also(now, test, told)
         said = "" if error is None else now.campaign.in_words(str(error))
         seconds = time.perf_counter() - begun
-        return Made(survey, dataset, said, seconds, is_standing, also)
+        # the record of a long log is kept once, and not with everything that was made of it
+        return Made(replace(survey, located=None), dataset, said, seconds, is_standing, also)
 
     def _surveyed(self, text: CampaignText, log: str, told: Callable[[str], None]) -> _Surveyed:
         campaign = load_campaign(self.path, text=text.text)

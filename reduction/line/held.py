@@ -24,6 +24,7 @@ from reduction.line.static import StaticStiffness, static_stiffness
 from reduction.line.strength import one_a_specimen
 from reduction.phases.standstill import Standstills
 from reduction.record import Floats
+from reduction.samples.columns import chosen
 
 __all__ = ["HeldPair", "held_pairs"]
 
@@ -78,15 +79,16 @@ def _stiffness(low: Hold, high: Hold, *, strength: float, reference_time: float)
             "the record does not show the ramp to the upper hold, so the time since loading is "
             "not known"
         )
-    known = np.isfinite(low.strain)
-    if int(known.sum()) < 3:
-        raise DataError("the lower hold has no strain", found=f"{int(known.sum())} readings")
-    (tension, u_tension), (strain, u_strain) = _end_of(low.tension), _end_of(low.strain[known])
-    later = high.since_centre > 0
+    (known,) = chosen(lambda part: np.isfinite(low.strain[part]), low.strain)
+    if known.size < 3:
+        raise DataError("the lower hold has no strain", found=f"{known.size} readings")
+    (tension, u_tension), (strain, u_strain) = _end_of(low.tension), _end_of(known)
+    since = high.since_centre
+    later = int(np.searchsorted(since, 0.0, side="right"))
     found = static_stiffness(
-        high.since_centre[later],
-        high.tension[later],
-        high.strain[later],
+        since[later:],
+        high.tension[later:],
+        high.strain[later:],
         low_tension=tension,
         low_strain=strain,
         reference_time=reference_time,

@@ -29,7 +29,10 @@ from reduction.holds.blocks import logarithmic_blocks
 from reduction.holds.product import HoldResult
 from reduction.holds.relaxation import RAMP_TIMES_LEFT_OUT
 from reduction.moduli.separable import lag_one_inflation
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Bools, Floats, freeze_arrays
+from reduction.samples.blocks import finite_extremes, sample_blocks
+from reduction.samples.columns import chosen
+from reduction.samples.scratch import empty_like
 
 __all__ = ["CreepOfHold", "StaticStiffness", "creep_of_hold", "static_stiffness"]
 
@@ -186,23 +189,31 @@ def static_stiffness(
             "the reference time is not positive", found=f"{reference_time:g} s", needed="above 0 s"
         )
     clock, load, stretch = as_same_shape(elapsed=elapsed, tension=tension, strain=strain)
-    kept = np.isfinite(clock) & np.isfinite(load) & np.isfinite(stretch)
-    kept &= ~(clock < RAMP_TIMES_LEFT_OUT * ramp_duration)
-    clock, load, stretch = clock[kept], load[kept], stretch[kept]
+    series, shortest = (clock, load, stretch), RAMP_TIMES_LEFT_OUT * ramp_duration
+
+    def is_kept(part: slice) -> Bools:
+        clock, load, stretch = (one[part] for one in series)
+        known = np.isfinite(clock) & np.isfinite(load) & np.isfinite(stretch)
+        return known & ~(clock < shortest)
+
+    clock, load, stretch = chosen(is_kept, *series)
     if clock.size < _FEWEST_POINTS:
         raise FitError(
             "the upper hold is too short for a line in the logarithm of time",
             found=f"{clock.size} readings after {RAMP_TIMES_LEFT_OUT:g} ramp times",
             needed=f"{_FEWEST_POINTS} or more",
         )
-    rise, gain = load - low_tension, stretch - low_strain
-    if not ((rise > 0).all() and (gain > 0).all()):
+    rise, gain = finite_extremes(load)[0] - low_tension, finite_extremes(stretch)[0] - low_strain
+    if not (rise > 0 and gain > 0):
         raise DataError(
             "the upper hold is not above the lower one",
-            found=f"least rise {rise.min():.4g} N of tension and {gain.min():.4g} of strain",
+            found=f"least rise {rise:.4g} N of tension and {gain:.4g} of strain",
             needed="both above zero",
         )
-    blocks = logarithmic_blocks(clock, rise / gain)
+    stiffness = empty_like(load)
+    for part in sample_blocks(load.size, load, stretch, stiffness):
+        stiffness[part] = (load[part] - low_tension) / (stretch[part] - low_strain)
+    blocks = logarithmic_blocks(clock, stiffness)
     x, y = np.log10(blocks.elapsed / reference_time), blocks.value
     if x.size < _FEWEST_POINTS or x[-1] - x[0] < _SHORTEST_SPAN:
         raise FitError(
