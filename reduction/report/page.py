@@ -23,7 +23,8 @@ from reduction.report.figures.campaign import (
 from reduction.report.figures.ratios import draw_ratios
 from reduction.report.figures.together import draw_specimens_together
 from reduction.report.instruments import instrument_sentences, instrument_table
-from reduction.report.render import Page, about_page, render_page
+from reduction.report.manypages import write_pages
+from reduction.report.render import Page, RenderedSection, about_page, render_section
 from reduction.report.section import Section, make_part, make_section
 from reduction.report.specimentables import specimen_notes, specimen_table
 from reduction.report.stepwisetables import interval_table
@@ -62,8 +63,9 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     Returns
     -------
     page : pathlib.Path
-        ``out/index.html``; it appears whole or not at all. Beside it stands the report to the
-        client, where the folder holds what the laboratory states for it.
+        ``out/index.html``; it appears whole or not at all. Beside it stand the pages of tests for
+        which it has no room, and the report to the client, where the folder holds what the
+        laboratory states for it.
 
     Raises
     ------
@@ -80,36 +82,41 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
             hint="Run the campaign first.",
         )
     by_test = {row.test: row for row in statuses}
+    details = read_details(processed)
     tests: list[TestView] = []
-    sections: list[Section] = []
+    rendered: dict[str, RenderedSection] = {}
+    sections: dict[str, Section] = {}
     unreadable: dict[str, str] = {}
     starts: dict[str, float] = {}
     for index, path in enumerate(paths):
         try:
             with open_archive(path) as data:
                 view = TestView(f"test-{index}", data, units, by_test.get(data.attrs["test"]))
-                sections.append(make_section(view))
+                section = make_section(view)
+                rendered[view.key] = render_section(section, is_folded=len(paths) > 1)
+                if details is not None:
+                    sections[view.key] = section
                 starts[view.key] = view.start_time
                 tests.append(view.without_samples())
         except ArchiveError as error:
             # the page is the same wherever the archives lie
             unreadable[path.name] = str(error).replace(str(path), path.name)
     by_id = {view.id: view for view in tests}
-    order = sorted(range(len(tests)), key=lambda place: _place(tests[place], by_id, starts))
-    tests = [tests[place] for place in order]
-    ordered = [sections[place] for place in order]
+    tests.sort(key=lambda view: _place(view, by_id, starts))
     whole = read_whole(processed, by_id, units, unreadable)
-    content = _page_of(tests, whole, ordered, statuses, unreadable, units, processed.name)
-    page = out / "index.html"
-    write_whole(page, render_page(content))
-    details = read_details(processed)
+    content = _page_of(tests, whole, statuses, unreadable, units, processed.name)
+    outcomes = [
+        render_section(section, is_folded=len(paths) + len(whole.outcomes) > 1)
+        for _, section in whole.outcomes
+    ]
+    page = write_pages(content, [*outcomes, *(rendered[view.key] for view in tests)], out)
     beside = out / PAGE_NAME
     if details is None:
         beside.unlink(missing_ok=True)  # of an earlier run: the campaign has no such report now
     else:
         of_client = ClientContent(
-            details, tests, whole, ordered, statuses, content.faults, content.title,
-            content.campaign, units,
+            details, tests, whole, [sections[view.key] for view in tests], statuses,
+            content.faults, content.title, content.campaign, units,
         )  # fmt: skip
         write_whole(beside, render_client_report(of_client))
     return page
@@ -118,7 +125,6 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
 def _page_of(
     tests: Sequence[TestView],
     whole: WholeCampaign,
-    sections: Sequence[Section],
     statuses: Sequence[Status],
     unreadable: dict[str, str],
     units: UnitSystem,
@@ -172,7 +178,6 @@ def _page_of(
         intervals=[table for table in intervals if table is not None],
         comparisons=[part for part in comparisons if part.figures],
         across="Across the tests" if tests else "Across the hoses",
-        sections=[*(section for _, section in whole.outcomes), *sections],
     )
 
 

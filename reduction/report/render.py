@@ -12,9 +12,10 @@ import zlib
 from base64 import b64encode
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 
-from jinja2 import Environment, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined
 from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
 
 from reduction import __version__
@@ -23,9 +24,28 @@ from reduction.report.section import Part, Section
 from reduction.report.summary import Finding, Tile
 from reduction.units import UnitSystem
 
-__all__ = ["Page", "about_page", "packed", "render_page"]
+__all__ = [
+    "Link", "Page", "RenderedSection", "about_page", "packed", "render_page", "render_section",
+]  # fmt: skip
 
 _SCRIPTS = ("inflate", "figures", "cycles", "downloads", "contents")
+
+
+@dataclass(frozen=True)
+class Link:
+    """An address in this page or beside it, and what a reader is shown of it."""
+
+    target: str
+    words: str
+
+
+@dataclass(frozen=True)
+class RenderedSection:
+    """The section of one test as HTML: its figures are no more in memory than on the page."""
+
+    key: str
+    title: str
+    html: str
 
 
 @dataclass(frozen=True)
@@ -58,8 +78,16 @@ class Page:
         The first screen.
     comparisons : sequence of Part
         Figures over several of a kind, headed by ``across``.
-    sections : sequence of Section
+    sections : sequence of RenderedSection
         One a test.
+    links : sequence of Link
+        Behind the headings in the list of contents: to these, or to those of the pages beside.
+    beside : sequence of Link
+        Pages that hold the sections which this one has no room for.
+    home : str
+        Where the name at the head of the contents leads.
+    is_part : bool
+        Whether it is such a page beside another, which says what is wrong.
     """
 
     title: str
@@ -82,7 +110,11 @@ class Page:
     intervals: Sequence[Table] = ()
     comparisons: Sequence[Part] = ()
     across: str = ""
-    sections: Sequence[Section] = ()
+    sections: Sequence[RenderedSection] = ()
+    links: Sequence[Link] = ()
+    beside: Sequence[Link] = ()
+    home: str = "#top"
+    is_part: bool = False
 
 
 def about_page(
@@ -121,17 +153,35 @@ def packed(text: str) -> tuple[str, int]:
     return b64encode(packer.compress(content) + packer.flush()).decode("ascii"), len(content)
 
 
+def render_section(section: Section, *, is_folded: bool) -> RenderedSection:
+    """Return the section of one test as HTML; one that is folded opens by a click."""
+    macros = _environment().get_template("section.html").module
+    html = str(macros.chapter(section, is_folded))  # type: ignore[attr-defined]
+    return RenderedSection(section.key, section.title, html)
+
+
 def render_page(page: Page) -> str:
     """Return a page as HTML that opens from disk."""
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
     room = files("reduction.report")
-    template = environment.from_string((room / "templates" / "page.html").read_text("utf-8"))
-    return template.render(
-        **{name: getattr(page, name) for name in Page.__dataclass_fields__},
-        style=(room / "static" / "page.css").read_text("utf-8"),
-        script="\n".join((room / "static" / f"{name}.js").read_text("utf-8") for name in _SCRIPTS),
-        plotly=get_plotlyjs(),
-        packed=packed,
+    return (
+        _environment()
+        .get_template("page.html")
+        .render(
+            **{name: getattr(page, name) for name in Page.__dataclass_fields__},
+            style=(room / "static" / "page.css").read_text("utf-8"),
+            script="\n".join(
+                (room / "static" / f"{name}.js").read_text("utf-8") for name in _SCRIPTS
+            ),
+            plotly=get_plotlyjs(),
+        )
     )
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("reduction.report"), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    environment.globals["packed"] = packed
+    return environment
