@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+from visits import browser, visit
 
 from reduction.cycles.product import Cycles
+
+# a process of the tests has one browser, whichever folder asks for it first
+__all__ = ["browser", "visit"]
 
 
 def make_triangle(

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -100,6 +101,12 @@ app()
 """
 
 
+def hear_interrupts():
+    """For a process that is about to start: `nohup`, and a shell behind itself, pass them by."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 def start(campaign, folder, *options, **environment):
     """The command on its way, without the page of the campaign."""
     return subprocess.Popen(
@@ -110,6 +117,7 @@ def start(campaign, folder, *options, **environment):
         ],
         cwd=campaign.parent, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         env=os.environ | {"PYTHONPATH": str(ROOT)} | environment, start_new_session=True,
+        preexec_fn=hear_interrupts,
     )  # fmt: skip
 
 

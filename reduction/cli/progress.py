@@ -79,7 +79,8 @@ class CampaignProgress:
     def _show(self) -> None:
         if self._bar is not None and self._task is not None:
             words = escape(f"{self._stage} {self._at_work()}".rstrip())
-            self._bar.update(self._task, description=words, completed=self._done)
+            # at once: what is short would be over before the bar is drawn again by itself
+            self._bar.update(self._task, description=words, completed=self._done, refresh=True)
 
     def _line(self, text: str) -> None:
         if not self._is_quiet:

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 
 import pytest
 from commandruns import ROOT, reduction
+from manytests import hear_interrupts
 from playwright.sync_api import expect
 
 from reduction.archive.open import open_archive
@@ -25,7 +26,7 @@ def explored(place, *options):
         [sys.executable, "-m", "reduction", "explore", str(place / "processed" / "tmt-synthetic"),
          "--no-browser", "--json", *options],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=place,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        env=os.environ | {"PYTHONPATH": str(ROOT)}, preexec_fn=hear_interrupts,
     )  # fmt: skip
     try:
         lines = ""

@@ -11,6 +11,7 @@ from contextlib import closing
 
 import pytest
 from commandruns import ROOT
+from manytests import hear_interrupts
 
 CAMPAIGN = ROOT / "raw" / "buoy-technology-1997" / "campaign.toml"
 
@@ -21,7 +22,7 @@ def started(run, *options):
         [sys.executable, "-m", "reduction", "explore", str(run.processed), "--no-browser",
          "--campaign", str(CAMPAIGN), *options],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        env=os.environ | {"PYTHONPATH": str(ROOT)}, preexec_fn=hear_interrupts,
     )  # fmt: skip
 
 
