@@ -102,9 +102,8 @@ app()
 
 
 def hear_interrupts():
-    """For a process that is about to start: `nohup`, and a shell behind itself, pass them by."""
+    """For a process that is about to start: a shell has what it starts behind it pass them by."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def start(campaign, folder, *options, **environment):

@@ -178,10 +178,21 @@ def test_an_interrupt_ends_the_workers_and_gives_back_the_lock(campaign, tmp_pat
     assert products(tmp_path)  # and no lock
 
 
+@contextlib.contextmanager
+def heeding(request_, how):
+    """What is started meanwhile takes over how this process heeds a request."""
+    before = signal.signal(getattr(signal, request_), how)
+    try:
+        yield
+    finally:
+        signal.signal(getattr(signal, request_), before)
+
+
 @pytest.mark.parametrize(("jobs", "request_"), [(1, "SIGTERM"), (1, "SIGHUP"), (2, "SIGTERM")])
 def test_a_request_to_end_is_an_interrupt(jobs, request_, campaign, tmp_path):
     """A queue that ends a job may start the next on another machine, which cannot see it is gone."""
-    process = start(campaign, tmp_path, "--jobs", str(jobs))
+    with heeding(request_, signal.SIG_DFL):
+        process = start(campaign, tmp_path, "--jobs", str(jobs))
     wait_for(is_at_work(tmp_path, made=1))
     children = psutil.Process(process.pid).children(recursive=True)
     process.send_signal(getattr(signal, request_))
@@ -194,11 +205,8 @@ def test_a_request_to_end_is_an_interrupt(jobs, request_, campaign, tmp_path):
 
 def test_a_request_to_end_that_is_ignored_stays_so(campaign, serial, tmp_path):
     """As under nohup."""
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    try:
+    with heeding("SIGHUP", signal.SIG_IGN):
         process = start(campaign, tmp_path)
-    finally:
-        signal.signal(signal.SIGHUP, before)
     wait_for(is_at_work(tmp_path, made=1))
     process.send_signal(signal.SIGHUP)
     process.communicate(timeout=60)
