@@ -101,8 +101,7 @@ def run_lock(folder: Path, *, remark: Callable[[str], None]) -> Iterator[RunLock
         new += [one for one in (folder, *folder.parents) if not one.exists()]
         folder.mkdir(parents=True, exist_ok=True)
         _take(path, own, remark)
-        for part in folder.rglob(".*.part"):
-            part.unlink(missing_ok=True)  # begun by a run that was killed
+        _remove_begun(folder)  # by a run that was killed
     except ArchiveError:
         raise
     except OSError as error:
@@ -118,8 +117,15 @@ def run_lock(folder: Path, *, remark: Callable[[str], None]) -> Iterator[RunLock
         holder = _holder_in(_text_of(path))
         with suppress(OSError):  # a disk that is gone keeps its lock, and the next run says so
             if holder is not None and holder.token == own.token:
+                _remove_begun(folder)  # by a worker that was killed
                 path.unlink()
         _remove_empty(new)
+
+
+def _remove_begun(folder: Path) -> None:
+    """Take files away that were begun and have no name yet."""
+    for part in folder.rglob(".*.part"):
+        part.unlink(missing_ok=True)
 
 
 def _remove_empty(folders: Sequence[Path]) -> None:

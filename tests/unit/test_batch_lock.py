@@ -233,3 +233,22 @@ def test_a_folder_that_no_disk_can_have_is_told(tmp_path):
         run_lock(tmp_path / ("n" * 300), remark=pytest.fail),
     ):
         pass
+
+
+def test_what_a_killed_worker_began_is_taken_away_at_the_end(tmp_path):
+    with run_lock(tmp_path, remark=pytest.fail):
+        (tmp_path / "tables").mkdir()
+        begun = [tmp_path / ".T-1.nc.7-a2b9.part", tmp_path / "tables" / ".moduli.csv.7-a2b9.part"]
+        for path in begun:
+            path.touch()
+        (tmp_path / "T-2.nc").touch()
+    assert not any(path.exists() for path in begun)
+    assert (tmp_path / "T-2.nc").exists()
+
+
+def test_what_another_run_began_is_left_to_it(tmp_path):
+    with run_lock(tmp_path, remark=pytest.fail):
+        lock = tmp_path / LOCK_NAME
+        lock.write_text(lock.read_text().replace('"token": "', '"token": "another'))
+        (tmp_path / ".T-1.nc.8-a2b9.part").touch()
+    assert (tmp_path / ".T-1.nc.8-a2b9.part").exists()
