@@ -24,7 +24,7 @@ from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.variable import Variable
 from reduction.archive.version import SCHEMA_VERSION
 
-__all__ = ["check_archive"]
+__all__ = ["check_archive", "schema_of_file"]
 
 _BLOCK = 1 << 20  # values of a long variable that are read at a time
 _CACHE = 1 << 19  # bytes of the largest chunk
@@ -65,7 +65,7 @@ def _global_findings(file: netCDF4.Dataset) -> Iterator[str]:
 
 
 def _variable_findings(file: netCDF4.Dataset) -> Iterator[str]:
-    schema = _schema_of_file(file.dimensions)
+    schema = schema_of_file(file.dimensions)
     for name, variable in file.variables.items():
         if name not in schema:
             yield f"{name} is not in the schema"
@@ -84,7 +84,7 @@ def _variable_findings(file: netCDF4.Dataset) -> Iterator[str]:
             yield f"{name} has no long_name"
 
 
-def _schema_of_file(dimensions: Container[str]) -> Mapping[str, Variable]:
+def schema_of_file(dimensions: Container[str]) -> Mapping[str, Variable]:
     """What a file may hold, by the dimension that its kind alone has."""
     if "experiment" in dimensions:
         return SURFACE_SCHEMA

@@ -20,7 +20,7 @@ from reduction.archive.stored import stored
 from reduction.record import Floats
 from reduction.uncertainty.combine import effective_degrees_of_freedom
 
-__all__ = ["effective_freedom", "random_freedom"]
+__all__ = ["cycles_averaged", "effective_freedom", "random_freedom"]
 
 _RANDOM = "_random_standard_uncertainty"
 _CONTRIBUTION = "_uncertainty_contribution"
@@ -36,12 +36,53 @@ _ONCE = ("bedding_", "pull_", "tensile_strength", "strain_at_failure", "permanen
 _LAST = ("dynamic_stiffness", "dynamic_mean_tension", "dynamic_tension_amplitude")
 _OF_SURFACE = ("_point_value", "_stationary_point", "_eigenvalue")
 _LINES = ("_per_decade", "_per_cycle", "_change", "_drift")
+_SINGLE = "tension_amplitude"
 # from the differences of neighbouring cycles, of which each cycle is in two
 _OF_NEIGHBOURS = frozenset({"peak_tension_change"})
 _READINGS = {"diameter": "diameter_reading", "area": "diameter_reading"}
 # bins are those of the cycles that reach them
 _COUNTS = {"tangent_modulus": "tangent_modulus_count", "branch_tension": "branch_tension_count",
            "tangent_modulus_untrimmed": "branch_tension_count"}  # fmt: skip
+
+
+def cycles_averaged(archive: xr.Dataset, name: str) -> Floats:
+    """Cycles that the mean of a quantity over a test is of: those after the break-in that have one.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        Of a reduced test.
+    name : str
+        As the archive names the mean.
+
+    Returns
+    -------
+    count : ndarray, shape (n_specimens,), or a single number
+        Of an archive that keeps single cycles by specimen, else the same of all. [1]
+
+    Raises
+    ------
+    ValueError
+        If the settings of the archive are no JSON.
+
+    Notes
+    -----
+    A cycle of which a channel is missing has no number and is in no mean.  Quantities that are
+    not kept cycle by cycle are found where the tension amplitude is.
+
+    Examples
+    --------
+    >>> cycles = xr.Dataset({"tension_amplitude": (("specimen", "cycle"), [[5.0, np.nan, 5.1]])})
+    >>> print(cycles_averaged(cycles, "test_dynamic_modulus"))
+    [2]
+    """
+    settings = json.loads(str(archive.attrs.get("settings") or "{}"))
+    break_in = settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0)
+    for single in (name.removeprefix("test_"), _SINGLE):
+        if single in archive and archive[single].dims == ("specimen", "cycle"):
+            known = np.isfinite(archive[single].values[:, break_in:])
+            return np.asarray(known.sum(axis=1))
+    return np.asarray(max(archive.sizes.get("cycle", 0) - break_in, 0))
 
 
 def random_freedom(archive: xr.Dataset, name: str) -> Floats:
@@ -68,10 +109,10 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
     -----
     Stated, where the archive states it: of a regression over runs, of a ratio.  Readings less one;
     cycles less one, or two for a line over them, of those that reach the number or of all after the
-    break-in; 2 (n - 1)^2 / (3 n - 4) for the differences of n neighbours, whose mean square has the
-    variance 4 (3 n - 4) sigma^4 / (n - 1)^2 about 2 sigma^2 ([2]_); infinite for a regression on
-    the samples of one rise, pull or hold, and where a single cycle leaves nothing but that
-    ([1]_, 4.2.6).
+    break-in that have it; 2 (n - 1)^2 / (3 n - 4) for the differences of n neighbours, whose mean
+    square has the variance 4 (3 n - 4) sigma^4 / (n - 1)^2 about 2 sigma^2 ([2]_); infinite for a
+    regression on the samples of one rise, pull or hold, and where a single cycle leaves nothing
+    but that ([1]_, 4.2.6).
 
     Examples
     --------
@@ -105,9 +146,13 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
     if name in _OF_NEIGHBOURS:
         n_cycles = max(archive.sizes.get("cycle", 0), 2)
         return np.asarray(2.0 * (n_cycles - 1) ** 2 / (3 * n_cycles - 4))
-    settings = json.loads(str(archive.attrs.get("settings") or "{}"))
-    break_in = settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0)
-    return np.asarray(max(archive.sizes.get("cycle", 0) - break_in - fitted, 1.0))
+    count = cycles_averaged(archive, name)
+    if count.ndim:
+        own = tuple(archive[name].dims) if name in archive else ()
+        # what stands behind the specimen: branches, segments and the like
+        behind = [1] * (len(own) - 1)
+        count = count.reshape(-1, *behind) if own[:1] == ("specimen",) else count.min()
+    return np.asarray(np.maximum(count - fitted, 1.0))
 
 
 def effective_freedom(archive: xr.Dataset, name: str) -> Floats:

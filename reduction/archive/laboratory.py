@@ -12,6 +12,7 @@ from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
 
+from reduction.archive.whole import take_away
 from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
 from reduction.laboratory import ReportDetails
@@ -38,7 +39,7 @@ def keep_details(folder: Path, details: ReportDetails | None) -> None:
     """
     path = folder / FILE_NAME
     if details is None:
-        path.unlink(missing_ok=True)
+        take_away(path)
         return
     write_whole(path, json.dumps(asdict(details), indent=1, ensure_ascii=False) + "\n")
 

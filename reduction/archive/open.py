@@ -12,6 +12,7 @@ import netCDF4
 import xarray as xr
 
 from reduction.archive.seal import check_seal
+from reduction.archive.sound import check_form, check_stored
 from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError, SettingsError
 
@@ -52,27 +53,45 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
         raise ArchiveError(f"there is no archive {path}", hint="Run the campaign first.")
     try:
         check_seal(path)
+        check_stored(path)
         with _small_cache():
             dataset = xr.open_dataset(
                 path, engine="netcdf4", decode_times=False, decode_timedelta=False
             )
     except ArchiveError:
         raise
-    except (OSError, RuntimeError, ValueError) as error:
+    except UnicodeEncodeError as error:
+        # a ValueError too, but of the name and not of the file
+        raise ArchiveError(
+            f"{str(path)!a} cannot be given to the netCDF library",
+            found=f"a name that {error.encoding} has no letters for",
+            needed="a name in the character set of this process",
+            hint="Set PYTHONUTF8=1, or take a locale of UTF-8, or rename the folder.",
+        ) from error
+    except (OSError, RuntimeError, ValueError, TypeError) as error:  # a scale that is text
+        if isinstance(error, OSError) and (error.errno or 0) > 0:  # those of the library are below
+            raise ArchiveError(
+                f"{path} cannot be read", found=error.strerror or str(error)
+            ) from error
         raise ArchiveError(
             f"{path} is not a netCDF file",
             found=str(error).splitlines()[0],
             needed="an archive of a reduced test",
         ) from error
     found = dataset.attrs.get("schema_version")
-    if found != SCHEMA_VERSION:
+    if not isinstance(found, str) or found != SCHEMA_VERSION:
         dataset.close()
         raise ArchiveError(
             f"{path} has another schema",
-            found="none" if found is None else f"version {found}",
+            found="none" if found is None else f"version {str(found)[:40]}",
             needed=f"version {SCHEMA_VERSION}",
             hint="Reduce the test again with this version.",
         )
+    try:
+        check_form(path, dataset)
+    except ArchiveError:
+        dataset.close()
+        raise
     if chunks is None:
         return dataset
     # what is known to be an archive is opened again, so that a fault is one of the chunks

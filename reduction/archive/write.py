@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 
@@ -12,7 +13,7 @@ import xarray as xr
 from reduction.archive.check import check_archive
 from reduction.archive.netcdf import write_netcdf
 from reduction.archive.seal import write_seal
-from reduction.archive.whole import whole_file
+from reduction.archive.whole import remove_abandoned, whole_file
 from reduction.errors import ArchiveError
 
 __all__ = ["appended_whole", "write_archive", "write_whole"]
@@ -84,13 +85,14 @@ def appended_whole(path: Path) -> Iterator[Callable[[str], None]]:
         If the disk refuses.
     """
     is_in_block = False
+    remove_abandoned(path)
     try:
         with whole_file(path) as part:
             is_in_block = True
             yield partial(_append, part, path)
             is_in_block = False
     except OSError as error:
-        if is_in_block:  # says nothing of this file
+        if is_in_block or isinstance(error, ArchiveError):  # says nothing of this file, or all
             raise
         raise _not_written(path, error) from error
 
@@ -116,9 +118,14 @@ def _refuse_faults(part: Path, name: str) -> None:
 
 
 def _not_written(path: Path, error: Exception) -> ArchiveError:
-    # the netCDF library reports a full disk as RuntimeError, without the name of the file
+    found = getattr(error, "strerror", None)
+    if not isinstance(found, str) or (getattr(error, "errno", None) or 0) < 0:
+        # numbers of the netCDF library, which does not pass on what the system said
+        with suppress(OSError):
+            free = shutil.disk_usage(path.parent).free
+            found = f"{error}, with {free / 1e6:.0f} MB free on the disk"
     return ArchiveError(
         f"{path} cannot be written",
-        found=getattr(error, "strerror", None) or str(error),
+        found=found or str(error),
         hint="What was there before is kept. Check the folder and the space on the disk.",
     )

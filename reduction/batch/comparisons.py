@@ -16,6 +16,7 @@ from reduction.archive.comparisons import NamedComparison, comparisons_to_datase
 from reduction.archive.curveerrors import curve_errors_of
 from reduction.archive.kept import stored_cycles
 from reduction.archive.open import open_archive
+from reduction.archive.whole import take_away
 from reduction.archive.write import write_archive
 from reduction.batch.part import PartStatus
 from reduction.batch.predictions import settings_of_hose
@@ -91,7 +92,7 @@ def write_comparisons(
         statuses.append(PartStatus(plan.name, status, 0, message))
     old = folder / "comparisons.nc"
     if old.is_file() and not done and not any(one.status == "no_work" for one in statuses):
-        old.unlink()
+        take_away(old)
     if done:
         write_named(
             done,

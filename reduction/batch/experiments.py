@@ -30,7 +30,7 @@ from reduction.surface.levels import FactorLevels
 from reduction.uncertainty.product import Contributions
 from reduction.vocabulary import quantity
 
-__all__ = ["fit_experiments", "fit_rows", "write_experiments"]
+__all__ = ["fit_experiments", "fit_rows", "settings_of_experiments", "write_experiments"]
 
 _UNITS = {"temperature": "K", "diameter": "m"}
 # notes of which the message tells the first: without that part there is little to read
@@ -112,9 +112,7 @@ def write_experiments(
             attributes=campaign.attributes,
             sources=sources,
             steps=[Step("surfaces", _in_one_line(result)) for result in results],
-            settings_json=json.dumps(
-                {name: asdict(plan) for name, plan in ready.items()}, sort_keys=True
-            ),
+            settings_json=settings_of_experiments(ready),
             version=__version__,
             command=command,
         ),
@@ -122,6 +120,11 @@ def write_experiments(
     write_archive(dataset, path)
     statuses |= {result.name: _status(result) for result in results}
     return list(statuses.values())
+
+
+def settings_of_experiments(plans: Mapping[str, ExperimentPlan]) -> str:
+    """Every setting of experiments, as JSON: the attribute ``settings`` of their archive."""
+    return json.dumps({name: asdict(plan) for name, plan in plans.items()}, sort_keys=True)
 
 
 def _is_there(path: Path | None) -> bool:

@@ -61,10 +61,12 @@ class RunLock:
         ArchiveError
             So that what is left of a run that was ended writes nothing into those of the next.
         """
-        text = _text_of(self.path)
+        text, refused = _read(self.path)
         holder = _holder_in(text)
         if holder is not None and holder.token == self.token:
             return
+        if refused:
+            raise ArchiveError(f"{self.path}, the lock of this run, cannot be read", found=refused)
         raise ArchiveError(
             f"{self.path} is not the lock of this run any more",
             found="no such file on this machine" if text is None else str(holder or "another text"),
@@ -115,17 +117,18 @@ def run_lock(folder: Path, *, remark: Callable[[str], None]) -> Iterator[RunLock
         yield RunLock(path, own.token)
     finally:
         holder = _holder_in(_text_of(path))
-        with suppress(OSError):  # a disk that is gone keeps its lock, and the next run says so
-            if holder is not None and holder.token == own.token:
-                _remove_begun(folder)  # by a worker that was killed
+        if holder is not None and holder.token == own.token:
+            _remove_begun(folder)  # by a worker that was killed
+            with suppress(OSError):  # a disk that is gone keeps it, and the next run says so
                 path.unlink()
         _remove_empty(new)
 
 
 def _remove_begun(folder: Path) -> None:
     """Take files away that were begun and have no name yet."""
-    for part in folder.rglob(".*.part"):
-        part.unlink(missing_ok=True)
+    with suppress(OSError):  # they are in nobody's way, and the next run tries again
+        for part in folder.rglob(".*.part"):
+            part.unlink(missing_ok=True)
 
 
 def _remove_empty(folders: Sequence[Path]) -> None:
@@ -153,7 +156,9 @@ def _take(path: Path, own: _Holder, remark: Callable[[str], None]) -> None:
                 path.unlink(missing_ok=True)
                 raise
             return
-        text = _text_of(path)
+        text, refused = _read(path)
+        if refused:
+            raise _refusal(path, None, own, refused)
         if text is None:
             continue  # given back in this moment
         holder = _holder_in(text)
@@ -181,7 +186,9 @@ def _put_away(path: Path, text: str) -> bool:
     return False
 
 
-def _refusal(path: Path, holder: _Holder | None, own: _Holder) -> ArchiveError:
+def _refusal(
+    path: Path, holder: _Holder | None, own: _Holder, found: str = "a text that is no lock"
+) -> ArchiveError:
     if holder is None:
         hint = "Try again in a moment; if no run is at work there, delete the file."
     elif (holder.host, holder.space) == (own.host, own.space):
@@ -193,7 +200,7 @@ def _refusal(path: Path, holder: _Holder | None, own: _Holder) -> ArchiveError:
         )
     return ArchiveError(
         f"another run holds {path.parent}",
-        found=f"{path}: {'a text that is no lock' if holder is None else holder}",
+        found=f"{path}: {found if holder is None else holder}",
         needed="one run at a time on a folder of products",
         hint=hint,
     )
@@ -240,10 +247,19 @@ def _process_start(pid: int) -> str | None:
 
 
 def _text_of(path: Path) -> str | None:
+    return _read(path)[0]
+
+
+def _read(path: Path) -> tuple[str | None, str]:
+    """Text of a file, and why there is none; neither where there is no such file."""
     try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        return None
+        return path.read_text(encoding="utf-8"), ""
+    except FileNotFoundError:
+        return None, ""
+    except OSError as error:
+        return None, error.strerror or type(error).__name__
+    except UnicodeDecodeError:
+        return None, "a text that is no lock"
 
 
 def _holder_in(text: str | None) -> _Holder | None:

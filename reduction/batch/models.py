@@ -103,5 +103,5 @@ def fit_strain_models(
                 )
             except Exception as error:
                 # one test's failure, even where it is a defect here
-                errors[survey.plan.id] = as_reduction_error(error)
+                errors.setdefault(survey.plan.id, as_reduction_error(error))
     return models, errors

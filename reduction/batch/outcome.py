@@ -9,29 +9,25 @@ from reduction.batch.status import Status, TestStatus
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.errors import LogError, ReductionError, SettingsError
-from reduction.notes import Severity, by_severity, severity_of
+from reduction.notes import Severity, by_severity, full_note, severity_of
 
 __all__ = ["note_message", "status_row"]
 
-_SERIOUS: dict[Severity, str] = {"doubt": " of the data", "refusal": ""}
+_SERIOUS: tuple[Severity, ...] = ("doubt", "refusal")
 
 
 def note_message(notes: Sequence[tuple[str, str]]) -> str:
     """How many notes there are, how many of them are serious, and the most serious of all."""
-    severity: dict[str, Severity] = {}
-    for stage, text in by_severity(notes):
-        severity.setdefault(text, severity_of(stage, text))
-    if not severity:
+    ranked = by_severity(notes)
+    if not ranked:
         return ""
-    kinds = Counter(severity.values())
+    kinds = Counter(severity_of(stage, text) for stage, text in ranked)
     serious = [
-        f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}{of}"
-        for kind, of in _SERIOUS.items()
-        if kinds[kind]
+        f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}" for kind in _SERIOUS if kinds[kind]
     ]
     among = f" ({', '.join(serious)})" if serious else ""
-    count = f"{len(severity)} note{'s' if len(severity) > 1 else ''}"
-    return f"{count}{among}; first: {next(iter(severity))}"
+    count = f"{len(ranked)} note{'s' if len(ranked) > 1 else ''}"
+    return f"{count}{among}; first: {full_note(*ranked[0])}"
 
 
 def _error_message(campaign: Campaign, survey: Survey, error: ReductionError) -> str:

@@ -21,6 +21,8 @@ from reduction.batch.standing import standing_product
 from reduction.batch.status import Status
 from reduction.batch.survey import Survey, located_again
 from reduction.campaign.plan import Campaign
+from reduction.errors import LogError
+from reduction.ingest.source import hash_source
 from reduction.line.product import SlowPull
 from reduction.pipeline.recall import Recall, plainly
 from reduction.pipeline.reduce import reduce_stepwise_test, reduce_test
@@ -193,7 +195,8 @@ def bring_up_to_date(
     Raises
     ------
     ReductionError
-        If the record cannot support a stage that its kind needs, or the archive cannot be written.
+        If the record cannot support a stage that its kind needs, a raw file is not what it was
+        when it was read, or the archive cannot be written.
     """
     if not force:
         standing = standing_product(
@@ -203,6 +206,25 @@ def bring_up_to_date(
             said = filter(None, [standing.remark, note_message(standing.notes)])
             return "unchanged", "; ".join(said)
     dataset, notes = dataset_of(campaign, survey, basis, command=command)
+    _check_raw_files(campaign, survey)
     before_writing()
     write_archive(dataset, path)
     return "reduced_with_notes" if notes else "reduced", note_message(notes)
+
+
+def _check_raw_files(campaign: Campaign, survey: Survey) -> None:
+    """Refuse an archive of a raw file that is another now, or gone, since it was read.
+
+    Times and sizes are not enough: a copy may keep both.
+    """
+    for (name, _), read in zip(survey.plan.files, survey.sources, strict=True):
+        path = campaign.file(name)
+        now = hash_source(path, read.name)
+        if now != read:
+            raise LogError(
+                path,
+                "the file changed while the campaign ran",
+                found=f"sha256 {now.sha256[:16]}... of {now.size} bytes",
+                needed=f"sha256 {read.sha256[:16]}... of {read.size} bytes, as it was read",
+                hint="The product before is kept. Run again when nothing writes to the file.",
+            )

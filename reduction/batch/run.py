@@ -11,26 +11,25 @@ from typing import NamedTuple
 from reduction.archive.laboratory import keep_details
 from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.write import write_whole
-from reduction.batch.basis import Basis, basis_of
+from reduction.batch.asked import products_asked
+from reduction.batch.basis import Basis
 from reduction.batch.check import selected_surveys
 from reduction.batch.comparisons import write_comparisons
 from reduction.batch.executor import Executor, Serial
 from reduction.batch.experiments import write_experiments
-from reduction.batch.firstpass import survey_campaign
-from reduction.batch.history import past_of
 from reduction.batch.lock import RunLock, run_lock
-from reduction.batch.models import fit_strain_models
 from reduction.batch.part import PartStatus
 from reduction.batch.predictions import write_predictions
 from reduction.batch.progress import Progress, Silent
 from reduction.batch.properties import tests_of_ropes, write_change_in_length
-from reduction.batch.pulls import fit_pulls
 from reduction.batch.results import write_outcomes
 from reduction.batch.secondpass import reduce_campaign
 from reduction.batch.status import TestStatus, read_status, status_csv
 from reduction.batch.survey import Survey
 from reduction.batch.waiting import waiting_runs
+from reduction.batch.wanted import find_wanted
 from reduction.campaign.plan import Campaign
+from reduction.errors import ArchiveError
 from reduction.report.page import write_report
 from reduction.tables.write import write_tables
 from reduction.units import UnitSystem
@@ -73,6 +72,7 @@ def run_campaign(
     force: bool = False,
     command: str = "",
     units: UnitSystem = "si",
+    values_page: str = "",
     executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> CampaignResult:
@@ -97,6 +97,8 @@ def run_campaign(
         For the product's ``command`` attribute, without paths.
     units : {"si", "us"}
         What the report shows; files are SI.
+    values_page : str
+        Address of the design-value page from the folder of the report, where one is written.
     executor : Executor, optional
         Where the tests are worked on; one after another in this process where left out.  No
         product depends on it.
@@ -121,8 +123,8 @@ def run_campaign(
     with run_lock(processed / campaign.id, remark=progress.remark) as lock:
         return _run(
             campaign, processed / campaign.id, reports, lock, clock=clock, tests=tests,
-            force=force, command=command, units=units, executor=executor or Serial(),
-            progress=progress,
+            force=force, command=command, units=units, values_page=values_page,
+            executor=executor or Serial(), progress=progress,
         )  # fmt: skip
 
 
@@ -137,35 +139,26 @@ def _run(
     force: bool,
     command: str,
     units: UnitSystem,
+    values_page: str,
     executor: Executor,
     progress: Progress,
 ) -> CampaignResult:
     executor.begun = progress.begun
-    first = survey_campaign(campaign, executor=executor, lock=lock, progress=progress)
+    wanted = find_wanted(campaign, executor=executor, lock=lock, progress=progress)
+    first, basis = wanted.first, wanted.basis
     surveys = first.surveys
     chosen = selected_surveys(surveys, tests)
-    models, errors = fit_strain_models(campaign, surveys)
-    pulls, errors_of_pulls = fit_pulls(
-        campaign, first, models, executor=executor, progress=progress
-    )
-    errors |= errors_of_pulls
-    failed = [entry.plan.id for entry in surveys if entry.error or entry.plan.id in errors]
-    basis = partial(
-        basis_of,
-        campaign,
-        past=past_of(surveys, models),
-        pulls=pulls,
-        failed=failed,
-    )
     statuses = reduce_campaign(
-        campaign, first, chosen, errors=errors, basis=basis, folder=folder, executor=executor,
-        lock=lock, progress=progress, clock=clock, force=force, command=command,
+        campaign, first, chosen, errors=wanted.errors, basis=basis, folder=folder,
+        executor=executor, lock=lock, progress=progress, clock=clock, force=force,
+        command=command,
     )  # fmt: skip
     lock.confirm()  # before what is made of all tests
-    now_failed = {status.test for status in statuses if status.status == "failed"}.union(failed)
+    failed = {status.test for status in statuses if status.status == "failed"}
+    failed |= set(wanted.failed)
     asked = {survey.plan.id for survey in chosen}
     parts = _write_parts(
-        campaign, folder, surveys, asked=asked, failed=now_failed, basis=basis, command=command
+        campaign, folder, surveys, asked=asked, failed=failed, basis=basis, command=command
     )
     progress.stage("tables", 0)
     ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
@@ -175,17 +168,21 @@ def _run(
     if statuses:
         write_whole(folder / "status.csv", status_csv(rows))
     keep_details(folder, campaign.report)
-    products = _products_of_campaign(campaign, folder, has_lengths=parts.has_lengths)
+    products = products_asked(campaign, folder, has_lengths=parts.has_lengths)
     if archives or products:
         tables = write_tables(archives, folder / "tables", **products)
-        progress.stage("report", 0)
-        report = write_report(folder, reports / campaign.id, units=units)
     stray = sorted(path.name for path in archives_of_tests(folder) if path not in ours)
     stray += [
         f"{name}.nc"
         for name in OF_CAMPAIGN
         if name not in products and (folder / f"{name}.nc").exists()
     ]
+    if archives or products or statuses:  # where all tests failed the page says that and why
+        progress.stage("report", 0)
+        report = write_report(
+            folder, reports / campaign.id, units=units, values_page=values_page, stray=stray,
+            unreadable=partial(_keep_pages, [*ours, *products.values()]),
+        )  # fmt: skip
     return CampaignResult(
         tests=tuple(statuses),
         experiments=parts.experiments,
@@ -196,6 +193,17 @@ def _run(
         stray=tuple(stray),
         tables=tuple(tables),
     )
+
+
+def _keep_pages(ours: Sequence[Path], name: str, why: str) -> None:
+    """Leave the older pages as they are where new ones would lack what the run has made."""
+    for path in ours:
+        if path.name == name:
+            raise ArchiveError(
+                f"{path} cannot be read, and the report is left as it was",
+                found=why,
+                hint="Check the disk, and run again.",
+            )
 
 
 class _Parts(NamedTuple):
@@ -245,21 +253,6 @@ def _write_parts(
         campaign, folder, failed=failed, waiting=waiting, command=command
     )
     return _Parts(tuple(experiments), tuple(hoses), tuple(comparisons), lengths is not None)
-
-
-def _products_of_campaign(
-    campaign: Campaign, folder: Path, *, has_lengths: bool
-) -> dict[str, Path]:
-    """Archives of the whole campaign that it asks for and that are there, by their names."""
-    asked = {
-        "surfaces": bool(campaign.experiments),
-        "predictions": bool(campaign.hoses),
-        "comparisons": bool(campaign.comparisons),
-        "outcomes": campaign.results is not None,
-        "change_in_length": has_lengths,
-    }
-    paths = {name: folder / f"{name}.nc" for name, is_asked in asked.items() if is_asked}
-    return {name: path for name, path in paths.items() if path.exists()}
 
 
 def _all_rows(

@@ -93,16 +93,16 @@ def standing_product(
         where others failed, also where it differs only in what comes from them and was made when
         they did not fail.
     """
-    if not path.exists():
-        return None
     try:
-        if not has_seal(path):
-            return None  # changed by another program since
+        if not path.exists() or not has_seal(path):
+            return None  # not there, or changed by another program since
         with open_archive(path) as archive:
             sums = "\n".join(source.sha256 for source in survey.sources)
             before = str(archive.attrs.get("settings"))
             if archive.attrs.get("software_version") != __version__:
                 return None
+            if archive.attrs.get("test") != survey.plan.id:
+                return None  # that of another test, which was put in its place
             if archive.attrs.get("raw_file_sha256") != sums:
                 return None
             rests_on = () if before == settings else _made_with(before, settings, failed)

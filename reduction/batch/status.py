@@ -9,6 +9,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal, cast
 
+from reduction.visible import bare_cell, safe_cell
+
 __all__ = ["Status", "TestStatus", "read_status", "status_csv"]
 
 Status = Literal["reduced", "reduced_with_notes", "unchanged", "no_work", "failed"]
@@ -72,7 +74,7 @@ def status_csv(rows: Sequence[TestStatus]) -> str:
                 row.test,
                 row.status,
                 row.exit_status,
-                row.message,
+                safe_cell(row.message),
                 row.raw_sha256,
                 f"{row.seconds:.3f}",
             ]
@@ -90,7 +92,7 @@ def read_status(path: Path) -> dict[str, TestStatus]:
                 test=row["test"],
                 status=cast("Status", row["status"]),
                 exit_status=int(row["exit_status"]),
-                message=row["message"],
+                message=bare_cell(row["message"]),
                 n_rows=0,
                 n_cycles=0,
                 raw_sha256=row["raw_sha256"],

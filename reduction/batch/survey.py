@@ -13,9 +13,10 @@ from typing import Any
 from reduction.batch.found import found_in
 from reduction.batch.steps import step_plan, step_record
 from reduction.campaign.plan import Campaign, TestPlan
-from reduction.errors import DataError, LogError, ReductionError
+from reduction.errors import DataError, LogError, ReductionError, refused_by_system
 from reduction.ingest.datum import length_at_slack
 from reduction.ingest.record_of_test import read_record
+from reduction.ingest.source import unreadable
 from reduction.ingest.stepwise import read_step_readings
 from reduction.pipeline.extremes import Extremes, extremes_of_readings, extremes_of_test
 from reduction.pipeline.locate import Located, locate
@@ -78,7 +79,7 @@ def read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_recor
     """
     files = [(campaign.file(name), campaign.layouts[layout], name) for name, layout in plan.files]
     if plan.kind == "stepwise":
-        readings, sources = read_step_readings(files, test_id=plan.id)
+        readings, sources = read_step_readings(files, test_id=plan.id, limits=campaign.limits)
         name = plan.specimens[0]  # weights hang from one specimen
         extremes = extremes_of_readings(
             readings, name, stated_gauge_length=campaign.specimens[name].gauge_length
@@ -98,6 +99,7 @@ def read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_recor
         specimens=plan.specimens,
         quality=plan.settings.quality,
         length_needed=_needs_length(campaign, plan),
+        limits=campaign.limits,
     )
     if not plan.steps:
         survey = _located(plan, record, sources)
@@ -166,6 +168,8 @@ def survey_log(campaign: Campaign, name: str, *, reader: Reader = read_record) -
     try:
         return read_test(campaign, plan, reader=reader)
     except Exception as error:
+        if isinstance(error, OSError) and error.errno is not None:
+            error = unreadable(error.filename or plan.files[0][0], error)
         return [Survey(plan, error=as_reduction_error(error))]
 
 
@@ -193,6 +197,8 @@ def as_reduction_error(error: Exception) -> ReductionError:
     """An error as a test carries it; one that was not raised on purpose is a defect here."""
     if isinstance(error, ReductionError):
         return error
+    if isinstance(error, OSError) and error.errno is not None:
+        return refused_by_system(error)
     return ReductionError(
         f"internal error, a defect of this program: {type(error).__name__}: {error}"
     )

@@ -19,7 +19,7 @@ import pyarrow.compute  # type: ignore[import-untyped]
 import pyarrow.parquet  # type: ignore[import-untyped]
 
 from reduction import __version__
-from reduction.archive.whole import whole_file
+from reduction.archive.whole import remove_abandoned, whole_file
 from reduction.catalogue.columns import ABOUT, CONDITIONS, column_type
 from reduction.catalogue.entry import ArchiveEntry, Block
 from reduction.catalogue.files import FileState
@@ -208,6 +208,7 @@ def save_index(index: Index, path: Path) -> None:
     parts = [index.tests, *index.values]
     schema = pyarrow.unify_schemas([_TESTS, _NO_VALUES.schema, *(part.schema for part in parts)])
     schema = schema.with_metadata({_MARK: f"{_FORMAT} {__version__}".encode()})
+    remove_abandoned(path)
     with (
         whole_file(path) as part,
         pyarrow.parquet.ParquetWriter(part, schema, compression="zstd") as writer,

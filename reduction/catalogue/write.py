@@ -11,6 +11,7 @@ import pyarrow.parquet  # type: ignore[import-untyped]
 
 from reduction.archive.whole import whole_file
 from reduction.errors import ArchiveError, SettingsError
+from reduction.visible import safe_cell
 from reduction.vocabulary import QUANTITIES
 
 __all__ = ["check_ending", "meaning_of", "unit_of", "write_answer"]
@@ -82,7 +83,7 @@ def write_answer(table: Any, path: Path) -> None:
                     for name, unit in zip(table.column_names, units, strict=True)
                 ]
                 options = pyarrow.csv.WriteOptions(quoting_style="needed")
-                pyarrow.csv.write_csv(table.rename_columns(heads), part, options)
+                pyarrow.csv.write_csv(_safe(table).rename_columns(heads), part, options)
             else:
                 fields = [
                     one.with_metadata(
@@ -91,9 +92,20 @@ def write_answer(table: Any, path: Path) -> None:
                     for one in table.schema
                 ]
                 pyarrow.parquet.write_table(table.cast(pyarrow.schema(fields)), part)
+    except ArchiveError:
+        raise
     except OSError as error:
         raise ArchiveError(
             f"{path} cannot be written",
             found=getattr(error, "strerror", None) or str(error),
             hint="What was there before is kept.",
         ) from error
+
+
+def _safe(table: Any) -> Any:
+    """The table with no text that a spreadsheet program takes for a formula."""
+    for place, column in enumerate(table.schema):
+        if pyarrow.types.is_string(column.type) or pyarrow.types.is_large_string(column.type):
+            texts = [None if one is None else safe_cell(one) for one in table[place].to_pylist()]
+            table = table.set_column(place, column, pyarrow.array(texts, column.type))
+    return table

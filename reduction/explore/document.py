@@ -19,6 +19,7 @@ from reduction.explore.keys import Setting, settings_of_kind
 from reduction.explore.session import Made, Session
 from reduction.report.figure import Figure
 from reduction.report.htmltable import Table, number_text
+from reduction.report.summary import all_notes
 from reduction.report.view import TestView
 from reduction.units import UnitSystem, display_unit, parse_quantity
 
@@ -93,7 +94,7 @@ def change_document(
         "test": test,
         "settings": _settings(session, text, after, new, units),
         "error": after.error,
-        "notes": [] if new is None else [str(one) for one in new.texts("note")],
+        "notes": [] if new is None else all_notes(new),
         "answers": None if table is None else _table(table),
         "figures": [_figure(one) for one in draw_change(old, new, left_out=left_out)],
         "diff": session.text.difference(text),

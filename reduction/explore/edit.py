@@ -7,7 +7,6 @@ left as it is and a person is told which line to write.
 from __future__ import annotations
 
 import copy
-import json
 import re
 import tomllib
 from collections.abc import Mapping
@@ -15,6 +14,7 @@ from typing import Any
 
 from reduction.errors import SettingsError
 from reduction.explore.statements import Path, Statement, Table, read_tables
+from reduction.visible import toml_text
 
 __all__ = ["Value", "edited", "literal", "value_at"]
 
@@ -98,7 +98,7 @@ def literal(value: Value) -> str:
     if isinstance(value, list):
         return f"[{', '.join(literal(one) for one in value)}]"
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        return toml_text(value)
     return str(value).lower() if isinstance(value, bool) else repr(value)
 
 

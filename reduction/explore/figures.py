@@ -180,18 +180,22 @@ def _one_cycle(
     first, last = float(time[own[0]]), float(time[own[-1]])
     some = own[keep_extremes(time[own], values[own], limit=POINTS)]
     data = [line(time[some], values[some], name="cycle", colour=_OLD, width=1.0, x_digits=9)]
-    parts = [("in the means, as it is", before, left_out[0], "#E69F00", 9.0, 0.6)]
-    parts.append(("in the means, changed", after, left_out[1], _KEPT, 3.0, 1.0))
+    parts: list[tuple[str, TestView | None, int, str, float, float]]
+    parts = [("in the means", view, left_out[1], _KEPT, 3.0, 1.0)]
+    if before is not after:
+        parts = [
+            ("in the means, as it is", before, left_out[0], "#E69F00", 9.0, 0.6),
+            ("in the means, changed", after, left_out[1], _KEPT, 3.0, 1.0),
+        ]
     for name, one, out, tint, width, opacity in parts:
-        if one is None or (one is before and before is after):
-            continue
-        data += _kept_between(one, first, last, out, name, tint, width, opacity)
+        if one is not None:
+            data += _kept_between(one, first, last, out, name, tint, width, opacity)
     unit = shown("time", view.units)
     return [
         make_figure(
             "cycle", f"{view.id}: trim of cycle {cycle:.0f}",
             "The cycle in the middle of the test. Thick: the samples at a constant rate, which are"
-            f" what enters the means; the ends are cut off. {_cut_off(before, after)}",
+            f" what enters the means. {_cut_off(before, after)}",
             data, synthetic=view.is_synthetic, height=320, is_wide=True,
             xaxis=axis(unit.label("time")), yaxis=axis(label),
         )
@@ -208,7 +212,9 @@ def _cut_off(before: TestView | None, after: TestView | None) -> str:
         branch = None if view is None else view.array("branch")
         if kept is not None and branch is not None and (branch > 0).any():
             said.append(f"{100 * (1 - kept.sum() / (branch > 0).sum()):.2g} % {words}")
-    return f"Of the samples of all branches: {', '.join(said)}." if said else ""
+    return (
+        f"Of the samples of all branches, cut off at the ends: {', '.join(said)}." if said else ""
+    )
 
 
 def _control_of(view: TestView) -> tuple[str, Floats] | None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import difflib
+import errno
 import hashlib
 import shutil
+import stat
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -23,6 +25,8 @@ from reduction.explore.statements import Path as Keys
 __all__ = ["CampaignText", "Written"]
 
 Place = Literal["test", "defaults", "table", "nowhere"]
+_WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
+_LONGEST_NAME = 1000
 _STEP_ENDS = ("from", "to")
 
 
@@ -72,6 +76,14 @@ class CampaignText:
             return {}
         rows = read_test_table(self.path.parent / str(name))
         return {test: set(row.model_fields_set) for test, row in rows.items()}
+
+    @cached_property
+    def named(self) -> tuple[Path, ...]:
+        """Where every file of the campaign folder would be that the text names, marks among them.
+
+        Any text of it may be a name; one that is none leads to no file.
+        """
+        return tuple(self.path.parent / one for one in dict.fromkeys(_texts(self.document)))
 
     def written(self, test: str, setting: Setting) -> Written:
         """What stands of a setting of a test."""
@@ -137,11 +149,11 @@ class CampaignText:
     def _change(self, test: str, key: str, text: str, control: str) -> dict[Keys, Value | None]:
         group, _, rest = key.partition(".")
         place, _, end = rest.partition(".")
-        if group == "steps" and place.isdigit() and end in _STEP_ENDS:
+        if group == "steps" and place.isdecimal() and end in _STEP_ENDS:
             if not text:
                 raise SettingsError(f"{key}: a step has both ends", needed='such as "1200 s"')
             return {
-                ("tests", test, "steps", int(place), end): int(text) if text.isdigit() else text
+                ("tests", test, "steps", int(place), end): int(text) if text.isdecimal() else text
             }
         setting = setting_of(key)
         if setting is None:
@@ -196,15 +208,31 @@ class CampaignText:
                 hint="Nothing was written. Load the file again.",
             )
         try:
+            if not target.stat().st_mode & _WRITABLE:
+                # to be renamed over needs no leave of the file itself
+                raise PermissionError(errno.EACCES, "it is read-only")
             with whole_file(target) as part:
                 part.write_bytes(other.text.encode("utf-8"))
                 shutil.copymode(target, part)
+        except ArchiveError:
+            raise
         except OSError as error:
             raise ArchiveError(
                 f"{self.path} cannot be written",
                 found=error.strerror or str(error),
                 hint="It is what it was before.",
             ) from error
+
+
+def _texts(value: object) -> Iterator[str]:
+    """Every text of a document that is short enough for the name of a file."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        for one in value:
+            yield from _texts(one)
+    elif isinstance(value, str) and len(value) < _LONGEST_NAME:
+        yield value
 
 
 def digest_of(text: str) -> str:

@@ -12,8 +12,9 @@ from reduction.ingest.record_of_test import read_record
 from reduction.provenance import Source
 from reduction.record import Record
 
-__all__ = ["KeptRecords"]
+__all__ = ["KeptRecords", "Stamp", "stamp_of"]
 
+Stamp = tuple[int, int, int]
 Read = tuple[Record, tuple[Source, ...]]
 
 
@@ -37,7 +38,7 @@ class KeptRecords:
 
     def __call__(self, files: list[tuple[Path, Any, str]], *, test_id: str, **how: Any) -> Read:
         """As `reduction.ingest.record_of_test.read_record`."""
-        read = tuple((path, _stamp(path), layout.model_dump_json()) for path, layout, _ in files)
+        read = tuple((path, stamp_of(path), layout.model_dump_json()) for path, layout, _ in files)
         key = (read, test_id, tuple(sorted((name, repr(value)) for name, value in how.items())))
         if key not in self._kept:
             self.told("reading the log")
@@ -48,10 +49,10 @@ class KeptRecords:
         return self._kept[key]
 
 
-def _stamp(path: Path) -> tuple[int, int, int]:
+def stamp_of(path: Path) -> Stamp:
     """Whatever changes with a file; of one that is not there the reader says so."""
     try:
         found = os.stat(path)
-    except OSError:
+    except (OSError, ValueError):  # the latter of a name that no file can have
         return (0, 0, 0)
     return (found.st_size, found.st_mtime_ns, found.st_ino)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
@@ -22,6 +23,8 @@ _WAIT = 1.0
 """How long an answer waits for a change before it says that it is at work. [s]"""
 _MOST_CHANGES = 40
 _LONGEST = 200
+# of a character that UTF-16 writes as two: JSON can say one of them, and a file cannot hold it
+_HALF = re.compile(r"[\ud800-\udfff]")
 
 
 @dataclass(frozen=True)
@@ -162,4 +165,6 @@ def _changes_of(asked: Document) -> dict[str, str]:
     for key, value in changes.items():
         if not isinstance(value, str) or len(value) > _LONGEST or len(key) > _LONGEST:
             raise SettingsError("a change is not a short text", found=repr(key)[:60])
+        if any(_HALF.search(one) for one in (key, value)):
+            raise SettingsError("a change is no text", found=ascii(value)[:60], needed="UTF-8")
     return changes

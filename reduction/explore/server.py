@@ -39,6 +39,8 @@ class ExploreServer(ThreadingHTTPServer):
         What it answers.
     port : int
         0 for a free one.
+    told_of_defect : callable, optional
+        Told of what is a defect of this program, of which a page learns no more than that.
 
     Raises
     ------
@@ -50,7 +52,12 @@ class ExploreServer(ThreadingHTTPServer):
     block_on_close = False
     allow_reuse_address = False
 
-    def __init__(self, routes: Routes, port: int = 0) -> None:
+    def __init__(
+        self,
+        routes: Routes,
+        port: int = 0,
+        told_of_defect: Callable[[Exception], None] | None = None,
+    ) -> None:
         try:
             super().__init__((HOST, port), _Handler)
         except (OSError, OverflowError) as error:
@@ -60,6 +67,7 @@ class ExploreServer(ThreadingHTTPServer):
                 needed="a free one from 1024 to 65535, or none: one is found then",
             ) from error
         self.routes = routes
+        self.told_of_defect = told_of_defect
         self.guard = Guard(secrets.token_urlsafe(32), self.server_port)
         self._places = threading.BoundedSemaphore(MOST_AT_ONCE)
 
@@ -121,8 +129,10 @@ class _Handler(BaseHTTPRequestHandler):
             answer()
         except OSError:  # who asked is gone, or dawdles
             raise
-        except Exception:
-            # a stranger learns no more of a defect here than that it is one
+        except Exception as error:
+            # a stranger learns no more of a defect here than that it is one; the terminal does
+            if self.server.told_of_defect is not None:
+                self.server.told_of_defect(error)
             self._refuse(HTTPStatus.INTERNAL_SERVER_ERROR, "internal error, a defect here")
 
     def _get(self) -> None:

@@ -29,7 +29,7 @@ from reduction.campaign.plan import Campaign
 from reduction.errors import ReductionError, SettingsError
 from reduction.explore.file import CampaignText
 from reduction.explore.memory import Memory
-from reduction.explore.records import KeptRecords
+from reduction.explore.records import KeptRecords, Stamp, stamp_of
 
 __all__ = ["Made", "Session"]
 
@@ -91,23 +91,27 @@ class Session:
         self._processed = processed
         self._records = KeptRecords()
         self._memory = Memory()
-        self._made: dict[tuple[str, str], Made] = {}
+        self._made: dict[tuple[str, str, tuple[Stamp, ...]], Made] = {}
         self._load(progress or Silent())
 
     def _load(self, progress: Progress) -> None:
         text = CampaignText.read(self.path)
         campaign = load_campaign(self.path, text=text.text)
+        inputs = _inputs(text, campaign)
+        stamps = tuple(map(stamp_of, inputs))
         first = survey_campaign(campaign, progress=progress)
         first.kept.clear()
         # all of it, or what was there before
         self.text, self.campaign, self.surveys = text, campaign, first.surveys
+        self._inputs, self._stamps = inputs, stamps
         self._made.clear()
         self._settings: dict[str, str] = {}
 
     @property
     def is_changed_on_disk(self) -> bool:
-        """Whether campaign.toml is another than the one that was read."""
-        return CampaignText.read(self.path).digest != self.text.digest
+        """Whether campaign.toml, or a file that it names, is another than the one that was read."""
+        is_same = CampaignText.read(self.path).digest == self.text.digest
+        return not is_same or tuple(map(stamp_of, self._inputs)) != self._stamps
 
     def read_again(self) -> None:
         """Take campaign.toml, and what is found in its logs, as they are now."""
@@ -150,7 +154,8 @@ class Session:
         SettingsError
             If the text is not a campaign that could be run.
         """
-        key = (test, text.digest)
+        # marks or a log that changed meanwhile are not what an earlier answer was made from
+        key = (test, text.digest, tuple(map(stamp_of, self._inputs)))
         known = self._made.pop(key, None)
         if known is None:
             known = self._reduced(test, text, told)
@@ -246,3 +251,9 @@ class Session:
         load_campaign(self.path, text=text.text)
         self.text.replace_with(text)
         self.read_again()
+
+
+def _inputs(text: CampaignText, campaign: Campaign) -> tuple[Path, ...]:
+    """Every file that a campaign may be read from: those that its text and its tests name."""
+    own = {campaign.folder / name for plan in campaign.tests.values() for name, _ in plan.files}
+    return tuple(sorted({*text.named, *own, *campaign.copies.values()}))

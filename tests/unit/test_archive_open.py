@@ -1,8 +1,13 @@
 """Only an archive of this schema is opened."""
 
+import errno
+import os
+import sys
+
 import netCDF4
 import pytest
 
+from reduction.archive import open as module
 from reduction.archive.open import open_archive
 from reduction.errors import ArchiveError
 
@@ -41,3 +46,24 @@ def test_the_cache_of_other_files_is_left_as_it_was(rich_test, write):
     before = netCDF4.get_chunk_cache()
     with open_archive(write(rich_test)):
         assert netCDF4.get_chunk_cache() == before
+
+
+def test_an_archive_that_the_system_refuses_is_told_so(tmp_path, monkeypatch):
+    def refused(path):
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    path = tmp_path / "T-1.nc"
+    path.touch()
+    monkeypatch.setattr(module, "check_seal", refused)
+    with pytest.raises(ArchiveError, match="T-1.nc cannot be read; found Input/output error"):
+        open_archive(path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of files are bytes on Linux alone")
+def test_a_name_that_the_process_cannot_write_down_is_no_fault_of_the_file(tmp_path):
+    path = tmp_path / os.fsdecode(b"pr\xfcfung.nc")
+    path.write_bytes(b"not read so far")
+    with pytest.raises(
+        ArchiveError, match=r"cannot be given to the netCDF library; found .*Set PYTHONUTF8=1"
+    ):
+        open_archive(path)

@@ -1,5 +1,6 @@
 """One run at a time on the products of a campaign, whatever became of the one before."""
 
+import errno
 import json
 import os
 import platform
@@ -252,3 +253,43 @@ def test_what_another_run_began_is_left_to_it(tmp_path):
         lock.write_text(lock.read_text().replace('"token": "', '"token": "another'))
         (tmp_path / ".T-1.nc.8-a2b9.part").touch()
     assert (tmp_path / ".T-1.nc.8-a2b9.part").exists()
+
+
+@pytest.mark.parametrize("kind", ["folder", "refused"])
+def test_a_lock_that_cannot_be_read_is_left_to_a_person_and_the_reason_told(
+    kind, tmp_path, monkeypatch
+):
+    path = tmp_path / LOCK_NAME
+    if kind == "folder":
+        path.mkdir()
+        why = "Is a directory"
+    else:
+        path.write_text("{}")
+        monkeypatch.setattr(Path, "read_text", refused)
+        why = "Input/output error"
+    with (
+        pytest.raises(
+            ArchiveError, match=rf"another run holds .*run.lock: {why}; .*delete the file"
+        ),
+        run_lock(tmp_path, remark=pytest.fail),
+    ):
+        pytest.fail("it was taken")
+    assert path.exists()
+
+
+def refused(*arguments, **options):
+    raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+
+def test_a_lock_that_cannot_be_read_any_more_ends_the_run_with_the_reason(tmp_path, monkeypatch):
+    with run_lock(tmp_path, remark=pytest.fail) as lock, monkeypatch.context() as disk:
+        disk.setattr(Path, "read_text", refused)
+        with pytest.raises(ArchiveError, match="the lock of this run, cannot be read; found Input"):
+            lock.confirm()
+
+
+def test_a_lock_is_given_back_where_the_folder_cannot_be_looked_through(tmp_path, monkeypatch):
+    with monkeypatch.context() as disk:
+        with run_lock(tmp_path, remark=pytest.fail):
+            disk.setattr(Path, "rglob", refused)
+        assert list(tmp_path.iterdir()) == []

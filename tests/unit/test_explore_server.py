@@ -13,6 +13,7 @@ import pytest
 
 from reduction.errors import DataError, SettingsError
 from reduction.explore import server as server_module
+from reduction.explore.guard import Guard
 from reduction.explore.routes import Routes
 from reduction.explore.server import ExploreServer
 from reduction.explore.work import Work
@@ -58,7 +59,7 @@ def session():
 def server(session):
     defects = []
     work = Work(defects.append)
-    with ExploreServer(Routes(session, work, "si")) as made:
+    with ExploreServer(Routes(session, work, "si"), 0, defects.append) as made:
         made.defects = defects
         thread = threading.Thread(target=made.serve_forever, kwargs={"poll_interval": 0.02})
         thread.start()
@@ -272,6 +273,7 @@ def test_a_body_states_what_it_is_and_how_long(server, changed, status):
 @pytest.mark.parametrize(
     "body", [b"", b"{", b"[]", b"null", b"\xff", b"[" * 60_000, b'{"test": 1, "changes": {}}',
              b'{"test": "T", "changes": {"a": 1}}', b'{"test": "T", "changes": []}',
+             b'{"test": "T", "changes": {"cycles.band": "\\ud800"}}',
              b'{"test": "T"}', json.dumps({"test": "T" * 300, "changes": {}}).encode(),
              json.dumps({"test": "T", "changes": dict.fromkeys(map(str, range(50)), "")}).encode()],
 )  # fmt: skip
@@ -302,6 +304,17 @@ def test_what_is_no_request_ends_without_a_word_of_python(server, text):
 def test_an_error_of_a_test_is_a_message(server):
     found = ask(server, "POST", "/api/change", {"test": "none", "changes": {}})
     assert found.status == 422 and json.loads(found.text)["error"] == "no such test: none"
+
+
+def test_a_defect_of_an_answer_is_told_in_the_terminal_and_not_to_who_asked(server, monkeypatch):
+    def broken(*_):
+        raise ZeroDivisionError("of a secret")
+
+    monkeypatch.setattr(Guard, "knows_token", broken)
+    found = ask(server, "POST", "/api/change", {"test": "T-1", "changes": {}})
+    assert found.status == 500
+    assert b"secret" not in found.text
+    assert [str(one) for one in server.defects] == ["of a secret"]
 
 
 def test_a_defect_is_a_line_on_the_page_and_told_in_the_terminal(server):

@@ -9,45 +9,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from documentedcampaign import copied, run
 
 from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive
-from reduction.batch.run import run_campaign
-from reduction.campaign.load import load_campaign
+from reduction.campaign.find import find_campaign
 from reduction.errors import ArchiveError, SettingsError
 from reduction.explore import records
 from reduction.explore.answers import answer_table
 from reduction.explore.document import campaign_document, change_document
+from reduction.explore.figures import draw_change
 from reduction.explore.file import CampaignText
-from reduction.explore.find import find_campaign
 from reduction.explore.keys import SETTINGS, setting_of, settings_of_kind
 from reduction.explore.session import Session
 from reduction.record import Quality
 from reduction.report.view import TestView
 from reduction.settings import ReductionSettings
-
-ROOT = Path(__file__).parents[2]
-DOCS = (ROOT / "docs" / "campaign.md").read_text(encoding="utf-8")
-SHORT = {"T-1.csv": 3950, "T-2.csv": 4450}
-"""Rows of each log that hold the first few of its cycles."""
-
-
-def copied(folder):
-    """The complete example of docs/campaign.md, its logs cut short: a campaign of two tests."""
-    for name in ("campaign.toml", "tests.csv", "marks.csv"):
-        (body,) = re.findall(rf"^`{name}`:\n\n```\w+\n(.*?)^```$", DOCS, re.M | re.S)
-        (folder / name).write_text(body, encoding="utf-8")
-    for name, n_rows in SHORT.items():
-        lines = (ROOT / "raw" / "tmt-synthetic" / name).read_text("utf-8").splitlines(True)
-        (folder / name).write_text("".join(lines[:n_rows]), encoding="utf-8")
-    return folder / "campaign.toml"
-
-
-def run(path, folder, **options):
-    return run_campaign(
-        load_campaign(path), processed=folder / "processed", reports=folder / "reports",
-        clock=lambda: 0.0, command="reduction run campaign.toml", **options,
-    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -199,9 +176,12 @@ def test_a_test_that_is_not_there_is_refused(session):
         session.changed("../x", {})
 
 
-def test_a_table_of_tests_goes_on_beside_the_settings_of_one(session):
-    text = session.changed("T-1", {"cycles.trim_threshold": "0.9"})
-    diff = session.text.difference(text)
+def test_a_table_of_tests_goes_on_beside_the_settings_of_one(tmp_path):
+    path = copied(tmp_path)
+    own = path.read_text(encoding="utf-8").replace('tests = "tests.csv"\n', "")
+    text = of_text(tmp_path, 'tests = "tests.csv"\n\n' + own)
+    after = text.changed("T-1", {"cycles.trim_threshold": "0.9"}, control="position")
+    diff = text.difference(after)
     changed = [line for line in diff.splitlines() if re.match(r"[-+](?![-+])", line)]
     assert changed == [
         '-tests = "tests.csv"', '+tests = "tests.csv"', "+", "+[tests.T-1]",
@@ -384,6 +364,29 @@ def test_the_page_is_told_of_every_test(session):
     assert found["synthetic"] is True
 
 
+def test_a_campaign_beside_its_products_is_found(place):
+    processed = place / "processed" / "two-tethers"
+    (place / "two-tethers").mkdir()
+    there = place / "two-tethers" / "campaign.toml"
+    shutil.copy(place / "raw" / "campaign.toml", there)
+    assert find_campaign(processed) == there
+
+
+def test_a_cycle_is_drawn_with_what_its_trim_keeps_also_where_nothing_is_changed(session):
+    standing = view(session.made("T-1", session.text))
+    (one,) = [figure for figure in draw_change(standing, standing, left_out=(0, 0))
+              if figure.key == "cycle"]  # fmt: skip
+    assert {trace["name"] for trace in one.data} == {"cycle", "in the means"}
+    assert "cut off at the ends: " in one.caption and "changed" not in one.caption
+
+
+def test_a_note_on_the_page_says_of_what_it_speaks(session):
+    made = session.made("T-1", session.text)
+    document = change_document(session, "T-1", session.text, made, made, "si")
+    assert len(document["notes"]) == made.dataset.sizes["note"]
+    assert any(one.startswith("mooney-rivlin ") for one in document["notes"])
+
+
 def test_a_campaign_is_found_where_it_lies_by_habit(place, monkeypatch):
     processed = place / "processed" / "two-tethers"
     (place / "raw" / "two-tethers").mkdir()
@@ -453,3 +456,38 @@ def test_a_step_of_a_log_is_moved_by_itself(tmp_path):
         one["key"]
         for one in change_document(session, "T-1.hold", session.text, hold, hold, "si")["settings"]
     )
+
+
+def test_marks_that_changed_meanwhile_are_told_and_no_answer_is_of_both(place):
+    session = session_of(place)
+    as_it_was = modulus(session.made("T-1", session.text))
+    marks = place / "raw" / "marks.csv"
+    rows = [line.split(",") for line in marks.read_text("utf-8").splitlines()]
+    toe = rows[0].index(next(name for name in rows[0] if name.startswith("near_toe")))
+    for row in rows[1:]:
+        row[toe] = f"{float(row[toe]) + 0.2:.3f}"
+    marks.write_text("\n".join(map(",".join, rows)) + "\n", encoding="utf-8")
+    assert session.is_changed_on_disk
+    now = modulus(session.made("T-1", session.text))
+    assert not np.array_equal(now, as_it_was, equal_nan=True)
+    # what is not changed is the same in both columns, whichever was made first
+    session.read_again()
+    assert not session.is_changed_on_disk
+    np.testing.assert_array_equal(modulus(session.made("T-1", session.text)), now)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="modes of POSIX")
+def test_a_file_that_is_read_only_is_not_written_over(place):
+    session = session_of(place)
+    session.path.chmod(0o444)
+    before = session.path.read_bytes()
+    text = session.changed("T-1", {"cycles.trim_threshold": "0.9"})
+    with pytest.raises(ArchiveError, match=r"cannot be written; found it is read-only"):
+        session.save(text)
+    assert session.path.read_bytes() == before
+
+
+@pytest.mark.parametrize("key", ["steps.²1.from", "steps.x.from", "steps..from"])
+def test_a_step_without_a_place_is_refused(session, key):
+    with pytest.raises(SettingsError, match="not one that is moved here"):
+        session.changed("T-1", {key: "1 s"})

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from reduction.archive.open import open_archive
 from reduction.archive.products import archives_of_tests
+from reduction.campaign.textfiles import read_small_text
 from reduction.errors import ArchiveError, SettingsError
 
 __all__ = ["find_campaign", "id_of_products"]
@@ -26,7 +27,8 @@ def id_of_products(processed: Path) -> str:
     if archives:
         with open_archive(archives[0]) as archive:
             return str(archive.attrs.get("campaign", ""))
-    inside = sorted(one.name for one in processed.glob("*/") if archives_of_tests(one))
+    folders = sorted(processed.iterdir()) if processed.is_dir() else []
+    inside = [one.name for one in folders if archives_of_tests(one)]
     if inside:
         raise SettingsError(
             f"{processed} holds a folder for each campaign", found=", ".join(inside),
@@ -39,11 +41,11 @@ def id_of_products(processed: Path) -> str:
     )
 
 
-def find_campaign(processed: Path, stated: Path | None = None) -> Path:
+def find_campaign(processed: Path, stated: Path | None = None, *, name: str = "") -> Path:
     """Find the campaign.toml that a folder of archives was made from.
 
-    It is looked for where it lies by habit: ``raw/ID/campaign.toml`` beside ``processed`` and in
-    the working folder.
+    It is looked for where it lies by habit: ``raw/ID/campaign.toml`` and ``ID/campaign.toml``,
+    beside ``processed`` and in the working folder.
 
     Parameters
     ----------
@@ -51,6 +53,8 @@ def find_campaign(processed: Path, stated: Path | None = None) -> Path:
         ``processed/CAMPAIGN``.
     stated : pathlib.Path, optional
         Where the user says that it is.
+    name : str, optional
+        Id of the campaign; that of the first archive where left out.
 
     Returns
     -------
@@ -64,7 +68,7 @@ def find_campaign(processed: Path, stated: Path | None = None) -> Path:
     ArchiveError
         If there are no archives.
     """
-    name = id_of_products(processed)
+    name = name or id_of_products(processed)
     if stated is not None:
         found = _id_of(stated)
         if found != name:
@@ -75,7 +79,11 @@ def find_campaign(processed: Path, stated: Path | None = None) -> Path:
             )
         return stated
     above = processed.absolute().parent.parent
-    places = [root / "raw" / name / "campaign.toml" for root in (above, Path.cwd())]
+    places = [
+        root / folder / name / "campaign.toml"
+        for root in (above, Path.cwd())
+        for folder in ("raw", "")
+    ]
     for path in dict.fromkeys(places):
         if _id_of(path) == name:
             return path
@@ -90,7 +98,7 @@ def find_campaign(processed: Path, stated: Path | None = None) -> Path:
 def _id_of(path: Path) -> str | None:
     """Id that a campaign.toml states; None of a file that is none."""
     try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
+        document = tomllib.loads(read_small_text(path))
         return str(document["campaign"]["id"])
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None

@@ -1,0 +1,1 @@
+"""Whether raw files and products still belong together."""
