@@ -2,7 +2,8 @@
 
 The pure stages take these; `reduction.campaign` fills them from campaign.toml.
 A value of None means: found by the stated first pass over the whole record, and
-written into the product, so that reading in pieces changes nothing.
+written into the product, so that reading in pieces changes nothing.  `Limits` alone changes no
+number and stands in no product.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ __all__ = [
     "ArchiveSettings",
     "CycleSettings",
     "HoldSettings",
+    "Limits",
     "ModulusSettings",
     "PhaseSettings",
     "QualitySettings",
@@ -151,6 +153,22 @@ class ArchiveSettings:
     """Every one, or those of selected cycles and outside cycles; None: by the longest record."""
     longest_record: int = 1_000_000
     """Longest record stored whole; of a longer one a quarter of this at most is stored. [1]"""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one log may be before it is refused; no number depends on it."""
+
+    file_size: int = 100_000_000_000
+    """Largest file. [byte]"""
+    unpacked_size: int = 4_000_000_000
+    """Memory that a file which is read whole, or one piece of another, may unpack to. [byte]"""
+    line_length: int = 1_000_000
+    """Longest line of a text. [byte]"""
+    columns: int = 10_000
+    """Most columns. [1]"""
+    time: float = 3600.0
+    """Longest time for reading it, looked at between blocks. [s]"""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from dataclasses import dataclass
@@ -11,9 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
+from reduction.campaign.csvrows import split_row, split_rows
 from reduction.campaign.faults import in_toml, listed
+from reduction.campaign.textfiles import read_small_text
 from reduction.errors import LogError
 from reduction.record import Floats
+from reduction.visible import cut
 
 __all__ = ["CODED", "CellColumn", "CellSheet", "read_cells"]
 
@@ -82,12 +84,17 @@ class CellSheet:
                     "an empty cell where there is none",
                 )  # fmt: skip
             values[place] = float(cell)
+            if not math.isfinite(values[place]):
+                raise LogError(
+                    self.path, "a value is not finite", row=row,
+                    channel=column.header, found=repr(cut(cell, 60)), needed="a finite number",
+                )  # fmt: skip
         return values
 
 
 def _text(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8-sig")
+        return read_small_text(path)
     except UnicodeDecodeError as error:
         raise LogError(path, "the table of runs is not UTF-8 text", found=str(error)) from error
     except OSError as error:
@@ -96,20 +103,27 @@ def _text(path: Path) -> str:
         ) from error
 
 
+def _cells(path: Path, row: int, line: str, delimiter: str) -> list[str]:
+    cells = split_row(line, delimiter)
+    if cells is None:
+        raise LogError(
+            path, "a row of the table of runs cannot be parted into cells", row=row,
+            found=repr(cut(line, 60)), needed="one line a row, every quote closed in it",
+        )  # fmt: skip
+    return [cell.strip() for cell in cells]
+
+
 def read_cells(path: Path) -> CellSheet:
     """Cells of the table; lines that are empty or begin with # are not of it."""
     lines = [
         (row, line)
-        for row, line in enumerate(_text(path).splitlines(), start=1)
+        for row, line in enumerate(split_rows(_text(path)), start=1)
         if line.strip(" ,;\t") and not line.lstrip().startswith("#")
     ]
     if not lines:
         raise LogError(path, "the table of runs is empty", needed="a header and one row a run")
     delimiter = max(",;\t", key=lines[0][1].count)
-    table = [
-        (row, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))])
-        for row, line in lines
-    ]
+    table = [(row, _cells(path, row, line, delimiter)) for row, line in lines]
     (first, header), *rows = table
     if not all(header) or len(set(header)) < len(header):
         raise LogError(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import reprlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -11,6 +10,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from reduction.campaign.csvrows import split_row, split_rows
+from reduction.campaign.textfiles import read_small_text
 from reduction.errors import ReductionError, SettingsError
 from reduction.ingest.sniff_channels import UNKNOWN
 from reduction.units import Dimension, parse_quantity
@@ -127,9 +128,10 @@ def faults_of(error: ValidationError, table: object) -> list[Fault]:
             value = "" if entry["type"] == "missing" else _shown(entry["input"])
         found.setdefault(place, []).append((needed, value))
     faults = []
+    above = {place[:length] for place in found for length in range(len(place))}
     for place, told in found.items():
         # a table is not a text either, but where its own keys have faults it was meant as a table
-        if any(other[: len(place)] == place and other != place for other in found):
+        if place in above:
             continue
         needed = " or ".join(
             text if number == 0 else text.removeprefix("Input should be ")
@@ -161,18 +163,18 @@ def _is_open(value: object) -> bool:
 
 def _cells(folder: Path, name: str) -> Iterator[tuple[int, str, str]]:
     """Row, column and text of each cell; none of a file that is refused when it is read."""
-    path = (folder / name).resolve()
-    if not path.is_relative_to(folder.resolve()) or not path.is_file():
-        return
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError):
+        path = (folder / name).resolve()
+        if not path.is_relative_to(folder.resolve()) or not path.is_file():
+            return
+        lines = split_rows(read_small_text(path))
+    except (OSError, ValueError, RuntimeError):  # links in a ring
         return
-    rows = csv.reader(text.splitlines())
-    header = [column.strip() for column in next(rows, [])]
-    for number, row in enumerate(rows, start=2):
+    header = [column.strip() for column in split_row(lines[0]) or ()]
+    for number, line in enumerate(lines[1:], start=2):
         yield from (
-            (number, column, cell.strip()) for column, cell in zip(header, row, strict=False)
+            (number, column, cell.strip())
+            for column, cell in zip(header, split_row(line) or (), strict=False)
         )
 
 

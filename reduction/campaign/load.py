@@ -7,17 +7,18 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from reduction.address import is_address, shown_address
-from reduction.archive.products import OF_CAMPAIGN
 from reduction.campaign.comparisons import plan_comparison
 from reduction.campaign.experiments import agree_on_pulls, plan_experiment
 from reduction.campaign.faults import in_toml
 from reduction.campaign.files import file_inside
 from reduction.campaign.hoses import hose_of
+from reduction.campaign.limits import stated_limits
 from reduction.campaign.marks import pooled_marks
 from reduction.campaign.model import (
     CampaignFile,
     TestSection,
 )
+from reduction.campaign.names import check_names
 from reduction.campaign.outcomes import outcomes_of
 from reduction.campaign.plan import Campaign
 from reduction.campaign.reportspec import report_details
@@ -121,12 +122,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
         name: plan_test(path, name, test, file.defaults, file, allow_remote=allow_remote)
         for name, test in tests.items()
     }
-    taken = sorted(set(plans) & set(OF_CAMPAIGN))
-    if taken:
-        raise in_toml(
-            path, f"test '{taken[0]}' has the name of a product of the campaign",
-            needed="another name than " + ", ".join(OF_CAMPAIGN),
-        )  # fmt: skip
+    check_names(path, file.campaign.id, plans)
     for name, plan in plans.items():
         if plan.part_of is not None and plan.part_of not in plans:
             raise in_toml(
@@ -181,5 +177,6 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
         comparisons=comparisons,
         uncertainty=stated_errors(path, file.uncertainty, specimens.values()),
         report=report_details(path, file.report, specimens=specimens, tests=plans),
+        limits=stated_limits(path, file.limits),
         addresses=_addresses(path, tests),
     )

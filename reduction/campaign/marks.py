@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -14,11 +15,14 @@ from reduction.campaign.files import file_inside
 from reduction.errors import LogError
 from reduction.record import SpliceMarks
 from reduction.units import scale_to_si
+from reduction.visible import cut
 
 __all__ = ["pooled_marks", "read_marks"]
 
 _LENGTHS = ("near_toe", "far_toe", "far_thimble")
 _SUFFIXES = {"ft": "ft", "in": "inch", "m": "m", "mm": "mm", "cm": "cm"}
+# as a person reads a tape: the digits behind the point say how finely
+_NUMBER = re.compile(r"[-+]?([0-9]{1,9}(\.[0-9]{0,9})?|\.[0-9]{1,9})")
 _HOLDS = ("slack", "min", "centre", "max")
 
 
@@ -54,28 +58,22 @@ def _columns(path: Path, header: list[str]) -> dict[str, tuple[int, float]]:
 
 
 def _reading(path: Path, row: int, name: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
+    if _NUMBER.fullmatch(text) is None:
         raise LogError(
-            path, "a mark is not a number", row=row, channel=name, found=repr(text),
-            needed="a length read from the near thimble",
+            path, "a mark is not a number", row=row, channel=name, found=repr(cut(text, 60)),
+            needed="a length read from the near thimble, such as 6.25",
         )  # fmt: skip
-    return value
+    return float(text)
 
 
 def _check_hold(path: Path, row: int, hold: str) -> None:
     if hold in _HOLDS:
         return
-    try:
-        float(hold.rstrip("% "))
-    except ValueError:
+    if _NUMBER.fullmatch(hold.rstrip("% ")) is None:
         raise LogError(
-            path, "a hold has no known name", row=row, channel="hold", found=repr(hold),
+            path, "a hold has no known name", row=row, channel="hold", found=repr(cut(hold, 60)),
             needed="slack, min, centre, max or a strain",
-        ) from None  # fmt: skip
+        )  # fmt: skip
 
 
 def read_marks(path: Path) -> dict[str, SpliceMarks]:

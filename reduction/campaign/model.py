@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, field_validator
 
 from reduction.campaign.hosemodel import ComparisonSection, HoseSection
+from reduction.campaign.limits import LimitsSection
 from reduction.campaign.reportspec import ReportSection
 from reduction.campaign.uncertaintyspec import UncertaintySection
 from reduction.errors import SettingsError
@@ -63,10 +64,11 @@ Response = Literal[
 ]
 """What a surface may be fitted to; the first four are those of CG-D-39-80."""
 Text = Annotated[str, StringConstraints(max_length=2000)]
+_MOST = 999_999_999  # of what is counted: a netCDF integer holds it
 
 
 class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class CampaignSection(_Section):
@@ -107,9 +109,9 @@ class SpecimenSection(_Section):
     """The same less the water it displaces."""
     gauge_length: str | None = None
     gauge_length_standard_uncertainty: str | None = None
-    earlier_cycles: int | None = Field(default=None, ge=0)
+    earlier_cycles: int | None = Field(default=None, ge=0, le=_MOST)
     """Cycles of tension before the first test of the campaign; none where left out."""
-    earlier_flex_cycles: int | None = Field(default=None, ge=0)
+    earlier_flex_cycles: int | None = Field(default=None, ge=0, le=_MOST)
     """Cycles of flexing before it; not known where left out."""
     note: Text = ""
 
@@ -160,7 +162,9 @@ class Defaults(_Kept):
 class StepSection(_Section):
     """``[[tests.ID.steps]]``: one step of a log that holds many."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
+    )
 
     name: StepName
     start: str | int = Field(alias="from")
@@ -168,7 +172,7 @@ class StepSection(_Section):
     end: str | int = Field(alias="to")
     kind: TestKind | None = None
     target_strain: tuple[float, ...] = ()
-    n_cycles: int | None = Field(default=None, ge=1)
+    n_cycles: int | None = Field(default=None, ge=1, le=_MOST)
     failed: bool | None = None
     """As of a test."""
     note: Text = ""
@@ -182,7 +186,7 @@ class TestSection(_Kept):
     kind: TestKind | None = None
     file: Text | tuple[FilePiece, ...] = ""
     """Required, here or in the table of tests."""
-    order: int | None = None
+    order: int | None = Field(default=None, ge=-_MOST, le=_MOST)
     """Place in the specimens' history."""
     part_of: Identifier | None = None
     """The test of which this log repeats a part; its cycles are not counted twice."""
@@ -190,10 +194,10 @@ class TestSection(_Kept):
     rest: Text = ""
     """Time at rest before this test."""
     target_strain: tuple[float, ...] = ()
-    n_cycles: int | None = Field(default=None, ge=1)
-    unlogged_cycles: int | None = Field(default=None, ge=0)
+    n_cycles: int | None = Field(default=None, ge=1, le=_MOST)
+    unlogged_cycles: int | None = Field(default=None, ge=0, le=_MOST)
     """Cycles of tension between the test before and this one, of which there is no log."""
-    n_flex_cycles: int | None = Field(default=None, ge=0)
+    n_flex_cycles: int | None = Field(default=None, ge=0, le=_MOST)
     """Cycles of flexing in this test, while it is pulled."""
     flex_angle: str | None = None
     """Half the range of the flexing: ``30 deg`` to either side."""
@@ -247,3 +251,4 @@ class CampaignFile(_Section):
     comparisons: dict[Identifier, ComparisonSection] = Field(default_factory=dict)
     uncertainty: UncertaintySection = UncertaintySection()
     report: ReportSection | None = None
+    limits: LimitsSection = LimitsSection()

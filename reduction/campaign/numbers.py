@@ -73,6 +73,16 @@ def limits_of(group: str, name: str) -> tuple[float, float]:
     return _LIMITS.get((group, name), (0.0, math.inf))
 
 
+def _in_si(where: str, value: str | float, dimension: Dimension) -> float:
+    """A value with its unit; a refusal says which number it is."""
+    try:
+        return parse_quantity(value, dimension)
+    except SettingsError as error:
+        raise SettingsError(
+            f"{where}: {error.problem}", found=repr(value), needed=error.needed, hint=error.hint
+        ) from error
+
+
 def _value(group: str, name: str, value: object, default: object, control: str) -> object:
     where = f"reduction.{group}.{name}"
     words = _WORDS.get((group, name))
@@ -85,23 +95,26 @@ def _value(group: str, name: str, value: object, default: object, control: str) 
     if isinstance(default, tuple):
         if not isinstance(value, (list, tuple)):
             raise SettingsError(f"{where} is not a list", found=repr(value), needed="a list")
-        return tuple(parse_quantity(item, dimension or "number") for item in value)
+        return tuple(_in_si(where, item, dimension or "number") for item in value)
     if dimension is not None:
         if not isinstance(value, (str, int, float)):
             raise SettingsError(f"{where} is not a value", found=repr(value), needed="a value")
-        number = parse_quantity(value, dimension)
+        number = _in_si(where, value, dimension)
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
-        number = float(value)
+        try:
+            number = float(value)
+        except OverflowError:  # a whole number of hundreds of digits
+            number = math.inf
     else:
         raise SettingsError(f"{where} is not a number", found=repr(value), needed="a number")
     least, greatest = limits_of(group, name)
-    if not least <= number <= greatest:
+    if not least <= number <= greatest or (isinstance(default, float) and math.isinf(number)):
         upper = "" if math.isinf(greatest) else f" and at most {greatest:g}"
         raise SettingsError(
             f"{where} is out of range", found=repr(value), needed=f"at least {least:g}{upper}"
         )
     if isinstance(default, int):
-        if number != int(number):
+        if not number.is_integer():  # nor is infinity one
             raise SettingsError(
                 f"{where} is not a whole number", found=repr(value), needed="a whole number"
             )

@@ -16,7 +16,7 @@ from reduction.prediction import HosePlan
 from reduction.provenance import Source
 from reduction.record import Specimen, SpliceMarks
 from reduction.remote.scratch import in_words
-from reduction.settings import ReductionSettings
+from reduction.settings import Limits, ReductionSettings
 from reduction.surface.levels import FactorLevels
 from reduction.uncertainty.stated import StatedErrors
 
@@ -125,7 +125,7 @@ class Campaign:
 
     ``outcomes`` are the rows of the table ``results``, with what the sheets of their
     specimens say; ``uncertainty`` is what is stated of the instruments, ``report`` what the
-    laboratory states for its client.
+    laboratory states for its client, ``limits`` what a log may be.
 
     ``addresses`` are whole addresses of logs on the net by their names, until there are
     ``copies`` of them, or ``unread`` says why there is none; ``names`` are what may be shown
@@ -146,6 +146,7 @@ class Campaign:
     comparisons: dict[str, ComparisonPlan] = field(default_factory=dict)
     uncertainty: StatedErrors = field(default_factory=StatedErrors)
     report: ReportDetails | None = None
+    limits: Limits = field(default_factory=Limits)
     addresses: dict[str, str] = field(default_factory=dict, repr=False)
     copies: dict[str, Path] = field(default_factory=dict)
     unread: dict[str, LogError] = field(default_factory=dict)

@@ -88,7 +88,10 @@ class _ResultRow:
             return math.nan
         if not _NUMBER.fullmatch(cell):
             raise self.fault("a value is not a number", header, needed="a number, without its unit")
-        return float(cell)
+        value = float(cell)
+        if not math.isfinite(value):
+            raise self.fault("a value is not finite", header, needed="a finite number")
+        return value
 
     def in_si(self, header: str, unit: str, dimension: Dimension) -> float:
         """A number with the unit that its column or its row declares."""

@@ -18,6 +18,7 @@ from reduction.address import is_address, shown_address
 from reduction.campaign.faults import named_tables
 from reduction.campaign.load import load_campaign
 from reduction.campaign.plan import Campaign
+from reduction.campaign.textfiles import read_small_text
 from reduction.errors import LogError
 from reduction.remote.place import allowed, base_name, below, folder_of
 from reduction.remote.scratch import renamed, scratch_folder
@@ -80,8 +81,8 @@ def staged_campaign(
 def _fetch_tables(base: str, path: Path, progress: Progress) -> None:
     """Copy the tables and marks that a campaign names beside it; one that is not there is not."""
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError):
+        table = tomllib.loads(read_small_text(path))
+    except (ValueError, RecursionError):
         return  # it is refused when it is loaded
     for name in named_tables(path.parent, table):
         if _is_below(name):

@@ -109,8 +109,6 @@ def plan_test(
         except SettingsError as error:
             raise in_toml(path, f"test '{name}': {error}") from error
     kind = test.kind or defaults.kind
-    if len({step.name.replace(" ", "-") for step in test.steps}) < len(test.steps):
-        raise in_toml(path, f"two steps of test '{name}' have one name")
     attributes = {key: given(key) for key in _KEPT if given(key)}
     attributes |= {
         key: str(getattr(test, key))

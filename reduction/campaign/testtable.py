@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +12,14 @@ from reduction.campaign.csvrows import read_csv_rows
 from reduction.campaign.faults import faults_of, in_toml, listed
 from reduction.campaign.model import Identifier, TestSection
 from reduction.errors import SettingsError
+from reduction.visible import cut
 
 __all__ = ["merge_tests", "read_test_table"]
 
 _LISTS = ("specimens", "target_strain")
 _WHOLE = ("order", "n_cycles", "unlogged_cycles", "n_flex_cycles")
+# as many digits as a netCDF integer holds
+_WHOLE_NUMBER = re.compile(r"[-+]?[0-9]{1,9}")
 _STRAIN = ("method", "marks")
 # tables of campaign.toml, which no cell can hold
 _TABLES = ("strain", "reduction", "steps")
@@ -42,10 +46,10 @@ def _cells(path: Path, row: int, cells: dict[str, str]) -> dict[str, Any]:
         elif name in _STRAIN:
             table.setdefault("strain", {})[name] = text
         elif name in _WHOLE:
-            if not text.lstrip("-").isdigit():
+            if not _WHOLE_NUMBER.fullmatch(text):
                 raise _in_table(
                     path, f"{name} is not a whole number", row=row, channel=name,
-                    found=repr(text), needed="a whole number",
+                    found=repr(cut(text, 60)), needed="a whole number",
                 )  # fmt: skip
             table[name] = int(text)
         else:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from reduction.campaign.faults import faults_of, in_toml, listed, open_questions
+from reduction.campaign.textfiles import read_small_text
+from reduction.errors import LogError
 
 __all__ = ["read_toml"]
 
+# what the parser takes minutes or gigabytes for, and no setting has
+_DEEP = re.compile(r"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){40}""")
+_MOST_LINES = 500_000
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
@@ -54,12 +60,14 @@ def read_toml(
         up to ten places, one a line.
     """
     try:
-        table = tomllib.loads(path.read_bytes().decode("utf-8") if text is None else text)
+        table = _tables(read_small_text(path) if text is None else text)
+    except LogError as error:
+        raise in_toml(path, error.problem, found=error.found, needed=error.needed) from error
     except OSError as error:
         raise in_toml(
             path, f"{what} cannot be read", found=error.strerror or str(error), needed=needed
         ) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # a number of too many digits is no TOML error
         raise in_toml(path, f"{what} is not TOML", found=str(error), hint=hint(path)) from error
     places = open_questions(path.parent, table)
     if places:
@@ -72,3 +80,13 @@ def read_toml(
         count = f"{len(faults)} settings" if len(faults) > 1 else "1 setting"
         headline = f"{count} cannot be used, first '{faults[0].place}' ({keys})"
         raise in_toml(path, listed(headline, faults)) from error
+
+
+def _tables(text: str) -> dict[str, Any]:
+    """What TOML says; `ValueError` where it is none, or more than anybody writes."""
+    if text.count("\n") > _MOST_LINES:
+        raise ValueError(f"more than {_MOST_LINES:,} lines")
+    if deep := _DEEP.search(text):
+        line = text.count("\n", 0, deep.start()) + 1
+        raise ValueError(f"a key of more than 40 parts (at line {line})")
+    return tomllib.loads(text)

@@ -19,6 +19,7 @@ from reduction.ingest.columns import Wanted, check_lengths, find_column, wanted_
 from reduction.ingest.fields import read_fields
 from reduction.ingest.growing import GrowingLog
 from reduction.ingest.layout import Layout
+from reduction.ingest.limits import Watch
 from reduction.ingest.parts import Parts
 from reduction.ingest.preamble import check_units, keep_line
 from reduction.ingest.rawlog import RawLog
@@ -44,7 +45,14 @@ class _Kind:
     n_rows: int = 0
 
 
-def read_blocks(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
+def read_blocks(
+    path: Path,
+    layout: Layout,
+    *,
+    name: str,
+    parts: Parts | None = None,
+    watch: Watch | None = None,
+) -> RawLog:
     """Read a log of repeated blocks.
 
     Parameters
@@ -58,6 +66,8 @@ def read_blocks(path: Path, layout: Layout, *, name: str, parts: Parts | None = 
         File name relative to the campaign folder.
     parts : Parts, optional
         How much of it is read at a time.
+    watch : Watch, optional
+        Holds it against its limits.
 
     Returns
     -------
@@ -72,11 +82,12 @@ def read_blocks(path: Path, layout: Layout, *, name: str, parts: Parts | None = 
     DataError
         If the disk is full.
     """
-    with unchanged(path), open_text(path, layout.encoding, parts or Parts()) as file:
+    watch = watch or Watch(path)
+    with unchanged(path), open_text(path, layout.encoding, parts or Parts(), watch) as file:
         blocks: _Blocks | None = None
         for lines in block_lines(file, layout):
             if blocks is None:
-                blocks = _Blocks(path, _with_separators(path, lines, layout), file.folder)
+                blocks = _Blocks(path, _with_separators(path, lines, layout), file.folder, watch)
             blocks.take(lines)
         if blocks is None or not blocks.kinds:
             raise _no_block(path, layout)
@@ -86,8 +97,8 @@ def read_blocks(path: Path, layout: Layout, *, name: str, parts: Parts | None = 
 class _Blocks:
     """What has been read so far."""
 
-    def __init__(self, path: Path, layout: Layout, folder: Path | None) -> None:
-        self.path, self.layout, self.folder = path, layout, folder
+    def __init__(self, path: Path, layout: Layout, folder: Path | None, watch: Watch) -> None:
+        self.path, self.layout, self.folder, self.watch = path, layout, folder, watch
         self.kinds: dict[bytes, _Kind] = {}
         self.open: _Kind | None = None  # that of the block that goes on
         self.chosen: _Kind | None = None
@@ -126,7 +137,15 @@ class _Blocks:
         row = np.flatnonzero(used) + lines.first_row
         body = memoryview(kept.tobytes().rstrip(b"\r\n"))
         is_open = lines.is_open and bool(used[-1])
-        rows = TextRows(self.path, self.layout, body, int(row[0]), row, is_open=is_open)
+        rows = TextRows(
+            self.path,
+            self.layout,
+            body,
+            int(row[0]),
+            row,
+            is_open=is_open,
+            longest_line=self.watch.limits.line_length,
+        )
         self.log.add(read_fields(rows, self.wanted, self.chosen.n_fields), rows.first_row)
 
     def finish(self, file: TextFile, name: str) -> RawLog:
@@ -162,6 +181,7 @@ class _Blocks:
         row = lines.first_row + opener
         if header not in self.kinds:
             names = split_line(lines.text(opener + 1), self.layout)
+            self.watch.check_columns(len(names), row=row + 1)
             self.kinds[header] = _Kind(len(names), row)
             if self.chosen is None:
                 self._choose(lines, opener, names, self.kinds[header])

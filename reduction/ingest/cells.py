@@ -24,7 +24,7 @@ from reduction.ingest.columns import Wanted, without_marks
 from reduction.ingest.layout import CLOCK, Layout
 from reduction.record import Bools, Floats
 
-__all__ = ["SheetCells", "read_cells"]
+__all__ = ["SheetCells", "parsed", "read_cells"]
 
 _ERROR_CELL = re.compile(r"Error\((\w+)\)")
 _ERROR_MARKS = {
@@ -37,6 +37,35 @@ _ERROR_MARKS = {
     "Value": "#VALUE!",
     "GettingData": "#GETTING_DATA",
 }
+
+
+class parsed:  # noqa: N801 - read as a word of the ``with`` statement
+    """Make a `LogError` of whatever the parser of workbooks ends with.
+
+    Where one of its own checks fails it ends with a class that no ``except Exception`` catches.
+    """
+
+    def __init__(self, path: Path, problem: str, *, needed: str | None = None) -> None:
+        """Remember what is said then."""
+        self._path, self._problem, self._needed = path, problem, needed
+
+    def __enter__(self) -> None:
+        """Begin to parse."""
+
+    def __exit__(
+        self, _: type[BaseException] | None, error: BaseException | None, __: object
+    ) -> None:
+        """Tell how it ended."""
+        faults = (python_calamine.CalamineError, fastexcel.FastExcelError, OSError)
+        if error is not None and (
+            isinstance(error, faults) or type(error).__name__ == "PanicException"
+        ):
+            found = _first_line(error)
+            raise LogError(self._path, self._problem, found=found, needed=self._needed) from error
+
+
+def _first_line(error: BaseException) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0]
 
 
 @dataclass
@@ -75,6 +104,8 @@ def _fast_columns(
         return None
     columns = [column.to_numpy(zero_copy_only=False) for column in batch.columns]
     values = [np.array(columns[order.index(place)], dtype=np.float64) for place in places]
+    if any(np.isinf(column).any() for column in values):
+        return None
     return SheetCells(
         [without_marks(column, layout) for column in values],
         [np.isnan(column) for column in values],
@@ -114,7 +145,7 @@ def _exact_columns(
     layout: Layout,
 ) -> SheetCells:
     """Columns cell by cell; `LogError` at the first that is neither number nor missing mark."""
-    try:
+    with parsed(path, f"sheet {sheet + 1} cannot be read"):
         rows = (
             python_calamine.CalamineWorkbook.from_path(path)
             .get_sheet_by_index(sheet)
@@ -126,13 +157,11 @@ def _exact_columns(
             for (row, place), mark in errors.items():
                 for index in (i for i, wanted_place in enumerate(places) if wanted_place == place):
                     columns[index][row - first] = mark
-    except (python_calamine.CalamineError, fastexcel.FastExcelError) as error:
-        raise LogError(
-            path, f"sheet {sheet + 1} cannot be read", found=str(error).splitlines()[0]
-        ) from error
     found = SheetCells()
     for cells, want in zip(columns, wanted, strict=True):
-        odd = [index for index, cell in enumerate(cells) if type(cell) is not float]
+        odd = [
+            index for index, cell in enumerate(cells) if type(cell) is not float or math.isinf(cell)
+        ]
         blank = np.zeros(len(cells), dtype=bool)
         blank[[i for i in odd if isinstance(cells[i], str) and not cells[i].strip()]] = True
         found.blanks.append(blank)

@@ -82,14 +82,17 @@ class CheckedColumn:
                 if self._wanted.unit == CLOCK
                 else f"real numbers in {self._wanted.unit}",
             )
-        array = values.astype(np.float64, copy=False)
+        with np.errstate(invalid="ignore"):  # damage makes NaNs that signal
+            array = values.astype(np.float64, copy=False)
+            column = without_marks(values, self._layout)
         if kind in "iu":
             self._look(_LARGE, array, np.abs(array) > _EXACT)
         elif not np.all(np.isfinite(array)):
             if not self._nan_is_missing:
                 self._look(_MISSING, array, np.isnan(array))
             self._look(_INFINITE, array, np.isinf(array))
-        self._writer.append(without_marks(values, self._layout))
+            column = np.where(np.isnan(column), np.nan, column)
+        self._writer.append(column)
 
     def finish(self) -> Floats:
         """The column.

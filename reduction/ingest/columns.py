@@ -34,6 +34,7 @@ __all__ = [
 
 _BRACKETS = {"(": ")", "[": "]", "{": "}", "<": ">"}
 _SHOWN = 40
+_LONGEST_SHOWN = 200
 _LONGEST_UNIT = 30
 _POWER = re.compile(r"\*\*|\^")  # one at most: 9**9**9 would take for ever
 
@@ -67,7 +68,7 @@ def _listing(names: Sequence[str]) -> str:
         return "no columns"
     if not any(names):
         return f"columns without names, numbers 1 to {len(names)}"
-    shown = ", ".join(repr(name) for name in names[:_SHOWN])
+    shown = ", ".join(repr(name[:_LONGEST_SHOWN]) for name in names[:_SHOWN])
     return shown if len(names) <= _SHOWN else f"{shown} and {len(names) - _SHOWN} more"
 
 

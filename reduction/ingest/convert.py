@@ -25,6 +25,7 @@ _WORKERS = 4
 _NO_COUNT = -1
 _DATUM_SHARE = 0.05
 _ABSURD = 1e9  # m, N or 1: no machine is as long or as strong
+_ABSURD_TIME = 1e12  # s: 30,000 years, and beyond it a float is no clock
 
 
 def to_record(
@@ -82,6 +83,8 @@ def to_record(
     with ThreadPoolExecutor(_WORKERS) as workers:  # fresh memory is slow to touch
         list(workers.map(lambda target: _fill(target[1], pieces, target[0]), targets))
     counter, counter_notes = _counter(pieces, n_samples)
+    for piece in pieces:
+        _check_clock(piece)
     times = [piece.time for piece in pieces]
     record = Record(
         test_id=test_id,
@@ -213,6 +216,19 @@ def _check_size(part: Floats, piece: Piece, key: str) -> None:
             found=f"{part[absurd[0]]:g} in SI",
             needed=f"at most {_ABSURD:g}",
             hint="Check the unit and the column; a value that stands for none belongs to missing.",
+        )
+
+
+def _check_clock(piece: Piece) -> None:
+    """Refuse times that no clock can have shown."""
+    low, high = finite_extremes(piece.time)
+    if low < -_ABSURD_TIME or high > _ABSURD_TIME:
+        value = low if low < -_ABSURD_TIME else high
+        raise DataError(
+            f"the time of {piece.log.source.name} has values that no clock shows",
+            found=f"{value:g} s",
+            needed=f"at most {_ABSURD_TIME:g} s",
+            hint="Check the unit and the column of the time channel.",
         )
 
 

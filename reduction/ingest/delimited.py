@@ -16,6 +16,7 @@ from reduction.ingest.columns import Wanted, check_lengths, find_column, wanted_
 from reduction.ingest.fields import Fields, read_fields
 from reduction.ingest.growing import AT_A_TIME, GrowingLog, in_order
 from reduction.ingest.layout import Layout
+from reduction.ingest.limits import Watch
 from reduction.ingest.parts import Parts
 from reduction.ingest.preamble import check_units, keep_line
 from reduction.ingest.rawlog import RawLog
@@ -26,6 +27,7 @@ from reduction.ingest.textrows import TextRows, count_lines, line_starts, split_
 __all__ = ["read_delimited"]
 
 _LINE = 1 << 12  # bytes that most lines of a header have at most
+_KEPT_LINES = 1000
 
 
 @dataclass
@@ -37,6 +39,8 @@ class _Head:
     units: list[str] = field(default_factory=list)
     unit_row: int | None = None
     metadata: dict[str, str] = field(default_factory=dict)
+    n_loose: int = 0
+    """Lines that are not data, those that are not kept too."""
     last_row: int = 0
     """Editor's row of the last line that is not blank."""
     first_line: str = ""
@@ -48,8 +52,21 @@ class _Head:
     wanted: list[tuple[Wanted, int]] = field(default_factory=list)
     """Each declared column with its place."""
 
+    def keep(self, line: str, row: int, layout: Layout) -> None:
+        """Keep a line that is not data, if it is one of the first."""
+        self.n_loose += 1
+        if self.n_loose <= _KEPT_LINES:
+            keep_line(self.metadata, line, row, layout)
 
-def read_delimited(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
+
+def read_delimited(
+    path: Path,
+    layout: Layout,
+    *,
+    name: str,
+    parts: Parts | None = None,
+    watch: Watch | None = None,
+) -> RawLog:
     """Read a delimited text log.
 
     Parameters
@@ -62,6 +79,8 @@ def read_delimited(path: Path, layout: Layout, *, name: str, parts: Parts | None
         File name relative to the campaign folder.
     parts : Parts, optional
         How much of it is read at a time.
+    watch : Watch, optional
+        Holds it against its limits.
 
     Returns
     -------
@@ -75,14 +94,14 @@ def read_delimited(path: Path, layout: Layout, *, name: str, parts: Parts | None
     DataError
         If the disk is full.
     """
-    head = _Head()
+    head, watch = _Head(), watch or Watch(path)
     log: GrowingLog | None = None
     with (
         unchanged(path),
-        open_text(path, layout.encoding, parts or Parts()) as file,
+        open_text(path, layout.encoding, parts or Parts(), watch) as file,
         ThreadPoolExecutor(AT_A_TIME) as workers,
     ):
-        data_rows = _data_rows(path, file, head, layout)
+        data_rows = _data_rows(path, file, head, layout, watch)
         for rows, fields in in_order(workers, partial(_fields, head), data_rows):
             log = log or GrowingLog([want for want, _ in head.wanted], file.folder)
             log.add(fields, rows.first_row)
@@ -90,6 +109,7 @@ def read_delimited(path: Path, layout: Layout, *, name: str, parts: Parts | None
             raise _no_rows(path, head)
         columns = log.finish(path, layout)
         source = file.source(name)
+    left_out = head.n_loose - _KEPT_LINES
     return RawLog(
         source=source,
         columns=columns,
@@ -98,10 +118,13 @@ def read_delimited(path: Path, layout: Layout, *, name: str, parts: Parts | None
         row=log.row,
         n_rows_read=check_lengths(path, columns),
         metadata=head.metadata,
+        notes=(f"{left_out} more lines that are not data are not kept",) if left_out > 0 else (),
     )
 
 
-def _data_rows(path: Path, file: TextFile, head: _Head, layout: Layout) -> Iterator[TextRows]:
+def _data_rows(
+    path: Path, file: TextFile, head: _Head, layout: Layout, watch: Watch
+) -> Iterator[TextRows]:
     """Data rows of each part, once the head has been read."""
     for part in file:
         text, row = _tidy(part.text, layout), part.first_row
@@ -112,10 +135,19 @@ def _data_rows(path: Path, file: TextFile, head: _Head, layout: Layout) -> Itera
                 continue
             text, row = text[begin:], head.first_row
             head.n_fields = _count_fields(path, head, layout)
+            watch.check_columns(head.n_fields, row=head.first_row)
             head.wanted = _find_columns(path, head, layout)
         is_open = part.is_open and below == part.first_row + part.n_lines
-        rows = TextRows(path, layout, text, row, is_open=is_open, n_lines=below - row)
-        yield _without_comments(rows, head.metadata)
+        rows = TextRows(
+            path,
+            layout,
+            text,
+            row,
+            is_open=is_open,
+            n_lines=below - row,
+            longest_line=file.longest_line,
+        )
+        yield _without_comments(rows, head)
 
 
 def _fields(head: _Head, rows: TextRows) -> Fields:
@@ -136,7 +168,7 @@ def _read_head(head: _Head, text: memoryview, first_row: int, layout: Layout) ->
         if line.strip():
             head.last_row = row
         if row <= layout.preamble_rows or (layout.comment and line.startswith(layout.comment)):
-            keep_line(head.metadata, line, row, layout)
+            head.keep(line, row, layout)
         elif not line.strip():
             continue
         elif layout.has_name_row and not head.names:
@@ -200,7 +232,7 @@ def _find_columns(path: Path, head: _Head, layout: Layout) -> list[tuple[Wanted,
     return wanted
 
 
-def _without_comments(rows: TextRows, metadata: dict[str, str]) -> TextRows:
+def _without_comments(rows: TextRows, head: _Head) -> TextRows:
     """Rows without the comment lines between them, which are kept as metadata."""
     comment = rows.layout.comment.encode()
     if not comment or comment not in bytes(rows.text):
@@ -212,7 +244,7 @@ def _without_comments(rows: TextRows, metadata: dict[str, str]) -> TextRows:
         line = int(np.searchsorted(starts, match.start()))
         is_comment[line] = True
         text = match[0].decode("utf-8").rstrip("\r")
-        keep_line(metadata, text, rows.row_of_line(line), rows.layout)
+        head.keep(text, rows.row_of_line(line), rows.layout)
     kept = np.frombuffer(rows.text, np.uint8)[np.repeat(~is_comment, lengths)]
     return TextRows(
         rows.path,

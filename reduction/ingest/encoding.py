@@ -21,6 +21,9 @@ _MARKS = (
 )
 _ASCII = bytes(range(128))
 _CHARACTER_MARK = "\ufeff"
+# of host names, of escapes in source code, and of nothing: no machine writes a log in them
+_NO_TEXT = {"idna", "punycode", "unicode-escape", "raw-unicode-escape", "undefined"}
+_SAMPLE = "0,1\n"
 
 
 @dataclass(frozen=True)
@@ -93,14 +96,16 @@ def find_encoding(path: Path, head: bytes, declared: str) -> TextEncoding:
         If there is no such encoding.
     """
     try:
-        b"".decode(declared)  # refuses codecs that make no text
         codec = codecs.lookup(declared).name
-    except LookupError as error:
+        is_text = codec not in _NO_TEXT and _SAMPLE.encode(declared).decode(declared) == _SAMPLE
+    except (LookupError, ValueError):  # not known, or of no text; a NUL byte in the name
+        is_text = False
+    if not is_text:
         raise SettingsError(
-            f"encoding '{declared}' is not known",
-            found=f"'{declared}'",
+            "an encoding is not known",
+            found=repr(declared),
             needed="a name such as utf-8, latin-1, cp1252 or utf-16",
-        ) from error
+        )
     mark, marked = next(((m, e) for m, e in _MARKS if head.startswith(m)), (b"", ""))
     if marked and not (codec.startswith(marked) or (marked == "utf-8" and codec in _UTF8_FAMILY)):
         raise LogError(

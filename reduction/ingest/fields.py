@@ -21,8 +21,11 @@ from reduction.ingest.columns import Wanted, without_marks
 from reduction.ingest.layout import CLOCK
 from reduction.ingest.textrows import TextRows, count_lines, split_line
 from reduction.record import Floats, Integers
+from reduction.visible import cut
 
 __all__ = ["Fields", "read_fields"]
+
+_BLOCK = 1 << 20  # bytes that the parser takes at a time, a line at least
 
 
 @dataclass(frozen=True)
@@ -142,7 +145,9 @@ def _parse(
     is_marked = bytes(rows.text[: len(BOM_UTF8)]) == BOM_UTF8
     return pa_csv.read_csv(
         pa.py_buffer(b"\n" + bytes(rows.text) if is_marked else rows.text),
-        read_options=pa_csv.ReadOptions(column_names=names),
+        read_options=pa_csv.ReadOptions(
+            column_names=names, block_size=max(_BLOCK, rows.longest_line + 2)
+        ),
         parse_options=pa_csv.ParseOptions(
             delimiter=layout.delimiter, quote_char=layout.quote or False
         ),
@@ -220,7 +225,7 @@ def _second_look(
         "a value is not a number",
         row=rows.row_of_line(bad) if row is None else int(row[bad]),
         channel=str(want.column),
-        found=repr(found) if found else "an empty field",
+        found=repr(cut(found, 60)) if found else "an empty field",
         needed=f"a decimal number such as {sample} in {want.unit}, or a declared missing mark",
         hint="Add it to the missing marks of the layout where it means missing.",
     )

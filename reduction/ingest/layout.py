@@ -43,7 +43,7 @@ class Channel(BaseModel):
     column: str | int
     unit: str = "1"
     """Of time also ``clock``: text such as 0945 or 09:45:30, made elapsed seconds."""
-    factor: float = Field(default=1.0, gt=0)
+    factor: float = Field(default=1.0, gt=0, allow_inf_nan=False)
     unit_key: str = ""
     """JSON: key of the text that states this channel's unit, checked against ``unit``."""
     sign: Literal[1, -1] = 1
@@ -61,6 +61,28 @@ class Channel(BaseModel):
     time_unit: str = "s"
 
 
+def _check_keys(name: str, channel: Channel) -> None:
+    """Refuse what a channel declares and nothing would look at."""
+    keys: tuple[str, ...] = ()
+    if name != "crosshead_position":
+        keys = ("datum", "reference_length", "reference_tension")
+    if name == "time":
+        keys += ("sign", "zero")
+        keys += ("factor",) if channel.unit == CLOCK else ()
+    for key in keys:
+        if getattr(channel, key) != Channel.model_fields[key].default:
+            raise SettingsError(
+                f"channel {name} has no {key}", found=f"{key} = {getattr(channel, key)!r}",
+                needed=f"a channel without {key}",
+            )  # fmt: skip
+    if channel.datum == "pin-to-pin" and channel.reference_length is not None:
+        raise SettingsError(
+            "a length from pin to pin has no reference_length",
+            found=f"reference_length = {channel.reference_length!r}",
+            needed='datum = "displacement", or no reference_length',
+        )
+
+
 def _check_units(name: str, channel: Channel, dimension: Dimension) -> None:
     """Refuse a unit that is not one of the channel's dimension."""
     if channel.unit != CLOCK or name != "time":
@@ -73,6 +95,11 @@ def _check_units(name: str, channel: Channel, dimension: Dimension) -> None:
         parse_quantity(channel.reference_length, "length")
     if channel.reference_tension is not None:
         parse_quantity(channel.reference_tension, "force")
+
+
+def _are_signs(text: str) -> bool:
+    """Whether every character is one that a parser of lines can part fields by."""
+    return text.isascii() and not set(text) & set("\0\n\r")
 
 
 class Layout(BaseModel):
@@ -135,6 +162,7 @@ class Layout(BaseModel):
     def _channels_make_sense(self) -> Layout:
         for name, channel in self.channels.items():
             dimension = self.dimension(name)
+            _check_keys(name, channel)
             try:
                 _check_units(name, channel, dimension)
             except SettingsError as error:
@@ -159,6 +187,13 @@ class Layout(BaseModel):
                 found=f"delimiter {self.delimiter!r}, decimal {self.decimal!r}, "
                 f"thousands {self.thousands!r}",
                 needed="one character each, all different",
+            )
+        quote = self.quote
+        if len(quote) > 1 or quote in marks or not _are_signs(self.delimiter + quote):
+            raise SettingsError(
+                "the quote of a layout cannot be told from its text",
+                found=f"quote {quote!r}, delimiter {self.delimiter!r}, decimal {decimal!r}",
+                needed="one ASCII character each, no line end, all different; or no quote at all",
             )
         position = self.channels.get("crosshead_position")
         if position is not None and position.datum is None:

@@ -7,7 +7,10 @@ string, function handles) are refused: only MATLAB can read them.
 
 from __future__ import annotations
 
+import io
+import warnings
 import zlib
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,21 +20,37 @@ import h5py  # type: ignore[import-untyped]
 import numpy as np
 import scipy.io
 from numpy.typing import NDArray
-from scipy.io.matlab import MatlabFunction, MatlabObject, MatlabOpaque, MatReadError
+from scipy.io.matlab import (
+    MatlabFunction,
+    MatlabObject,
+    MatlabOpaque,
+    MatReadError,
+    matfile_version,
+)
 
 from reduction.errors import LogError
-from reduction.ingest.hdf5 import find_member, open_hdf5, read_data_set
+from reduction.ingest.hdf5file import find_member, open_hdf5, read_data_set
 from reduction.ingest.layout import Layout
+from reduction.ingest.limits import Watch
+from reduction.ingest.matlabcheck import HEADER, StoredVariable, stored_variables
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, matrix_table, read_columns
 
-__all__ = ["matlab_table", "open_matlab", "read_cell_texts", "read_matlab", "struct_fields"]
+__all__ = [
+    "matlab_table",
+    "open_matlab",
+    "read_cell_texts",
+    "read_matlab",
+    "struct_fields",
+    "struct_place",
+]
 
 _NOT_MATLAB = (
     MatReadError, ValueError, IndexError, OSError, TypeError, KeyError, EOFError, zlib.error,
     NotImplementedError, UnboundLocalError,
 )  # fmt: skip
+_LETTER = 60  # bytes of a character while a text is put together
 _OWN_CLASSES = (MatlabOpaque, MatlabFunction, MatlabObject)
 _HINT = (
     "A table or timetable can be read by MATLAB alone: save it as a struct of columns, "
@@ -42,33 +61,49 @@ _HINT = (
 class _Variables(Mapping[str, Any]):
     """Variables of a v4 to v7 file, each read when it is asked for."""
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self, path: Path, watch: Watch) -> None:
+        self.path, self.watch = path, watch
         try:
-            held = scipy.io.whosmat(str(path), appendmat=False)
+            version, _ = matfile_version(str(path), appendmat=False)
         except _NOT_MATLAB as error:
             raise LogError(
                 path, "the file is not a MATLAB file that can be read", found=str(error)[:200],
                 needed="a .mat file of version 4 to 7.3",
             ) from error  # fmt: skip
-        self.names = [name for name, _, _ in held]
-        self.sparse = {name for name, _, kind in held if kind == "sparse"}
+        self.is_old = version == 0
+        held = stored_variables(path, version, watch)
+        self.stored = {variable.name: variable for variable in held}
+        self.twice = {name for name, count in Counter(v.name for v in held).items() if count > 1}
+        self.names = list(self.stored)
 
     def __getitem__(self, name: str) -> Any:
-        if name not in self.names:
-            raise KeyError(name)
-        if name in self.sparse:  # not read: what class it comes as depends on the release of scipy
+        stored = self.stored[name]
+        if name in self.twice:
+            raise _no_array(self.path, name, "two variables of that name")
+        if stored.kind == "sparse":  # what class it comes as depends on the release of scipy
             raise _no_array(self.path, name, "a sparse matrix")
+        if stored.is_complex:  # the library would drop the imaginary part without a word
+            raise _no_array(self.path, name, "complex numbers")
+        self.watch.check_unpacked(stored.memory, f"variable '{name}'")
+        stream: Any = io.BytesIO(self._bytes(stored))
         try:
-            # mat_dtype keeps true/false apart from numbers
-            return scipy.io.loadmat(
-                str(self.path), appendmat=False, mat_dtype=True, variable_names=[name]
-            )[name]
-        except _NOT_MATLAB as error:
+            with warnings.catch_warnings():
+                # scipy goes on with numbers in a byte order that it does not know
+                warnings.simplefilter("error", UserWarning)
+                # mat_dtype keeps true/false apart from numbers
+                return scipy.io.loadmat(stream, mat_dtype=True, variable_names=[name])[name]
+        except (*_NOT_MATLAB, UserWarning) as error:
             raise LogError(
                 self.path, f"variable '{name}' cannot be read", found=str(error)[:200],
                 needed="an intact .mat file", hint=_HINT,
             ) from error  # fmt: skip
+
+    def _bytes(self, stored: StoredVariable) -> bytes:
+        """The variable as a file of its own: the library would look for it from the first on."""
+        with self.path.open("rb") as stream:
+            head = b"" if self.is_old else stream.read(HEADER)
+            stream.seek(stored.begin)
+            return head + stream.read(stored.end - stored.begin)
 
     def __iter__(self) -> Any:
         return iter(self.names)
@@ -80,8 +115,9 @@ class _Variables(Mapping[str, Any]):
 class _Struct(Mapping[str, Any]):
     """Members of a v7.3 file or of one of its structs, in the shapes of the older versions."""
 
-    def __init__(self, path: Path, group: h5py.Group) -> None:
-        self.path, self.group = path, group
+    def __init__(self, path: Path, group: h5py.Group, watch: Watch) -> None:
+        self.path, self.group, self.watch = path, group, watch
+        watch.check_columns(len(group))
         # what MATLAB keeps for itself has names that no variable can have
         self.names = [name for name in group if not name.startswith("#")]
 
@@ -90,14 +126,17 @@ class _Struct(Mapping[str, Any]):
             raise KeyError(name)
         member = find_member(self.path, self.group, name)
         if isinstance(member, h5py.Group):
-            return _Struct(self.path, member)
+            return _Struct(self.path, member, self.watch)
         return self._values(member)
 
     def _values(self, dataset: h5py.Dataset) -> NDArray[Any]:
-        kind = np.asarray(dataset.attrs.get("MATLAB_class", b"")).tobytes().rstrip(b"\0").decode()
-        if dataset.attrs.get("MATLAB_empty", 0):
+        stated = np.asarray(dataset.attrs.get("MATLAB_class", b"")).tobytes()
+        kind = stated.rstrip(b"\0").decode(errors="replace")
+        if np.any(dataset.attrs.get("MATLAB_empty", 0)):
             return np.zeros((0, 0))
-        values = read_data_set(self.path, dataset).T  # MATLAB counts columns first
+        if kind == "char":
+            self.watch.check_unpacked(_LETTER * (dataset.size or 0), f"'{dataset.name}'")
+        values = read_data_set(self.path, dataset, self.watch).T  # MATLAB counts columns first
         if kind == "char" and values.dtype.kind == "u":
             return np.array(["".join(chr(code) for code in row) for row in values.tolist()])
         if kind == "logical":
@@ -108,13 +147,18 @@ class _Struct(Mapping[str, Any]):
 
     def _cells(self, references: NDArray[Any]) -> NDArray[Any]:
         """Cells that hold text; a reference is followed to characters of this file alone."""
+        self.watch.check_columns(references.size)
         cells = np.empty(references.size, dtype=object)
+        length = 0
         for place, reference in enumerate(references.ravel(order="F")):
             target = self.group.file[reference] if reference else None
             if not isinstance(target, h5py.Dataset) or target.dtype != np.uint16:
                 raise LogError(
                     self.path, "a cell does not hold text", found=str(target), needed="text"
                 )
+            # every one may refer to the same long text
+            length += _LETTER * (target.size or 0)
+            self.watch.check_unpacked(length, f"'{target.name}'")
             cells[place] = self._values(target)
         return cells
 
@@ -138,6 +182,14 @@ def struct_fields(value: Any) -> Mapping[str, Any] | None:
         record = value.ravel()[0]
         return {name: record[name] for name in value.dtype.names}
     return None
+
+
+def struct_place(fields: Mapping[str, Any]) -> int | None:
+    """Where a struct of version 7.3 stands in its file: by it one that holds itself is known."""
+    if not isinstance(fields, _Struct):
+        return None
+    place: int = h5py.h5o.get_info(fields.group.id).addr
+    return place
 
 
 def _member(path: Path, scope: Mapping[str, Any], name: str) -> Any:
@@ -191,7 +243,10 @@ def _series(path: Path, name: str, value: Any) -> NDArray[Any]:
 
 def read_cell_texts(path: Path, name: str, value: Any) -> tuple[str, ...]:
     """Texts of a cell array or of a character matrix."""
-    cells = _array(path, name, value).ravel(order="F").tolist()
+    array = _array(path, name, value)
+    if array.dtype.kind not in "OU":
+        raise _no_text(path, name, array)
+    cells = array.ravel(order="F").tolist()
     texts = [
         "".join(cell.ravel().tolist())
         if isinstance(cell, np.ndarray) and cell.dtype.kind == "U"
@@ -199,11 +254,15 @@ def read_cell_texts(path: Path, name: str, value: Any) -> tuple[str, ...]:
         for cell in cells
     ]
     if not all(isinstance(text, str) for text in texts):
-        raise LogError(
-            path, f"'{name}' does not hold text", found=str(value.dtype),
-            needed="a cell array of text, or a character matrix",
-        )  # fmt: skip
+        raise _no_text(path, name, array)
     return tuple(text.strip() for text in texts)
+
+
+def _no_text(path: Path, name: str, array: NDArray[Any]) -> LogError:
+    return LogError(
+        path, f"'{name}' does not hold text", found=str(array.dtype),
+        needed="a cell array of text, or a character matrix",
+    )  # fmt: skip
 
 
 def matlab_table(path: Path, scope: Mapping[str, Any], layout: Layout) -> ColumnTable:
@@ -227,16 +286,17 @@ def matlab_table(path: Path, scope: Mapping[str, Any], layout: Layout) -> Column
 
 
 @contextmanager
-def open_matlab(path: Path) -> Iterator[Mapping[str, Any]]:
+def open_matlab(path: Path, watch: Watch | None = None) -> Iterator[Mapping[str, Any]]:
     """Variables of a MATLAB file of any version; `LogError` where the file is none."""
+    watch = watch or Watch(path)
     if h5py.is_hdf5(path):
         with open_hdf5(path) as file:
-            yield _Struct(path, file)
+            yield _Struct(path, file, watch)
     else:
-        yield _Variables(path)
+        yield _Variables(path, watch)
 
 
-def read_matlab(path: Path, layout: Layout, *, name: str) -> RawLog:
+def read_matlab(path: Path, layout: Layout, *, name: str, watch: Watch | None = None) -> RawLog:
     """Read the declared columns of one struct, of one matrix, or of the file's variables.
 
     Parameters
@@ -248,6 +308,8 @@ def read_matlab(path: Path, layout: Layout, *, name: str) -> RawLog:
         group), ``missing`` and the channels.
     name : str
         Name of the file for the product.
+    watch : Watch, optional
+        Holds it against its limits.
 
     Returns
     -------
@@ -260,8 +322,8 @@ def read_matlab(path: Path, layout: Layout, *, name: str) -> RawLog:
         If the file, a variable or a column cannot be used.
     """
     source = hash_source(path, name)
-    with open_matlab(path) as scope:
-        columns, n_rows = read_columns(path, layout, matlab_table(path, scope, layout))
+    with open_matlab(path, watch) as scope:
+        columns, n_rows = read_columns(path, layout, matlab_table(path, scope, layout), watch=watch)
     with path.open("rb") as stream:
         header = stream.read(116)
     return RawLog(

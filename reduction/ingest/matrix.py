@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -14,15 +15,19 @@ from reduction.errors import LogError
 from reduction.ingest.columns import check_unit, wanted_columns
 from reduction.ingest.encoding import decode
 from reduction.ingest.layout import Layout
+from reduction.ingest.limits import Watch
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import read_bytes, source_of
 from reduction.ingest.table import matrix_table, read_columns
 from reduction.record import Floats
 
-__all__ = ["read_json"]
+__all__ = ["json_content", "read_json"]
+
+_VALUE, _LIST = 40, 90  # bytes that a number and a list take in memory
+_MOST_DIGITS = 300  # of whole numbers that are finite as float64
 
 
-def read_json(path: Path, layout: Layout, *, name: str) -> RawLog:
+def read_json(path: Path, layout: Layout, *, name: str, watch: Watch | None = None) -> RawLog:
     """Read a JSON log: the matrix under the layout's ``matrix`` key, one list a row.
 
     Parameters
@@ -34,6 +39,8 @@ def read_json(path: Path, layout: Layout, *, name: str) -> RawLog:
         a channel's ``unit_key``.
     name : str
         File name relative to the campaign folder.
+    watch : Watch, optional
+        Holds it against its limits.
 
     Returns
     -------
@@ -46,14 +53,8 @@ def read_json(path: Path, layout: Layout, *, name: str) -> RawLog:
         If the file is no JSON, has no such key, states another unit, or a value of the
         matrix is neither a number nor a declared missing mark.
     """
-    raw = read_bytes(path)
-    try:
-        # the words NaN and Infinity are not JSON; here they are text like any other mark
-        content = json.loads(decode(path, raw, layout.encoding), parse_constant=str)
-    except json.JSONDecodeError as error:
-        raise LogError(
-            path, "the file is not JSON", row=error.lineno, found=error.msg, needed="a JSON object"
-        ) from error
+    watch = watch or Watch(path)
+    raw, content = json_content(path, watch, layout.encoding)
     rows = _entry(path, content, layout.matrix, "matrix")
     table = matrix_table(
         path,
@@ -67,7 +68,7 @@ def read_json(path: Path, layout: Layout, *, name: str) -> RawLog:
         if channel is not None and channel.unit_key:
             stated = _entry(path, content, channel.unit_key, f"unit_key of {wanted.key}")
             check_unit(path, wanted, str(stated))
-    columns, n_rows = read_columns(path, layout, table)
+    columns, n_rows = read_columns(path, layout, table, watch=watch)
     plain = {key: value for key, value in content.items() if not isinstance(value, (list, dict))}
     return RawLog(
         source=source_of(raw, name),
@@ -76,6 +77,49 @@ def read_json(path: Path, layout: Layout, *, name: str) -> RawLog:
         n_rows_read=n_rows,
         metadata={key: str(value) for key, value in plain.items()},
     )
+
+
+def _whole(digits: str) -> int | float:
+    """A whole number; one that float64 cannot hold is infinite, which is refused as such."""
+    return int(digits) if len(digits) < _MOST_DIGITS else float(digits)
+
+
+def _once(path: Path, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object, of which no key stands twice: the first would be lost without a word."""
+    content = dict(pairs)
+    if len(content) < len(pairs):
+        names = [key for key, _ in pairs]
+        twice = next(key for key in names if names.count(key) > 1)
+        raise LogError(path, f"the key '{twice}' stands twice in an object", needed="it once")
+    return content
+
+
+def json_content(path: Path, watch: Watch, encoding: str = "utf-8") -> tuple[bytes, Any]:
+    """Bytes of a JSON file, and what they say.
+
+    Raises
+    ------
+    LogError
+        If it is no JSON, is nested too deep to be read, or takes more memory than it may.
+    """
+    watch.check_unpacked(path.stat().st_size)
+    raw = read_bytes(path)
+    n_lists = raw.count(b"[") + raw.count(b"{")
+    watch.check_unpacked(2 * len(raw) + _VALUE * raw.count(b",") + _LIST * n_lists)
+    try:
+        # the words NaN and Infinity are not JSON; here they are text like any other mark
+        text = decode(path, raw, encoding)
+        return raw, json.loads(
+            text, parse_constant=str, parse_int=_whole, object_pairs_hook=partial(_once, path)
+        )
+    except json.JSONDecodeError as error:
+        raise LogError(
+            path, "the file is not JSON", row=error.lineno, found=error.msg, needed="a JSON object"
+        ) from error
+    except RecursionError as error:
+        raise LogError(
+            path, "the file is nested too deeply", found=str(error), needed="a list of rows"
+        ) from error
 
 
 def _entry(path: Path, content: Any, key: str, setting: str) -> Any:

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
+from reduction.ingest.limits import Watch
+from reduction.ingest.metadata import short_metadata
 from reduction.ingest.parts import Parts
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
@@ -36,19 +38,26 @@ def open_parquet(path: Path) -> pyarrow.parquet.ParquetFile:
         ) from error
 
 
-def parquet_table(path: Path, file: pyarrow.parquet.ParquetFile) -> ColumnTable:
+def parquet_table(
+    path: Path, file: pyarrow.parquet.ParquetFile, watch: Watch | None = None
+) -> ColumnTable:
     """Top-level columns of a Parquet file; a null is read as NaN."""
+    watch = watch or Watch(path)
     schema = file.schema_arrow
+    watch.check_columns(len(schema))
 
     def unit(place: int) -> str:
         metadata = schema.field(place).metadata or {}
-        return next((metadata[key].decode() for key in _UNIT_KEYS if key in metadata), "")
+        return next(
+            (metadata[key].decode(errors="replace") for key in _UNIT_KEYS if key in metadata), ""
+        )
 
     def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
         name = schema.names[place]
         before = schema.names[:place].count(name)  # a name that stands twice is read twice
         try:
-            if not file.metadata.num_rows:
+            # what is no number is refused by its kind: a text may stand once for a million rows
+            if not file.metadata.num_rows or not _is_number(schema.types[place]):
                 yield _values(pyarrow.array([], schema.types[place]))
             for batch in file.iter_batches(batch_size=n_rows, columns=[name]):
                 yield _values(batch.column(before))
@@ -62,7 +71,13 @@ def parquet_table(path: Path, file: pyarrow.parquet.ParquetFile) -> ColumnTable:
         tuple(unit(place) for place in range(len(schema))),
         load,
         n_rows=file.metadata.num_rows,
+        sizes=(file.metadata.num_rows,) * len(schema),
     )
+
+
+def _is_number(kind: pyarrow.DataType) -> bool:
+    types = pyarrow.types
+    return bool(types.is_integer(kind) or types.is_floating(kind) or types.is_boolean(kind))
 
 
 def _values(column: pyarrow.Array) -> NDArray[Any]:
@@ -77,7 +92,14 @@ def _values(column: pyarrow.Array) -> NDArray[Any]:
     return np.asarray(column.to_numpy(zero_copy_only=False))
 
 
-def read_parquet(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
+def read_parquet(
+    path: Path,
+    layout: Layout,
+    *,
+    name: str,
+    parts: Parts | None = None,
+    watch: Watch | None = None,
+) -> RawLog:
     """Read the declared columns; a field's ``unit`` or ``units`` is checked.
 
     Parameters
@@ -90,6 +112,8 @@ def read_parquet(path: Path, layout: Layout, *, name: str, parts: Parts | None =
         Name of the file for the product.
     parts : Parts, optional
         How much of it is read at a time.
+    watch : Watch, optional
+        Holds it against its limits.
 
     Returns
     -------
@@ -105,16 +129,21 @@ def read_parquet(path: Path, layout: Layout, *, name: str, parts: Parts | None =
     """
     source = hash_source(path, name)
     with open_parquet(path) as file:
-        columns, n_rows = read_columns(path, layout, parquet_table(path, file), parts=parts)
-        properties = file.metadata.metadata or {}
+        columns, n_rows = read_columns(
+            path, layout, parquet_table(path, file, watch), parts=parts, watch=watch
+        )
+        metadata, notes = short_metadata(
+            {
+                key.decode(errors="replace"): value.decode(errors="replace")
+                for key, value in (file.metadata.metadata or {}).items()
+                if key not in _MACHINERY
+            }
+        )
     return RawLog(
         source=source,
         columns=columns,
         first_row=0,
         n_rows_read=n_rows,
-        metadata={
-            key.decode(errors="replace"): value.decode(errors="replace")
-            for key, value in properties.items()
-            if key not in _MACHINERY
-        },
+        metadata=metadata,
+        notes=notes,
     )

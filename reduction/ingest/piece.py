@@ -128,8 +128,8 @@ def _scale(channel: Channel, dimension: Dimension) -> tuple[float, float]:
     return channel.sign * factor * channel.factor, shift
 
 
-def _seconds(values: Floats, unit: str) -> Floats:
-    factor, _ = (1.0, 0.0) if unit == CLOCK else scale_to_si(unit, "time")
+def _seconds(values: Floats, unit: str, ticks: float = 1.0) -> Floats:
+    factor = ticks * (1.0 if unit == CLOCK else scale_to_si(unit, "time")[0])
     if factor == 1:
         return values
     seconds = empty_like(values)
@@ -141,7 +141,7 @@ def _seconds(values: Floats, unit: str) -> Floats:
 def _shared_time(log: RawLog, layout: Layout) -> Floats | None:
     if "time" in layout.channels:
         channel = layout.channels["time"]
-        return _seconds(log.columns["time"], channel.unit)
+        return _seconds(log.columns["time"], channel.unit, channel.factor)
     if layout.sample_interval is None:
         return None
     step = parse_quantity(layout.sample_interval, "time")

@@ -12,9 +12,11 @@ from reduction.ingest.columns import Wanted, check_unit
 from reduction.ingest.layout import Layout
 from reduction.ingest.textrows import split_line
 from reduction.units import scale_to_si
+from reduction.visible import cut
 
 __all__ = ["check_units", "keep_line"]
 
+_LONGEST_NAME = 200  # characters at the end of a name in which a unit may stand
 _UNIT_IN_NAME = re.compile(r".*[\(\[]\s*([^()\[\]]*[^()\[\]\d\s][^()\[\]]*)[\)\]]\s*$")
 
 
@@ -31,7 +33,7 @@ def keep_line(metadata: dict[str, str], line: str, row: int, layout: Layout) -> 
         key, value = f"row {row}", text
     if key in metadata:
         key = f"{key} (row {row})"
-    metadata[key] = value
+    metadata[cut(key)] = cut(value)
 
 
 def check_units(
@@ -59,7 +61,9 @@ def check_units(
             continue
         if unit_row is not None:
             check_unit(path, want, units[place] if place < len(units) else "", row=unit_row)
-        elif isinstance(want.column, str) and (match := _UNIT_IN_NAME.match(names[place])):
+        elif isinstance(want.column, str) and (
+            match := _UNIT_IN_NAME.match(names[place][-_LONGEST_NAME:])
+        ):
             _check_unit_in_name(path, want, match[1])
 
 

@@ -9,6 +9,7 @@ from reduction.ingest.blocks import read_blocks
 from reduction.ingest.delimited import read_delimited
 from reduction.ingest.hdf5 import read_hdf5
 from reduction.ingest.layout import Format, Layout
+from reduction.ingest.limits import Watch
 from reduction.ingest.matlab import read_matlab
 from reduction.ingest.matrix import read_json
 from reduction.ingest.parquet import read_parquet
@@ -17,6 +18,7 @@ from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import unchanged
 from reduction.ingest.spreadsheet import read_spreadsheet
 from reduction.ingest.tdms import read_tdms
+from reduction.settings import Limits
 
 __all__ = ["read_log"]
 
@@ -34,7 +36,14 @@ _WHOLE: dict[Format, Callable[..., RawLog]] = {
 }
 
 
-def read_log(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
+def read_log(
+    path: Path,
+    layout: Layout,
+    *,
+    name: str,
+    parts: Parts | None = None,
+    limits: Limits | None = None,
+) -> RawLog:
     """Read a log in its declared layout.
 
     Parameters
@@ -48,6 +57,8 @@ def read_log(path: Path, layout: Layout, *, name: str, parts: Parts | None = Non
     parts : Parts, optional
         How much is read at a time, and from which length on columns lie on disk.  No number
         depends on it.
+    limits : Limits, optional
+        What it may be; the defaults where left out.
 
     Returns
     -------
@@ -57,11 +68,13 @@ def read_log(path: Path, layout: Layout, *, name: str, parts: Parts | None = Non
     Raises
     ------
     LogError
-        If the file is not what the layout says, or changes while it is read.
+        If the file is not what the layout says, is beyond a limit, or changes while it is read.
     DataError
         If the scratch files of a long log do not fit on the disk.
     """
-    with unchanged(path):
+    watch = Watch(path, limits)
+    with unchanged(path) as n_bytes:
+        watch.check_size(n_bytes)
         if layout.format in _IN_PARTS:
-            return _IN_PARTS[layout.format](path, layout, name=name, parts=parts)
-        return _WHOLE[layout.format](path, layout, name=name)
+            return _IN_PARTS[layout.format](path, layout, name=name, parts=parts, watch=watch)
+        return _WHOLE[layout.format](path, layout, name=name, watch=watch)

@@ -12,7 +12,7 @@ from reduction.ingest.read import read_log
 from reduction.provenance import Source
 from reduction.record import Record
 from reduction.samples.scratch import give_back
-from reduction.settings import QualitySettings
+from reduction.settings import Limits, QualitySettings
 
 __all__ = ["read_record"]
 
@@ -25,6 +25,7 @@ def read_record(
     quality: QualitySettings,
     length_needed: bool = True,
     parts: Parts | None = None,
+    limits: Limits | None = None,
 ) -> tuple[Record, tuple[Source, ...]]:
     """Read the file or files of a test.
 
@@ -42,6 +43,8 @@ def read_record(
         As in `reduction.ingest.convert.to_record`.
     parts : Parts, optional
         How much of a file is read at a time.
+    limits : Limits, optional
+        What each file may be.
 
     Returns
     -------
@@ -58,7 +61,8 @@ def read_record(
         As in `reduction.ingest.convert.to_record`.
     """
     logs = [
-        (read_log(path, layout, name=name, parts=parts), layout) for path, layout, name in files
+        (read_log(path, layout, name=name, parts=parts, limits=limits), layout)
+        for path, layout, name in files
     ]
     record = to_record(
         logs, test_id=test_id, specimens=specimens, quality=quality, length_needed=length_needed

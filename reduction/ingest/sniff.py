@@ -6,17 +6,18 @@ with a ``?`` does not load.
 
 from __future__ import annotations
 
-import json
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
 from reduction.errors import LogError
 from reduction.ingest.layout import Format
+from reduction.ingest.limits import Watch
 from reduction.ingest.sniff_binary import SeenTable, look_at_binary, look_at_json, look_at_sheet
 from reduction.ingest.sniff_channels import UNKNOWN, propose_channels
 from reduction.ingest.sniff_text import look_at_text
-from reduction.ingest.source import hash_source
+from reduction.ingest.source import check_not_empty, unchanged, unreadable
+from reduction.visible import toml_text
 
 __all__ = ["SniffedLayout", "format_of", "sniff_layout"]
 
@@ -55,8 +56,11 @@ class SniffedLayout:
 
 def format_of(path: Path) -> Format:
     """Format of a file by its first bytes; text that is not JSON is ``delimited``."""
-    with path.open("rb") as stream:
-        head = stream.read(16)
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(16)
+    except OSError as error:
+        raise unreadable(path, error) from error
     for magic, name in _MAGIC:
         if head.startswith(magic):
             return name
@@ -97,17 +101,17 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
     Raises
     ------
     LogError
-        If the file cannot be read, or no table of numbers is found.
+        If the file cannot be read or is beyond a limit, or no table of numbers is found.
     """
-    hash_source(path, path.name)  # refuses what cannot be read, or is empty
-    seen = _look(path, sheet)
+    with unchanged(path) as n_bytes:
+        Watch(path).check_size(n_bytes)
+        check_not_empty(path, n_bytes)
+        seen = _look(path, sheet)
     if not seen.columns:
         raise LogError(path, "no columns of numbers are found", needed="a log")
     proposal = propose_channels(seen.columns)
     lines = [f"[layouts.{name}]", f'format = "{seen.format}"']
-    lines += [
-        f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in seen.settings.items()
-    ]
+    lines += [f"{key} = {toml_text(value)}" for key, value in seen.settings.items()]
     remarks = [*seen.remarks, *proposal.remarks]
     if "time" not in proposal.keys:
         lines.append(f'sample_interval = "{UNKNOWN}"  # or a time channel below')

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
@@ -14,13 +13,21 @@ import h5py  # type: ignore[import-untyped]
 import numpy as np
 
 from reduction.errors import LogError
-from reduction.ingest.hdf5 import hdf5_table, open_hdf5, read_data_set, read_texts
+from reduction.ingest.hdf5 import group_table
+from reduction.ingest.hdf5file import data_set, open_hdf5, read_texts
 from reduction.ingest.layout import Format, Layout
-from reduction.ingest.matlab import matlab_table, open_matlab, read_cell_texts, struct_fields
+from reduction.ingest.limits import Watch
+from reduction.ingest.matlab import (
+    matlab_table,
+    open_matlab,
+    read_cell_texts,
+    struct_fields,
+    struct_place,
+)
+from reduction.ingest.matrix import json_content
 from reduction.ingest.parquet import open_parquet, parquet_table
 from reduction.ingest.sniff_channels import SeenColumn, is_unit
 from reduction.ingest.sniff_table import TableShape, look_at_table, seen_columns
-from reduction.ingest.source import read_bytes
 from reduction.ingest.spreadsheet import open_workbook, read_rows
 from reduction.ingest.table import ColumnTable, matrix_table
 from reduction.ingest.tdms import WAVEFORM_COLUMN, open_tdms, tdms_table
@@ -28,6 +35,7 @@ from reduction.ingest.tdms import WAVEFORM_COLUMN, open_tdms, tdms_table
 __all__ = ["SeenTable", "look_at_binary", "look_at_json", "look_at_sheet", "table_sheets"]
 
 _ROWS = 400
+_LONGEST_NAME = 1000
 _PART = 1 << 20  # rows that are loaded at a time
 Candidate = tuple[dict[str, object], ColumnTable]
 """Layout settings and the table that they read."""
@@ -83,10 +91,14 @@ def _seen(table: ColumnTable) -> list[SeenColumn]:
     """Columns of numbers that share the most common length."""
     columns, sizes = [], []
     for place, (name, unit) in enumerate(zip(table.names, table.units, strict=True)):
+        if len(name) > _LONGEST_NAME:  # no layout would write it
+            continue
         try:
-            parts = table.load(place, _PART)
+            parts = table.load(place, _ROWS if table.sizes else _PART)
             values = next(parts)
-            size = values.size + sum(part.size for part in parts)
+            size = values.size
+            # where the file states how many there are, the rest is not read
+            size = table.sizes[place] if table.sizes else size + sum(part.size for part in parts)
         except LogError:  # not a series: no column
             continue
         if values.ndim == 1 and size > 1 and values.dtype.kind in "fiu":
@@ -119,39 +131,49 @@ def _named_matrix(
 
 
 def _is_matrix(values: Any) -> bool:
-    return isinstance(values, np.ndarray) and (
-        bool(values.dtype.names and values.size > 1)
-        or (values.ndim == 2 and min(values.shape) > 1 and values.dtype.kind in "fiu")
+    return bool(values.dtype.names and values.size > 1) or (
+        values.ndim == 2 and min(values.shape) > 1 and values.dtype.kind in "fiu"
     )
 
 
-def _hdf5_candidates(path: Path, group: h5py.Group, file: h5py.File) -> Iterator[Candidate]:
-    place = group.name.strip("/")
-    settings = {"group": place} if place else {}
-    yield settings, hdf5_table(path, file, Layout(format="hdf5", group=place, channels={}))
-    members = {
-        name: group[name]
-        for name in group
-        if isinstance(group.get(name, getlink=True), h5py.HardLink)
-    }
-    texts, matrices = {}, {}
-    for name, member in members.items():
-        if isinstance(member, h5py.Group):
-            yield from _hdf5_candidates(path, member, file)
+def _hdf5_candidates(path: Path, file: h5py.File, watch: Watch) -> Iterator[Candidate]:
+    """Groups and matrices of a file; a group that is reached in two ways is looked at once."""
+    waiting: deque[h5py.Group] = deque([file])
+    seen = set()
+    while waiting:
+        watch.check_time()
+        group = waiting.popleft()
+        address = h5py.h5o.get_info(group.id).addr
+        if address in seen:
             continue
-        try:
-            values = read_data_set(path, member)
-            if _is_matrix(values):
-                matrices[name] = values
-            else:
-                texts[name] = read_texts(path, member)
-        except LogError:  # neither a matrix nor texts
-            continue
-    for name, values in matrices.items():
-        yield _named_matrix(path, name, values, texts, place)
+        seen.add(address)
+        place = (group.name or "").strip("/")
+        settings = {"group": place} if place else {}
+        yield settings, group_table(path, group, watch)
+        texts, matrices = {}, {}
+        for name in group:
+            if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+                continue
+            member = group[name]
+            if isinstance(member, h5py.Group):
+                waiting.append(member)
+                continue
+            try:
+                values = data_set(path, member, watch)
+                if _is_matrix(values):
+                    matrices[name] = values
+                elif values.dtype.kind in "OSUT":
+                    texts[name] = read_texts(path, member, watch)
+            except LogError:  # neither a matrix nor texts
+                continue
+        for name, values in matrices.items():
+            yield _named_matrix(path, name, values, texts, place)
 
 
-def _matlab_candidates(path: Path, scope: Mapping[str, Any], group: str) -> Iterator[Candidate]:
+def _matlab_candidates(
+    path: Path, scope: Mapping[str, Any], group: str, seen: set[int], watch: Watch
+) -> Iterator[Candidate]:
+    watch.check_time()
     yield (
         {"group": group} if group else {},
         matlab_table(path, scope, Layout(format="matlab", channels={})),
@@ -162,8 +184,12 @@ def _matlab_candidates(path: Path, scope: Mapping[str, Any], group: str) -> Iter
             value = scope[name]
             fields = struct_fields(value)
             if fields is not None:
-                yield from _matlab_candidates(path, fields, f"{group}.{name}".strip("."))
-            elif _is_matrix(value) and not value.dtype.names:
+                inside = f"{group}.{name}".strip(".")
+                place = struct_place(fields)
+                if place not in seen:  # a struct of version 7.3 may hold itself
+                    seen |= set() if place is None else {place}
+                    yield from _matlab_candidates(path, fields, inside, seen, watch)
+            elif isinstance(value, np.ndarray) and _is_matrix(value) and not value.dtype.names:
                 matrices[name] = value
             else:
                 texts[name] = read_cell_texts(path, name, value)
@@ -173,27 +199,30 @@ def _matlab_candidates(path: Path, scope: Mapping[str, Any], group: str) -> Iter
         yield _named_matrix(path, name, values, texts, group)
 
 
-def _tdms_candidates(path: Path, file: Any) -> Iterator[Candidate]:
+def _tdms_candidates(path: Path, file: Any, watch: Watch) -> Iterator[Candidate]:
     groups = file.groups()
     for group in groups:
-        yield {"group": group.name} if len(groups) > 1 else {}, tdms_table(path, group)
+        settings = {"group": group.name} if len(groups) > 1 else {}
+        yield settings, tdms_table(path, file, group, watch)
 
 
-def look_at_binary(path: Path, kind: Format) -> SeenTable:
+def look_at_binary(path: Path, kind: Format, watch: Watch | None = None) -> SeenTable:
     """The largest table of a TDMS, MATLAB, HDF5 or Parquet file."""
+    watch = watch or Watch(path)
     with ExitStack() as stack:
         candidates: Iterator[Candidate]
         if kind == "tdms":
-            file = stack.enter_context(open_tdms(path))
-            candidates = _tdms_candidates(path, file)
+            file = stack.enter_context(open_tdms(path, watch))
+            candidates = _tdms_candidates(path, file, watch)
         elif kind == "hdf5":
             hdf5 = stack.enter_context(open_hdf5(path))
-            candidates = _hdf5_candidates(path, hdf5, hdf5)
+            candidates = _hdf5_candidates(path, hdf5, watch)
         elif kind == "matlab":
-            candidates = _matlab_candidates(path, stack.enter_context(open_matlab(path)), "")
+            variables = stack.enter_context(open_matlab(path, watch))
+            candidates = _matlab_candidates(path, variables, "", set(), watch)
         else:
             parquet = stack.enter_context(open_parquet(path))
-            candidates = iter([({}, parquet_table(path, parquet))])
+            candidates = iter([({}, parquet_table(path, parquet, watch))])
         best: tuple[dict[str, object], list[SeenColumn]] = ({}, [])
         count = 0
         for settings, table in candidates:
@@ -222,12 +251,7 @@ def _waveform(
 
 def look_at_json(path: Path) -> SeenTable:
     """The largest matrix of a JSON object."""
-    try:
-        content = json.loads(read_bytes(path).decode("utf-8-sig"))
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise LogError(
-            path, "the file is not JSON", found=str(error), needed="a JSON object"
-        ) from error
+    _, content = json_content(path, Watch(path))
     texts, matrices = {}, {}
     for key, value in content.items():
         if not isinstance(value, list) or not value:

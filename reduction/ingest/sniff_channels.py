@@ -5,7 +5,6 @@ What is not known stands as ``?``, on which a layout does not load.
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -18,6 +17,7 @@ from reduction.ingest.columns import stated_scale
 from reduction.ingest.layout import CLOCK
 from reduction.record import Floats
 from reduction.units import DIMENSIONS, Dimension
+from reduction.visible import toml_comment, toml_text
 
 __all__ = ["UNKNOWN", "Proposal", "SeenColumn", "is_unit", "propose_channels"]
 
@@ -171,9 +171,7 @@ def _candidates(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColum
 
 
 def _label(column: SeenColumn) -> str:
-    return (
-        json.dumps(column.name.strip(), ensure_ascii=False) if column.name else str(column.number)
-    )
+    return toml_text(column.name.strip()) if column.name else str(column.number)
 
 
 def _reference(column: SeenColumn, columns: Sequence[SeenColumn]) -> str:
@@ -184,9 +182,9 @@ def _reference(column: SeenColumn, columns: Sequence[SeenColumn]) -> str:
 
 def _line(key: str, column: str, unit: str, *, is_commented: bool = False) -> str:
     datum = f', datum = "{UNKNOWN}"' if key == "crosshead_position" else ""
-    text = f"{key} = {{ column = {column}, unit = {json.dumps(unit, ensure_ascii=False)}{datum} }}"
+    text = f"{key} = {{ column = {column}, unit = {toml_text(unit)}{datum} }}"
     if datum:
-        text += "  # pin-to-pin, or displacement with a reference_length"
+        text += "\n# datum: pin-to-pin, or displacement with a reference_length"
     return f"# {text}" if is_commented else text
 
 
@@ -246,7 +244,7 @@ def propose_channels(columns: Sequence[SeenColumn]) -> Proposal:
 
 def _described(column: SeenColumn) -> str:
     name = f", {_label(column)}" if column.name else ""
-    unit = f" in {column.unit.strip()}" if column.unit.strip() else ""
+    unit = f" in {toml_comment(column.unit)}" if column.unit.strip() else ""
     values = column.values[np.isfinite(column.values)]
     seen = f", {values.min():g} to {values.max():g} at the start" if values.size else ""
     return f"{name}{unit}{seen}"

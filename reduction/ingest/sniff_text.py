@@ -17,6 +17,7 @@ from reduction.ingest.sniff_table import TableShape, is_number, look_at_table, s
 __all__ = ["SeenText", "look_at_text"]
 
 _HEAD = 1 << 18
+_LINES = 20_000  # that are looked at
 _DELIMITERS = ("\t", ";", ",", "|", " ")
 _COMMENTS = ("#", "%", "//", "!", "*")
 _MTS = "MTS793|"
@@ -149,7 +150,7 @@ def look_at_text(path: Path) -> SeenText:
         is_whole = not stream.read(1)
     text, encoding, remark = _decode(path, head)
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    lines = lines if is_whole else lines[:-1]
+    lines = (lines if is_whole else lines[:-1])[:_LINES]
     comment = _comment(lines)
     found = _best_table(_without_comments(lines, comment))
     if found is None:

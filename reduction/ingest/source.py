@@ -12,7 +12,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
-from reduction.errors import LogError
+from reduction.errors import LogError, ReductionError
+from reduction.ingest.limits import check_regular
 from reduction.provenance import Source
 
 __all__ = [
@@ -34,8 +35,9 @@ def hash_source(path: Path, name: str) -> Source:
     Raises
     ------
     LogError
-        If the file cannot be opened or is empty.
+        If the file is no regular one, cannot be opened or is empty.
     """
+    _state(path)
     digest, size = hashlib.sha256(), 0
     try:
         with path.open("rb") as stream:
@@ -98,18 +100,22 @@ def read_bytes(path: Path) -> bytes:
 
 
 @contextmanager
-def unchanged(path: Path) -> Iterator[None]:
-    """Raise `LogError` where a file changes inside the ``with`` block.
+def unchanged(path: Path) -> Iterator[int]:
+    """Bytes of a regular file; `LogError` where it changes in the ``with`` block, or is refused.
 
-    It stands before what the block itself finds wrong: rows cut off belong to such a file.
+    A change stands before what the block itself finds wrong: rows cut off belong to such a file.
     """
     before = _state(path)
     try:
-        yield
+        yield before[0]
     except LogError as error:
         if (found := _change(path, before)) is not None:
             raise found from error
         raise
+    except OSError as error:
+        if isinstance(error, ReductionError):
+            raise  # of another file
+        raise _change(path, before) or unreadable(path, error) from error
     if (found := _change(path, before)) is not None:
         raise found
 
@@ -134,10 +140,11 @@ def _state(path: Path) -> tuple[int, int]:
         status = path.stat()
     except OSError as error:
         raise unreadable(path, error) from error
+    check_regular(path, status.st_mode)
     return status.st_size, status.st_mtime_ns
 
 
-def unreadable(path: Path, error: OSError) -> LogError:
+def unreadable(path: Path | str, error: OSError) -> LogError:
     """Error of a file that the system does not let be read."""
     return LogError(
         path,

@@ -5,8 +5,6 @@ Sheets are given by name or by number from 1; rows count as the sheet shows them
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,49 +12,33 @@ import fastexcel
 import numpy as np
 
 from reduction.errors import LogError
-from reduction.ingest.cells import read_cells
+from reduction.ingest.cells import parsed, read_cells
 from reduction.ingest.columns import check_lengths, find_column, wanted_columns
 from reduction.ingest.layout import Layout
+from reduction.ingest.limits import Watch
 from reduction.ingest.preamble import check_units
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
+from reduction.ingest.workbookcheck import check_workbook
 
 __all__ = ["find_sheet", "open_workbook", "read_rows", "read_spreadsheet"]
 
 
-def open_workbook(path: Path) -> fastexcel.ExcelReader:
-    """Open a workbook; `LogError` where the file is none."""
-    try:
+def open_workbook(path: Path, watch: Watch | None = None) -> fastexcel.ExcelReader:
+    """Open a workbook that is sound and not too large.
+
+    Raises
+    ------
+    LogError
+        If the file is no workbook, is damaged, or is beyond a limit.
+    """
+    check_workbook(path, watch or Watch(path))
+    with parsed(
+        path,
+        "the file is not a spreadsheet that can be read",
+        needed="an .xlsx, .xls or .ods workbook without a password",
+    ):
         return fastexcel.read_excel(path)
-    except (fastexcel.FastExcelError, OSError) as error:
-        raise LogError(
-            path,
-            "the file is not a spreadsheet that can be read",
-            found=str(error).splitlines()[0],
-            needed="an .xlsx, .xls or .ods workbook without a password",
-        ) from error
-
-
-def _check_archive(path: Path) -> None:
-    """Compare the checksums in a zipped workbook: its readers stop before they would."""
-    if not zipfile.is_zipfile(path):
-        return
-    try:
-        with zipfile.ZipFile(path) as archive:
-            damaged = archive.testzip()
-    except (
-        zipfile.BadZipFile,
-        zlib.error,
-        OSError,
-        EOFError,
-        NotImplementedError,
-        RuntimeError,
-    ) as error:
-        damaged = str(error)
-    if damaged is not None:
-        raise LogError(
-            path, "the workbook is damaged", found=damaged, needed="checksums that agree"
-        )
 
 
 def find_sheet(path: Path, sheet_names: Sequence[str], sheet: str | int) -> int:
@@ -77,14 +59,10 @@ def read_rows(
     path: Path, workbook: fastexcel.ExcelReader, sheet: int, n_rows: int
 ) -> list[list[str]]:
     """First rows of a sheet as text, from row 1 and column A on; blank cells are ''."""
-    try:
+    with parsed(path, f"sheet {sheet + 1} cannot be read"):
         top = workbook.load_sheet(
             sheet, header_row=None, skip_rows=0, n_rows=n_rows, dtypes="string"
         )
-    except fastexcel.FastExcelError as error:
-        raise LogError(
-            path, f"sheet {sheet + 1} cannot be read", found=str(error).splitlines()[0]
-        ) from error
     columns = [column or [] for column in top.to_arrow().to_pydict().values()]
     first = min((info.absolute_index for info in top.selected_columns), default=0)
     return [
@@ -124,7 +102,9 @@ def _metadata(sheet_name: str, preamble: list[list[str]]) -> dict[str, str]:
     return metadata
 
 
-def read_spreadsheet(path: Path, layout: Layout, *, name: str) -> RawLog:
+def read_spreadsheet(
+    path: Path, layout: Layout, *, name: str, watch: Watch | None = None
+) -> RawLog:
     """Read the declared columns of one sheet.
 
     Parameters
@@ -136,6 +116,8 @@ def read_spreadsheet(path: Path, layout: Layout, *, name: str) -> RawLog:
         channels.
     name : str
         Name of the file for the product.
+    watch : Watch, optional
+        Holds it against its limits.
 
     Returns
     -------
@@ -148,12 +130,14 @@ def read_spreadsheet(path: Path, layout: Layout, *, name: str) -> RawLog:
     LogError
         If the file, the sheet, a column or a cell cannot be used.
     """
+    watch = watch or Watch(path)
     source = hash_source(path, name)
-    _check_archive(path)
-    workbook = open_workbook(path)
+    workbook = open_workbook(path, watch)
     sheet = find_sheet(path, workbook.sheet_names, layout.sheet)
     sheet_name = workbook.sheet_names[sheet]
     preamble, names, units = _head(path, workbook, sheet, layout)
+    watch.check_columns(len(names))
+    watch.check_time()
     first = layout.preamble_rows + layout.has_name_row + layout.has_unit_row
     wanted = wanted_columns(layout)
     places = [

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,8 @@ from reduction.errors import LogError
 from reduction.ingest.sniff import SniffedLayout, format_of, sniff_layout
 from reduction.ingest.sniff_binary import table_sheets
 from reduction.ingest.sniff_channels import UNKNOWN
+from reduction.ingest.source import unreadable
+from reduction.visible import safe_cell, toml_comment, toml_text
 
 __all__ = ["starter_campaign"]
 
@@ -34,6 +35,11 @@ diameter = ["?"]  # before stretch, each reading with its unit: ["1.04 in", "1.0
 # material = ""  # what is known: EPDM, nylon, ...
 # rated_break_strength = ""  # with its unit: "800 lbf"
 """
+_NO_MARKS = """\
+# How position becomes strain. Where there are splices: tape readings at their toes, in a table
+# test,specimen,hold,near_toe_mm,far_toe_mm,far_thimble_mm
+# strain = { marks = "marks.csv" }
+# Where there are none, and no channel is a strain: gauge_length = "2.5 m" under each specimen."""
 
 
 @dataclass(frozen=True)
@@ -67,8 +73,11 @@ def _is_marks(path: Path) -> bool:
     """Whether a file is a table of tape readings, by its header."""
     if path.suffix.lower() != ".csv":
         return False
-    with path.open("rb") as stream:
-        header = stream.readline(4096).decode("utf-8-sig", errors="replace")
+    try:
+        with path.open("rb") as stream:
+            header = stream.readline(4096).decode("utf-8-sig", errors="replace")
+    except OSError as error:
+        raise unreadable(path, error) from error
     names = {name.strip() for name in header.split(",")}
     return names >= _MARKS and any(name.startswith("near_toe") for name in names)
 
@@ -105,6 +114,9 @@ def starter_campaign(folder: Path) -> dict[str, str]:
     refused: list[str] = []
     for path in sorted(folder.iterdir(), key=lambda entry: _natural(entry.name)):
         if not path.is_file() or path.name.startswith(".") or path.name in _WRITTEN:
+            continue
+        if not path.resolve().is_relative_to(folder.resolve()):
+            refused.append(f"{path.name}: a link that leads out of the folder")
             continue
         try:
             if _is_marks(path):
@@ -144,13 +156,13 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
     lines = [
         "# A first draft. Replace every ?, check every line, then: reduction check campaign.toml",
         "",
-        'tests = "tests.csv"  # one row a log; order is its place in the specimens\' history',
-        "",
         "[campaign]",
         f'id = "{_slug(folder.resolve().name)}"',
         'title = "?"',
         'institution = "?"',
         'source = "?"',
+        "# one row a log; order is its place in the history of its specimens: 1, 2, ...",
+        'tests = "tests.csv"',
         "",
         _SPECIMENS,
         "[defaults]",
@@ -158,14 +170,18 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
         "# stepwise",
         'control = "position"  # or load',
     ]
+    if not marks:
+        lines.append(_NO_MARKS)
     if marks:
-        lines.append(f"strain = {{ marks = {json.dumps(marks[0], ensure_ascii=False)} }}")
+        lines.append(f"strain = {{ marks = {toml_text(marks[0])} }}")
         refused += [f"{name}: another table of marks" for name in marks[1:]]
     for name, sniffed in layouts.values():
-        lines += ["", *(f"# {remark}" for remark in sniffed.remarks)]
-        lines.append(sniffed.toml.replace("[layouts.log", f"[layouts.{name}").rstrip())
+        lines += ["", *(f"# {toml_comment(remark)}" for remark in sniffed.remarks)]
+        lines.append(
+            re.sub(r"(?m)^\[layouts\.log(?=[.\]])", f"[layouts.{name}", sniffed.toml).rstrip()
+        )
     if refused:
-        lines += ["", "# not taken for logs:", *(f"#   {entry}" for entry in refused)]
+        lines += ["", "# not taken for logs:", *(f"#   {toml_comment(entry)}" for entry in refused)]
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
     writer.writerow(_COLUMNS)
@@ -173,5 +189,5 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
     for wish, log in rows:
         specimens = ";".join([UNKNOWN] * log.n_specimens)
         layout, _ = layouts[log.sniffed.settings]
-        writer.writerow((_unique(wish, ids), "", log.file, layout, "", specimens))
+        writer.writerow((_unique(wish, ids), "", safe_cell(log.file), layout, "", specimens))
     return {"campaign.toml": "\n".join(lines) + "\n", "tests.csv": table.getvalue()}

@@ -13,6 +13,7 @@ from reduction.ingest.rawlog import RawLog
 from reduction.ingest.read import read_log
 from reduction.provenance import Source
 from reduction.record import Floats, StepReadings
+from reduction.settings import Limits
 from reduction.units import parse_quantity, scale_to_si
 
 __all__ = ["read_step_readings"]
@@ -37,7 +38,7 @@ def _uncertainty(channel: Channel, layout: Layout, name: str) -> float:
 
 
 def read_step_readings(
-    files: Sequence[tuple[Path, Layout, str]], *, test_id: str
+    files: Sequence[tuple[Path, Layout, str]], *, test_id: str, limits: Limits | None = None
 ) -> tuple[StepReadings, tuple[Source, ...]]:
     """Read the log of a stepwise test.
 
@@ -47,6 +48,8 @@ def read_step_readings(
         One file; a stepwise test is too short to come in pieces.
     test_id : str
         For messages.
+    limits : Limits, optional
+        What the file may be.
 
     Returns
     -------
@@ -74,7 +77,7 @@ def read_step_readings(
             found=", ".join(layout.channels),
             needed="time, tension.1 and gauge_length (the length between the marks)",
         )
-    log = read_log(path, layout, name=name)
+    log = read_log(path, layout, name=name, limits=limits)
     for channel in _NEEDED:
         missing = log.missing(channel)
         if missing.any():

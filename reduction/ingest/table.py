@@ -20,12 +20,15 @@ from reduction.ingest.columns import (
     wanted_columns,
 )
 from reduction.ingest.layout import Layout
+from reduction.ingest.limits import Watch
 from reduction.ingest.parts import Parts
 from reduction.ingest.preamble import check_units
 from reduction.record import Floats
-from reduction.samples.scratch import ColumnWriter
+from reduction.samples.scratch import ColumnWriter, check_room
 
 __all__ = ["ColumnTable", "Matrix", "matrix_table", "read_columns", "row_parts"]
+
+_PART = 16 << 20  # bytes of a matrix that are read at a time
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,8 @@ class ColumnTable:
         What holds the columns, for messages: ``group 'log'``.
     in_order : bool
         Whether a column may be named by its number.
+    sizes : tuple of int
+        Values of each column, where the file states them; empty where only reading tells.
     """
 
     names: tuple[str, ...]
@@ -53,6 +58,7 @@ class ColumnTable:
     n_rows: int = 0
     where: str = "the file"
     in_order: bool = True
+    sizes: tuple[int, ...] = ()
 
 
 class Matrix(Protocol):
@@ -126,7 +132,10 @@ def matrix_table(
     total = matrix.shape[0]
     held: list[tuple[slice, NDArray[Any]]] = []  # rows that the columns before have read
 
+    row_size = max(matrix.dtype.itemsize * (1 if fields else n_columns), 1)
+
     def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
+        n_rows = max(min(n_rows, _PART // row_size), 1)  # all columns are read, few may be wanted
         for part in row_parts(total, n_rows, n_together):
             if not held or held[0][0] != part:
                 held[:] = [(part, matrix[part])]
@@ -139,6 +148,7 @@ def matrix_table(
         load=load,
         n_rows=total,
         where=where,
+        sizes=(total,) * n_columns,
     )
 
 
@@ -162,11 +172,12 @@ def read_columns(
     made: Mapping[str, Callable[[int], Iterator[Floats]]] | None = None,
     *,
     parts: Parts | None = None,
+    watch: Watch | None = None,
 ) -> tuple[dict[str, Floats], int]:
     """Declared columns of a binary file by channel key, and how many rows they have.
 
     ``made`` holds those that the reader makes from properties of the file, in parts of so many
-    rows.
+    rows.  The watch is asked for the time between the parts.
 
     Raises
     ------
@@ -176,7 +187,8 @@ def read_columns(
     DataError
         If the disk is full.
     """
-    made, parts = made or {}, parts or Parts()
+    made, parts, watch = made or {}, parts or Parts(), watch or Watch(path)
+    watch.check_columns(len(table.names))
     wanted = wanted_columns(layout)
     places = {}
     for want in wanted:
@@ -184,6 +196,11 @@ def read_columns(
             places[want.key] = _place(path, want, table)
     n_bytes = 8 * table.n_rows * len(wanted)
     folder = parts.folder_of(n_bytes)
+    if folder is not None:
+        stated = (
+            [table.sizes[place] for place in places.values()] if table.sizes else [table.n_rows]
+        )
+        check_room(folder, 8 * sum(stated))
     n_rows = max(parts.length_of(n_bytes) // (8 * max(len(wanted), 1)), 1)
     checked = {
         want.key: CheckedColumn(path, want, layout, folder) for want in wanted if want.key in places
@@ -194,6 +211,7 @@ def read_columns(
         *((writer.append, made[key](n_rows)) for key, writer in writers.items()),
     ]
     while coming:  # side by side: columns of a matrix come from the same rows
+        watch.check_time()
         going = []
         for add, values in coming:
             if (part := next(values, None)) is not None:

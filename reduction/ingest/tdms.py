@@ -9,12 +9,13 @@ declares the column ``wf_increment``, and time is ``wf_start_offset`` plus
 from __future__ import annotations
 
 import logging
+import re
 import struct
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import nptdms  # type: ignore[import-untyped]
 import numpy as np
@@ -24,6 +25,8 @@ from numpy.typing import NDArray
 from reduction.errors import LogError
 from reduction.ingest.columns import Wanted, check_unit, find_column, wanted_columns
 from reduction.ingest.layout import Layout
+from reduction.ingest.limits import Watch
+from reduction.ingest.metadata import short_metadata
 from reduction.ingest.parts import Parts
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
@@ -33,23 +36,52 @@ from reduction.record import Floats
 __all__ = ["WAVEFORM_COLUMN", "open_tdms", "read_tdms", "tdms_group", "tdms_table"]
 
 WAVEFORM_COLUMN = "wf_increment"
+_SCALES = "NI_Number_Of_Scales"
+_SCALE = re.compile(r"NI_Scale\[(\d{1,18})\]")
+_MOST_SCALES = 1000
 _NOT_TDMS = (
     ValueError, KeyError, TypeError, OSError, EOFError, struct.error, IndexError,
-    NotImplementedError, OverflowError,
+    NotImplementedError, OverflowError, RecursionError, MemoryError, ZeroDivisionError,
 )  # fmt: skip
 # npTDMS prints what this module turns into notes and errors
 log_manager.set_level(logging.CRITICAL)
 
 
+class _WatchedStream:
+    """A file whose reader is stopped when its time is over, and which never reads behind the end.
+
+    The reader goes through all segments in one call, however many a small file has.
+    """
+
+    def __init__(self, path: Path, stream: BinaryIO, watch: Watch) -> None:
+        self._stream, self._watch = stream, watch
+        self._size = path.stat().st_size
+        self.seek, self.tell, self.close = stream.seek, stream.tell, stream.close
+
+    def read(self, size: int = -1) -> bytes:
+        """So many bytes, or as many as there are."""
+        self._watch.check_time()
+        left = max(self._size - self._stream.tell(), 0)
+        return self._stream.read(left if size < 0 else min(size, left))
+
+    def readinto(self, buffer: Any) -> int:
+        """Fill a buffer as far as there are bytes."""
+        self._watch.check_time()
+        n_bytes: int = self._stream.readinto(buffer)  # type: ignore[attr-defined]
+        return n_bytes
+
+
 @contextmanager
-def open_tdms(path: Path) -> Iterator[nptdms.TdmsFile]:
+def open_tdms(path: Path, watch: Watch | None = None) -> Iterator[nptdms.TdmsFile]:
     """Open a TDMS file; `LogError` where the file is none.
 
     The stream, not the path, is handed on: npTDMS would believe an index file beside it.
     """
     with path.open("rb") as stream:
         try:
-            file = nptdms.TdmsFile.open(stream)
+            file = nptdms.TdmsFile.open(_WatchedStream(path, stream, watch or Watch(path)))
+        except LogError:
+            raise
         except _NOT_TDMS as error:
             raise LogError(
                 path, "the file is not TDMS", found=str(error)[:200], needed="a .tdms file"
@@ -73,15 +105,28 @@ def tdms_group(path: Path, file: nptdms.TdmsFile, group: str) -> nptdms.TdmsGrou
     return file[group]
 
 
-def tdms_table(path: Path, group: nptdms.TdmsGroup) -> ColumnTable:
+def tdms_table(
+    path: Path, file: nptdms.TdmsFile, group: nptdms.TdmsGroup, watch: Watch | None = None
+) -> ColumnTable:
     """Channels of a group as columns."""
     channels = group.channels()
+    (watch or Watch(path)).check_columns(len(channels))
+    most = 8 * path.stat().st_size  # a value takes a bit at least
+    for channel in channels:
+        if len(channel) > most:
+            raise LogError(
+                path, "a channel states more values than the file holds", channel=channel.name[:80],
+                found=f"{len(channel):,} values", needed="an intact .tdms file",
+            )  # fmt: skip
 
     def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
         channel = channels[place]
+        _check_scales(path, file, group, channel)
         try:
             for part in row_parts(len(channel), n_rows):
                 yield np.asarray(channel[part])
+        except LogError:
+            raise
         except _NOT_TDMS as error:
             raise LogError(
                 path, "a channel cannot be read", channel=channel.name,
@@ -94,7 +139,24 @@ def tdms_table(path: Path, group: nptdms.TdmsGroup) -> ColumnTable:
         load=load,
         n_rows=max((len(channel) for channel in channels), default=0),
         where=f"group '{group.name}'",
+        sizes=tuple(len(channel) for channel in channels),
     )
+
+
+def _check_scales(path: Path, *holders: Any) -> None:
+    """The library makes as many scales as a property says there are."""
+    for holder in holders:
+        stated = holder.properties.get(_SCALES, 0)
+        numbers = [int(match[1]) for key in holder.properties if (match := _SCALE.match(key))]
+        if not isinstance(stated, (int, np.integer)) or not 0 <= stated <= _MOST_SCALES:
+            found = f"{_SCALES} {str(stated)[:40]}"
+        elif max(numbers, default=0) > _MOST_SCALES:
+            found = f"scale {max(numbers)}"
+        else:
+            continue
+        raise LogError(
+            path, "a channel cannot be scaled", found=found, needed=f"{_MOST_SCALES} scales at most"
+        )
 
 
 def _waveform(path: Path, wanted: Wanted, channel: nptdms.TdmsChannel) -> tuple[Any, float, float]:
@@ -170,7 +232,14 @@ def _regular(offset: float, increment: float, size: int, n_rows: int) -> Iterato
         yield offset + increment * np.arange(part.start, part.stop, dtype=np.float64)
 
 
-def read_tdms(path: Path, layout: Layout, *, name: str, parts: Parts | None = None) -> RawLog:
+def read_tdms(
+    path: Path,
+    layout: Layout,
+    *,
+    name: str,
+    parts: Parts | None = None,
+    watch: Watch | None = None,
+) -> RawLog:
     """Read the declared channels of one group; channel scaling in the file is applied.
 
     Parameters
@@ -183,6 +252,8 @@ def read_tdms(path: Path, layout: Layout, *, name: str, parts: Parts | None = No
         Name of the file for the product.
     parts : Parts, optional
         How much of it is read at a time.
+    watch : Watch, optional
+        Holds it against its limits.
 
     Returns
     -------
@@ -197,20 +268,23 @@ def read_tdms(path: Path, layout: Layout, *, name: str, parts: Parts | None = No
         If the disk is full.
     """
     source = hash_source(path, name)
-    with open_tdms(path) as file:
+    watch = watch or Watch(path)
+    with open_tdms(path, watch) as file:
         group = tdms_group(path, file, layout.group)
-        table = tdms_table(path, group)
+        table = tdms_table(path, file, group, watch)
         made = _waveform_times(path, layout, group, table)
-        columns, n_rows = read_columns(path, layout, table, made, parts=parts)
-        properties = {**file.properties, **group.properties}
+        columns, n_rows = read_columns(path, layout, table, made, parts=parts, watch=watch)
+        metadata, notes = short_metadata(
+            {key: str(value) for key, value in {**file.properties, **group.properties}.items()}
+        )
         cut = file.file_status.incomplete_final_segment
     return RawLog(
         source=source,
         columns=columns,
         first_row=0,
         n_rows_read=n_rows,
-        metadata={key: str(value) for key, value in properties.items()},
-        notes=("the file ends inside a block of data: the logger was stopped or cut off",)
+        metadata=metadata,
+        notes=("the file ends inside a block of data: the logger was stopped or cut off", *notes)
         if cut
-        else (),
+        else notes,
     )

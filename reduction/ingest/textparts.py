@@ -20,6 +20,7 @@ import numpy as np
 
 from reduction.errors import LogError
 from reduction.ingest.encoding import find_encoding, row_of
+from reduction.ingest.limits import Watch
 from reduction.ingest.parts import Parts
 from reduction.ingest.source import RunningHash, check_not_empty, unreadable
 from reduction.ingest.textrows import count_lines, line_starts
@@ -27,7 +28,6 @@ from reduction.provenance import Source
 
 __all__ = ["TextFile", "TextPart", "open_text"]
 
-_LONGEST_LINE = 1_000_000  # bytes, less than a block of the parser
 _PIECE = 1 << 17  # stays in the cache
 _LOOK = 1 << 16  # bytes in which a binary file shows itself
 _MARK = 4  # bytes of the longest byte-order mark
@@ -62,7 +62,9 @@ class TextPart:
 class TextFile:
     """A text file that is read once, from its beginning to its end; see `open_text`."""
 
-    def __init__(self, path: Path, stream: BufferedReader, encoding: str, parts: Parts) -> None:
+    def __init__(
+        self, path: Path, stream: BufferedReader, encoding: str, parts: Parts, watch: Watch
+    ) -> None:
         """Look at the beginning of the file."""
         size = os.fstat(stream.fileno()).st_size
         check_not_empty(path, size)
@@ -73,7 +75,8 @@ class TextFile:
         except OSError as error:
             raise unreadable(path, error) from error
         self.folder = parts.folder_of(size)
-        self._path, self._stream = path, stream
+        self._path, self._stream, self._watch = path, stream, watch
+        self.longest_line = watch.limits.line_length
         self._n_bytes = max(parts.length_of(size), _MARK)
         self._left = size - len(self._encoding.mark)
         self._keeps_ascii = self._encoding.keeps_ascii
@@ -91,6 +94,7 @@ class TextFile:
         coming = self._worker.submit(next, parts, None)
         while (part := coming.result()) is not None:
             coming = self._worker.submit(next, parts, None)
+            self._watch.check_time()
             yield part
 
     def source(self, name: str) -> Source:
@@ -108,8 +112,8 @@ class TextFile:
         rest, row, is_last = b"", 1, False
         while not is_last:
             data, fault = self._read(rest)
-            if fault is None and _unfinished(data) > 2 * _LONGEST_LINE:
-                fault = row_of(data, len(data)) - 1, self._too_long
+            if fault is None and _unfinished(data) > 2 * self.longest_line:
+                fault = row_of(data, len(data)) - 1, self._watch.long_line
             is_last = fault is None and self._left == 0
             stop, begin = (_end(data, len(data)), len(data)) if is_last else _cut(data)
             rest = bytes(memoryview(data)[begin:])
@@ -119,7 +123,7 @@ class TextFile:
                 is_open = is_last and bytes(data[stop : stop + 1]) not in (b"\n", b"\r")
                 yield TextPart(text, row, n_lines, is_open)
             if found is not None or fault is not None:
-                above, error = found or fault or (0, self._too_long)
+                above, error = found or fault or (0, self._watch.long_line)
                 raise error(row + above)
             row += n_lines
 
@@ -170,30 +174,22 @@ class TextFile:
             self._is_at_start = False
         if data.find(b"\r", 0, stop) >= 0 and _has_lone_return(text):
             text = memoryview(bytes(text).replace(b"\r\n", b"\n").replace(b"\r", b"\n"))
-        if (long := _long_line(text)) is not None:
-            text, fault = _above(text, long), (count_lines(text[:long]) - 1, self._too_long)
+        if (long := _long_line(text, self.longest_line)) is not None:
+            text, fault = _above(text, long), (count_lines(text[:long]) - 1, self._watch.long_line)
         return text, fault
-
-    def _too_long(self, row: int) -> LogError:
-        return LogError(
-            self._path,
-            "a line is too long to be a row of a log",
-            row=row,
-            found="more than a million bytes without a line end",
-            needed="one line a row",
-            hint="Check the format and the encoding of the layout.",
-        )
 
 
 @contextmanager
-def open_text(path: Path, encoding: str, parts: Parts) -> Iterator[TextFile]:
+def open_text(
+    path: Path, encoding: str, parts: Parts, watch: Watch | None = None
+) -> Iterator[TextFile]:
     """Open a text file to be read in parts.
 
     Raises
     ------
     LogError
         If the file cannot be opened, is empty or binary, is not in the declared encoding, or
-        has a line of a million bytes.
+        has a line that is longer than the limits of the watch allow.
     SettingsError
         If there is no such encoding.
     """
@@ -201,7 +197,7 @@ def open_text(path: Path, encoding: str, parts: Parts) -> Iterator[TextFile]:
         stream = path.open("rb")
     except OSError as error:
         raise unreadable(path, error) from error
-    with stream, closing(TextFile(path, stream, encoding, parts)) as file:
+    with stream, closing(TextFile(path, stream, encoding, parts, watch or Watch(path))) as file:
         yield file
 
 
@@ -252,13 +248,13 @@ def _has_lone_return(text: memoryview) -> bool:
     return any(np.any((piece[:-1] == _RETURN) & (piece[1:] != _NEWLINE)) for piece in pieces)
 
 
-def _long_line(text: memoryview) -> int | None:
+def _long_line(text: memoryview, longest: int) -> int | None:
     """Place of the first line that is too long, None where there is none."""
     codes = np.frombuffer(text, np.uint8)
-    window = _LONGEST_LINE // 2  # a line that is too long covers one of them
+    window = longest // 2  # a line that is too long covers one of them
     starts = range(0, codes.size - window, window)
-    if all(np.any(codes[start : start + _PIECE] == _NEWLINE) for start in starts):
+    if all(np.any(codes[start : start + min(_PIECE, window)] == _NEWLINE) for start in starts):
         return None
     lines = line_starts(text)
-    long = np.flatnonzero(np.diff(lines, append=codes.size) > _LONGEST_LINE)
+    long = np.flatnonzero(np.diff(lines, append=codes.size) > longest)
     return int(lines[long[0]]) if long.size else None

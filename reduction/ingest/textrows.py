@@ -18,7 +18,6 @@ __all__ = ["TextRows", "count_lines", "line_starts", "split_line"]
 
 _PIECE = 1 << 17  # stays in the cache
 _NEWLINE, _RETURN = b"\n\r"
-_LAST_LINE = 1 << 20  # bytes that hold the last line
 _SHOWN = 60  # characters of a line in a message
 
 
@@ -42,6 +41,8 @@ class TextRows:
         Whether the file ends with the last line, without a line end.
     n_lines : int, optional
         Lines where they have been counted.
+    longest_line : int
+        Bytes that no line has more of. [1]
     """
 
     path: Path
@@ -51,6 +52,7 @@ class TextRows:
     line_row: Integers | None = None
     is_open: bool = False
     n_lines: int | None = None
+    longest_line: int = 1_000_000
 
     def row_of_line(self, line: int) -> int:
         """Editor's row of a line counted from 0."""
@@ -85,7 +87,7 @@ class TextRows:
                     f"{filled.size} lines that make {n_rows} rows"
                 )
             row = self.first_row + filled if row is None else row[filled]
-        last = bytes(self.text[-_LAST_LINE:]).rpartition(b"\n")[2]
+        last = bytes(self.text[-self.longest_line - 1 :]).rpartition(b"\n")[2]
         if error := self.unclosed(n_lines - 1, last.decode("utf-8", "replace")):
             raise error
         return row

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
@@ -72,7 +72,9 @@ def mirrored(address: str, folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def put_at_end(address: str, folder: Path) -> Iterator[None]:
+def put_at_end(
+    address: str, folder: Path, *, beside: Callable[[str], bool] | None = None
+) -> Iterator[None]:
     """Put what lies in a folder to the net when the block ends well.
 
     Parameters
@@ -81,6 +83,9 @@ def put_at_end(address: str, folder: Path) -> Iterator[None]:
         Of the folder there.
     folder : pathlib.Path
         A scratch folder.
+    beside : callable, optional
+        True of the name of a file that is taken away there, after all else, where it lies in a
+        folder that has files here too, and is not among those.
 
     Raises
     ------
@@ -91,8 +96,17 @@ def put_at_end(address: str, folder: Path) -> Iterator[None]:
     """
     refuse_read_only(address)
     yield
-    for name in _sums(folder):
+    names = list(_sums(folder))
+    for name in names:
         put(folder / name, below(address, name))
+    if beside is None:
+        return
+    for one in sorted({str(PurePosixPath(name).parent) for name in names}):
+        own = address if one == "." else below(address, one)
+        for name in listing(own):
+            is_here = (folder / one / name).is_file()
+            if "/" not in name and not is_here and beside(name):
+                remove(below(own, name))
 
 
 def copied(address: str, folder: Path, *, beside: bool = False) -> Path:

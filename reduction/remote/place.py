@@ -18,7 +18,15 @@ _PACKAGES = {
     "ssh": "paramiko",
 }  # fmt: skip
 # they read this machine: a campaign names its own files by their paths, inside its folder
-_HERE = {"file", "local", "git"}
+_HERE = {
+    "file", "local", "git", "asynclocal", "data", "dir", "dvc", "libarchive", "reference", "tar",
+    "zip",
+}  # fmt: skip
+# they are of no use without another address behind them, which may lead here
+_AROUND = {
+    "async_wrapper", "asyncwrapper", "blockcache", "cached", "dask", "filecache", "generic",
+    "simplecache",
+}  # fmt: skip
 _HTTP = {"http", "https"}
 # stores of objects
 _WHOLE = {"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "adl", "oci", "oss", "tos", "hf"}
@@ -70,7 +78,7 @@ def allowed(text: str, allow_remote: bool, *, what: str) -> bool:
             hint="Allow it where you know who wrote the campaign.",
         )  # fmt: skip
     scheme = text.partition("://")[0].lower()
-    if "::" in text or scheme in _HERE or not text.isprintable():
+    if "::" in text or scheme in _HERE | _AROUND or not text.isprintable():
         raise SettingsError(
             f"{what} is no address that can be used", found=shown,
             needed="one address, such as s3://bucket/raw/T-1.csv; a file on this machine by its "

@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 
 from reduction.archive.variable import TEXT, Variable
 from reduction.tables.digits import number_texts
+from reduction.visible import safe_cell
 
 __all__ = ["Cell", "Column", "csv_field", "csv_lines", "csv_text", "texts_of", "uncertainty_of"]
 
 Cell = str | int | float | None
 _Label = TypeVar("_Label", int, str)
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
     """Return a table as text of a CSV file."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\r\n")
-    writer.writerow(header)
+    writer.writerow(map(safe_cell, header))
     writer.writerows([_written(cell) for cell in row] for row in rows)
     return text.getvalue()
 
@@ -131,5 +131,5 @@ def _written(cell: Cell) -> str:
     if cell is None:
         return ""
     if isinstance(cell, str):
-        return f"'{cell}" if cell.startswith(_FORMULA) else cell
+        return safe_cell(cell)
     return repr(cell)

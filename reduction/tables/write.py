@@ -13,6 +13,7 @@ import xarray as xr
 from reduction.archive.open import open_archive
 from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.variable import label
+from reduction.archive.whole import take_away
 from reduction.tables.column import Column
 from reduction.tables.comparisons import COMPARISON_TABLES
 from reduction.tables.definitions import TABLES
@@ -113,7 +114,7 @@ def write_tables(
         )
     for name in columns:
         if name not in filled:
-            files[name].path.unlink(missing_ok=True)
+            take_away(files[name].path)
     return [files[name].path for name in filled]
 
 

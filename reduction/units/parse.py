@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 from reduction.errors import SettingsError
 from reduction.units.scale import DIMENSIONS, Dimension, scale_of_unit, scale_to_si
+from reduction.visible import cut
 
 __all__ = ["parse_in_unit", "parse_quantity"]
 
@@ -46,7 +48,7 @@ def parse_quantity(
     """
     if isinstance(text, (int, float)) and not isinstance(text, bool):
         if dimension in ("strain", "number"):
-            return float(text)
+            return _finite(text, text)
         raise SettingsError(
             "a value has no unit",
             found=repr(text),
@@ -54,12 +56,15 @@ def parse_quantity(
         )
     match = _QUANTITY.match(str(text))
     if match is None:
+        is_plain = dimension in ("strain", "number")
         raise SettingsError(
-            "a value is not a number with a unit",
+            f"a value is not a number{'' if is_plain else ' with a unit'}",
             found=repr(text),
-            needed=f'text such as "1.5 {DIMENSIONS[dimension]}"',
+            needed='0.015 or "1.5 %"'
+            if is_plain
+            else f'text such as "1.5 {DIMENSIONS[dimension]}"',
         )
-    number, unit = float(match[1]), match[2]
+    number, unit = _finite(match[1], text), match[2]
     if re.fullmatch(r"%\s*(RBS|MBS|MBL)", unit) and dimension == "force":
         if rated_break_strength is None:
             raise SettingsError(
@@ -67,7 +72,7 @@ def parse_quantity(
                 found=repr(text),
                 needed="rated_break_strength of the specimen",
             )
-        return number / 100 * rated_break_strength
+        return _finite(number / 100 * rated_break_strength, text)
     if not unit and dimension not in ("strain", "number"):
         raise SettingsError(
             "a value has no unit",
@@ -75,7 +80,20 @@ def parse_quantity(
             needed=f'text such as "{number:g} {DIMENSIONS[dimension]}"',
         )
     factor, offset = scale_to_si(unit, dimension)
-    return factor * number + offset
+    return _finite(factor * number + offset, text)
+
+
+def _finite(number: str | float, text: str | float) -> float:
+    """A value in SI; `SettingsError` where it is no number or beyond every float."""
+    try:
+        value = float(number)
+    except OverflowError:  # a whole number of hundreds of digits
+        value = math.inf
+    if not math.isfinite(value):
+        raise SettingsError(
+            "a value is not finite", found=repr(cut(str(text), 60)), needed="a finite number"
+        )
+    return value
 
 
 def parse_in_unit(text: str, unit: str) -> float:
@@ -115,4 +133,4 @@ def parse_in_unit(text: str, unit: str) -> float:
         raise SettingsError(
             "a value has the unit of something else", found=repr(text), needed=f"such as {unit}"
         )
-    return factor * float(match[1]) + offset
+    return _finite(factor * _finite(match[1], text) + offset, text)

@@ -16,7 +16,7 @@ __all__ = ["DIMENSIONS", "Dimension", "registry", "scale_of_unit", "scale_to_si"
 Dimension = Literal[
     "time", "length", "force", "strain", "stress", "area", "frequency", "temperature", "angle",
     "mass", "velocity", "number", "force_rate", "density", "per_length",
-    "linear_density",
+    "linear_density", "information",
 ]  # fmt: skip
 
 DIMENSIONS: dict[Dimension, str] = {
@@ -36,6 +36,7 @@ DIMENSIONS: dict[Dimension, str] = {
     "density": "kg m-3",
     "per_length": "m-1",
     "linear_density": "kg m-1",
+    "information": "byte",
 }
 _PINT_SI = {
     "m2": "m**2",

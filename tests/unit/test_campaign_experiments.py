@@ -123,7 +123,6 @@ def test_dummy_columns_are_for_screening_alone():
             {"runs": {"R1": (0, -7)}},
             "run 'R1' is planned beyond the levels.*; found coded -7; needed",
         ),
-        ({"runs": {"R1": (0, float("nan"))}}, "planned beyond the levels.*; found coded nan"),
         (
             {"responses": ("hysteresis_energy", "loss_factor", "hysteresis_energy")},
             "a response stands twice; found hysteresis_energy, loss_factor, hysteresis_energy",

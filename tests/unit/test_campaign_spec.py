@@ -66,7 +66,7 @@ def test_units_of_quantities_are_spelt_as_in_products():
     [
         ('[factors]\nx = ["1 m", "2 ft"]', "factors.x: the two levels of x are not given in one"),
         ('[factors]\nmean_tension = ["12 %RBS", "30 % of mean"]', "factors.mean_tension: the two"),
-        ('[factors]\nx = ["one", "two"]', "factors.x: a value is not a number with a unit"),
+        ('[factors]\nx = ["one", "two"]', "factors.x: a value is not a number; found 'one'"),
         ('[factors]\n"x*y" = [1, 2]', "factors"),
         ("[responses]\ny = { unit = 3 }", "responses.y.unit"),
         ('[experiment]\nkind = "latin-square"', "experiment.kind"),

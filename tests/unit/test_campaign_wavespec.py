@@ -76,7 +76,7 @@ def test_a_level_may_be_below_the_water_and_currents_may_oppose(load):
         ("[wave_load]", '[wave_load]\nair_density = "0 kg/m^3"', "air_density is not positive"),
         ("[wave_load]", "[wave_load]\ndrag_coefficient = 0", "drag_coefficient is not positive"),
         ("[wave_load]", "[wave_load]\ninertia_coefficient = -1", "inertia_coefficient is not pos"),
-        ("[wave_load]", "[wave_load]\nwind_drag_coefficient = nan", "wind_drag_coefficient: a number is beyond"),
+        ("[wave_load]", "[wave_load]\nwind_drag_coefficient = nan", "wind_drag_coefficient: a value is not finite"),
         ('"6 m"', '"6"', "wave_load.water_depth: a value has no unit"),
         ('"6 m"', '"6 kg"', "wave_load.water_depth: unit 'kg' is not a unit of length"),
         ('"3.57 s"', '"3.57 m"', "wave_load.wave_period: unit 'm' is not a unit of time"),

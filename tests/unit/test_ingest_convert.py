@@ -324,3 +324,16 @@ def test_numbers_that_no_machine_measures_are_refused_with_their_row():
     load[3], load[5] = np.nan, -3e9
     with pytest.raises(DataError, match=r"tension\.2 has 1 values .* row 9 of T-1\.csv"):
         convert((log({"tension.2": load}), layout()))
+
+
+@pytest.mark.parametrize("time", [1e13, -7e300])
+def test_a_time_that_no_clock_shows_is_refused(time):
+    clock = np.where(TIME < 5, TIME, time)
+    with pytest.raises(DataError, match=r"the time of T-1\.csv has values that no clock shows"):
+        convert((log({"time": clock}), layout()))
+
+
+def test_ticks_of_a_clock_become_seconds():
+    declared = channels(time={"unit": "ms", "factor": 20.0})
+    record = convert((log({"time": np.arange(TIME.size)}), layout(declared)))
+    np.testing.assert_allclose(record.time, 0.02 * np.arange(TIME.size), rtol=1e-15)

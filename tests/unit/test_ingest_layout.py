@@ -42,6 +42,27 @@ def test_a_clock_is_a_unit_of_time_alone():
         layout(channels=tension(unit="clock"))
 
 
+@pytest.mark.parametrize(
+    ("name", "channel", "key"),
+    [
+        ("time", {"unit": "s", "sign": -1}, "sign"),
+        ("time", {"unit": "s", "zero": "5 s"}, "zero"),
+        ("time", {"unit": "clock", "factor": 2.0}, "factor"),
+        ("tension.1", {"unit": "N", "reference_length": "2 m"}, "reference_length"),
+        ("tension.1", {"unit": "N", "datum": "displacement"}, "datum"),
+    ],
+)
+def test_what_nothing_would_look_at_is_refused(name, channel, key):
+    with pytest.raises(ValidationError, match=f"channel {name} has no {key}; found {key} = "):
+        layout(channels={name: {"column": "c"} | channel})
+
+
+def test_a_length_from_pin_to_pin_has_no_reference_length():
+    channel = {"column": "x", "unit": "m", "datum": "pin-to-pin", "reference_length": "2 m"}
+    with pytest.raises(ValidationError, match="a length from pin to pin has no reference_length"):
+        layout(channels={"crosshead_position": channel})
+
+
 def test_a_factor_is_above_zero():
     with pytest.raises(ValidationError, match="greater than 0"):
         layout(channels=tension(factor=0.0))

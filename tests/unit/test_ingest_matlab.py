@@ -218,3 +218,15 @@ def test_a_file_that_is_no_matlab_file_is_an_error(tmp_path, content):
     (tmp_path / "log.mat").write_bytes(content)
     with pytest.raises(LogError, match="not a MATLAB file that can be read"):
         read(tmp_path / "log.mat")
+
+
+def test_an_old_file_in_a_byte_order_of_its_own_day_is_refused(tmp_path):
+    path = tmp_path / "log.mat"
+    scipy.io.savemat(path, {"t": np.array([TIME]).T, "F": np.array([LOAD]).T}, format="4")
+    data = path.read_bytes()
+    # the thousands of the first number say how numbers are written: 4 is a Cray
+    path.write_bytes((4000).to_bytes(4, "little") + data[4:])
+    with pytest.raises(
+        LogError, match="not a MATLAB file that can be read; .*numbers in a byte order of its day"
+    ):
+        read_matlab(path, layout(), name="log.mat")

@@ -96,3 +96,19 @@ def test_a_matrix_without_rows_is_refused(read):
 def test_what_is_no_json_names_the_row(read):
     with pytest.raises(LogError, match=r"log\.json:2: the file is not JSON"):
         read('{"data":\n oops}')
+
+
+@pytest.mark.parametrize("digits", [310, 5000])
+def test_a_whole_number_beyond_every_float_is_infinite(read, digits):
+    with pytest.raises(LogError, match="1 of 2 values are infinite, first value 2"):
+        read(f'{{"data": [[0, 1, 2], [1, 2, {"9" * digits}]], "displacement units": "in"}}')
+
+
+def test_a_file_that_is_nested_without_end_is_refused(read):
+    with pytest.raises(LogError, match="the file is nested too deeply"):
+        read("[" * 100_000)
+
+
+def test_a_key_that_stands_twice_is_refused(read):
+    with pytest.raises(LogError, match="the key 'data' stands twice in an object"):
+        read('{"data": [[0, 1, 2]], "displacement units": "in", "data": [[0, 1, 3]]}')

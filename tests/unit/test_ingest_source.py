@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from reduction.errors import LogError, SettingsError
+from reduction.errors import ArchiveError, LogError, SettingsError
 from reduction.ingest import source
 from reduction.ingest.encoding import decode
 from reduction.ingest.source import hash_source, read_bytes, source_of, unchanged
@@ -46,7 +46,7 @@ def test_a_file_that_is_not_there_is_refused(tmp_path, read):
 
 
 def test_a_folder_is_refused(tmp_path):
-    with pytest.raises(LogError, match="the file cannot be read; found Is a directory"):
+    with pytest.raises(LogError, match="no file that can be read; found a folder"):
         read_bytes(tmp_path)
 
 
@@ -113,7 +113,7 @@ def test_a_binary_file_is_refused_with_its_row(log):
 
 
 def test_an_unknown_encoding_is_a_setting(log):
-    with pytest.raises(SettingsError, match="encoding 'klingon' is not known"):
+    with pytest.raises(SettingsError, match="an encoding is not known; found 'klingon'"):
         decode(log, b"a", "klingon")
 
 
@@ -122,3 +122,16 @@ def test_a_file_that_shrinks_between_look_and_read_is_refused(log, monkeypatch):
     monkeypatch.setattr(source, "_state", lambda path: next(sizes))
     with pytest.raises(LogError, match="the file shrank while it was read"):
         read_bytes(log)
+
+
+def test_what_the_system_refuses_of_a_file_that_is_open_is_told_of_that_file(log):
+    with (
+        pytest.raises(LogError, match=r"log\S*: the file cannot be read; found Input/output error"),
+        unchanged(log),
+    ):
+        raise OSError(5, "Input/output error")  # such as of a close
+
+
+def test_what_is_refused_of_another_file_meanwhile_is_told_as_it_is(log):
+    with pytest.raises(ArchiveError, match=r"^of another file$"), unchanged(log):
+        raise ArchiveError("of another file")

@@ -229,18 +229,40 @@ def test_a_truncated_workbook_is_an_error(tmp_path):
 def test_a_workbook_whose_checksums_disagree_is_an_error(tmp_path):
     path = write_xlsx(tmp_path / "log.xlsx", {"log": HEAD + ROWS})
     path.write_bytes(path.read_bytes().replace(b"<v>1.25</v>", b"<v>7.25</v>"))
-    with pytest.raises(LogError, match=r"the workbook is damaged; found xl/worksheets/sheet1\.xml"):
+    with pytest.raises(
+        LogError, match=r"the workbook is damaged; found .*xl/worksheets/sheet1\.xml"
+    ):
         read_spreadsheet(path, layout(), name="log.xlsx")
 
 
-@pytest.mark.parametrize("place", [b"<v>0.0</v>", b"<v>3.75</v>"])
-def test_a_workbook_with_a_broken_sheet_is_an_error(tmp_path, place):
+def rewritten(tmp_path, old, new):
     write_xlsx(tmp_path / "whole.xlsx", {"log": HEAD + ROWS})
     path = tmp_path / "log.xlsx"
-    with zipfile.ZipFile(tmp_path / "whole.xlsx") as whole, zipfile.ZipFile(path, "w") as broken:
+    with zipfile.ZipFile(tmp_path / "whole.xlsx") as whole, zipfile.ZipFile(path, "w") as other:
         for name in whole.namelist():
-            broken.writestr(name, whole.read(name).replace(place, place[:-1] + b"</row>"))
+            other.writestr(name, whole.read(name).replace(old, new))
+    return path
+
+
+@pytest.mark.parametrize("cell", [b'<c r="A2"', b'<c r="B4"'])
+def test_a_cell_of_a_text_that_is_not_there_is_an_error(tmp_path, cell):
+    path = rewritten(tmp_path, cell, cell + b' t="s"')
     with pytest.raises(LogError, match="sheet 1 cannot be read"):
+        read_spreadsheet(path, layout(), name="log.xlsx")
+
+
+@pytest.mark.parametrize("new", [b"<v>1.25<v>", b"<v>1.25</v", b"<v>1.25</row>"])
+def test_markup_that_lost_a_letter_is_an_error_and_no_blank(tmp_path, new):
+    path = rewritten(tmp_path, b"<v>1.25</v>", new)
+    with pytest.raises(
+        LogError, match=r"the workbook is damaged; found xl/worksheets/sheet1\.xml: "
+    ):
+        read_spreadsheet(path, layout(), name="log.xlsx")
+
+
+def test_an_infinite_number_is_refused_with_its_row(tmp_path):
+    path = rewritten(tmp_path, b"<v>2.5</v>", b"<v>inf</v>")
+    with pytest.raises(LogError, match=r"log\.xlsx:3 \[load\]: a cell does not hold a number"):
         read_spreadsheet(path, layout(), name="log.xlsx")
 
 

@@ -66,6 +66,20 @@ def test_marks_are_used_and_what_is_no_log_is_listed(folder):
     assert ".hidden" not in text
 
 
+def test_the_draft_says_how_position_becomes_strain_where_no_marks_lie(folder):
+    assert "# strain" not in starter_campaign(folder)["campaign.toml"]
+    (folder / "marks.csv").unlink()
+    text = starter_campaign(folder)["campaign.toml"]
+    assert '# strain = { marks = "marks.csv" }\n' in text and "gauge_length = " in text
+    assert "strain" not in tomllib.loads(text)["defaults"]
+
+
+def test_the_draft_has_room_for_the_settings_of_one_test(folder):
+    text = starter_campaign(folder)["campaign.toml"]
+    document = tomllib.loads(text + "[tests.T-1]\nreduction.modulus.window = 0.1\n")
+    assert document["campaign"]["tests"] == "tests.csv" and "T-1" in document["tests"]
+
+
 def test_two_files_of_one_name_have_two_ids(folder):
     (folder / "T-1.txt").write_text(LOG)
     names = [row["id"] for row in rows(starter_campaign(folder))]

@@ -9,8 +9,10 @@ import stores
 
 from reduction.errors import ArchiveError, LogError, SettingsError
 from reduction.remote.faults import product_fault, said_of
+from reduction.remote.mirror import put_at_end
 from reduction.remote.place import allowed, base_name, below, connect, folder_of
 from reduction.remote.transfer import fetch, listing, put, remove
+from reduction.report.page import is_page_beside
 
 DATA = bytes(range(256)) * 1000
 
@@ -55,6 +57,26 @@ def test_a_file_of_unknown_size_is_copied(site, tmp_path):
     site.unsized.add("raw/T.csv")
     assert fetch(site.address("raw/T.csv"), tmp_path / "T.csv").size is None
     assert (tmp_path / "T.csv").read_bytes() == DATA
+
+
+def test_pages_that_a_folder_no_longer_has_are_taken_away_and_nothing_else(memory, tmp_path):
+    there = {
+        name: f"/reports/{name}"
+        for name in (
+            "small/client-report.html", "small/tests-01.html", "small/mine.html",
+            "small/below/client-report.html", "other/client-report.html", "client-report.html",
+        )
+    }  # fmt: skip
+    for path in there.values():
+        memory.pipe_file(path, b"of an earlier run")
+    folder = tmp_path / "reports"
+    with put_at_end("memory://reports", folder, beside=is_page_beside):
+        (folder / "small").mkdir(parents=True)
+        (folder / "small" / "index.html").write_text("new")
+        (folder / "small" / "tests-01.html").write_text("new")
+    left = {path.removeprefix("/reports/") for path in memory.find("/reports")}
+    assert left == set(there) - {"small/client-report.html"} | {"small/index.html"}
+    assert memory.cat_file("/reports/small/tests-01.html") == b"new"
 
 
 def fault_of(address, target, match):

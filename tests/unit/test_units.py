@@ -63,6 +63,12 @@ def test_a_text_without_a_number_or_a_unit_is_refused(text):
         parse_quantity(text, "length")
 
 
+def test_a_text_that_is_no_strain_is_told_how_one_is_written():
+    match = r"""^a value is not a number; found 'ten'; needed 0\.015 or "1\.5 %"$"""
+    with pytest.raises(SettingsError, match=match):
+        parse_quantity("ten", "strain")
+
+
 def test_a_bare_number_is_a_strain_or_a_plain_number_only():
     assert parse_quantity(0.75, "strain") == 0.75
     with pytest.raises(SettingsError, match='needed text such as "0.75 m"'):
