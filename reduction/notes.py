@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable
 from typing import Literal
 
-__all__ = ["SEVERITIES", "Severity", "by_severity", "severity_of"]
+__all__ = ["SEVERITIES", "Severity", "by_severity", "full_note", "severity_of"]
 
 Severity = Literal["doubt", "refusal", "note", "method"]
 SEVERITIES: tuple[Severity, ...] = ("doubt", "refusal", "note", "method")
@@ -83,3 +83,30 @@ def severity_of(stage: str, text: str) -> Severity:
 def by_severity(notes: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
     """Notes as (stage, text), most serious first; those alike keep their order."""
     return tuple(sorted(notes, key=lambda note: SEVERITIES.index(severity_of(*note))))
+
+
+def full_note(stage: str, text: str) -> str:
+    """Return a note with its subject: the stage stands before it where the note does not say it.
+
+    Parameters
+    ----------
+    stage : str
+        Stage that gave it, such as ``hold 2 new``; its last word is the specimen.
+    text : str
+        The note.
+
+    Returns
+    -------
+    sentence : str
+        What can stand alone, beside the name of the test.
+
+    Examples
+    --------
+    >>> full_note("hold 1 new", "refused: rate per decade: the hold is too short")
+    'hold 1 new: refused: rate per decade: the hold is too short'
+    >>> full_note("strain new", "new: marks differ from the splice law")
+    'new: marks differ from the splice law'
+    """
+    specimen = stage.split(" ")[-1]
+    is_said = text.startswith((f"{stage}:", f"{specimen}:", f"{specimen},"))
+    return text if is_said or not stage else f"{stage}: {text}"

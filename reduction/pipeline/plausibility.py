@@ -21,6 +21,7 @@ _GREATEST_STRAIN = 10.0  # no rubber is stretched to eleven times its length
 # a sine logged thirteen times a cycle misses 1.5 % of its range, a triangle has 23 % more
 _OFF_THE_SINE = 0.05
 _TRIANGULAR_SHARE = 0.6  # of samples at a constant rate; a sine has a half
+_MOST_DRIFT = 0.2  # of the range of a cycle: a rope that creeps drifts by a hundredth
 _FEWEST_SAMPLES = 10  # of a branch: below, its two ends are a good part of it
 
 
@@ -36,7 +37,7 @@ def plausibility_notes(
     control: Literal["position", "load"] = "position",
     is_snap: bool = False,
 ) -> tuple[str, ...]:
-    """Name what is hardly so: sign, unit of position, slack in cycles, waveform.
+    """Name what is hardly so: sign, unit of position, slack or drift in cycles, waveform.
 
     Parameters
     ----------
@@ -78,8 +79,11 @@ def plausibility_notes(
         slopes = None if curves is None else curves.tangent_modulus[index]
         slack = _taut if is_snap else _slack
         # of a channel of the wrong sign a valley says nothing about slack
+        half_strain = _half_range(strain[index], cycles)
         if waveform == "sinusoidal":
-            notes += _shape(name, loops, index, _half_range(strain[index], cycles), control)
+            notes += _shape(name, loops, index, half_strain, control)
+        else:
+            notes += _drift(name, loops, index, half_strain)
         notes += _sign(name, loops.mean_tension[index], slopes) or slack(
             name, loops.valley_tension[index], slack_tension
         )
@@ -115,6 +119,26 @@ def _shape(name: str, loops: Loops, index: int, half_strain: Floats, control: st
     return [
         f"{name}: {moved} is a sine and {other} is none: half its range is {excess:+.0%} off the "
         "amplitude of its fundamental, which stands for it"
+    ]
+
+
+def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[str]:
+    """Cycles whose loop is what is left of a drift: half of it has been taken off the range."""
+    half_tension = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
+    kept = [
+        amplitude[index][half > 0] / half[half > 0]
+        for amplitude, half in (
+            (loops.tension_amplitude, half_tension),
+            (loops.strain_amplitude, half_strain),
+        )
+    ]
+    # NaN, where nothing is left, is no comparison either
+    n_far = max(int(np.count_nonzero(~(share >= 1 - _MOST_DRIFT / 2))) for share in kept)
+    if not n_far:
+        return []
+    return [
+        f"{name}: {n_far} of {half_tension.size} cycles drift by more than {_MOST_DRIFT:.0%} of "
+        "their range: their amplitudes, slopes and energies rest on it"
     ]
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from reduction.batch.outcome import note_message
-from reduction.notes import by_severity, severity_of
+from reduction.notes import by_severity, full_note, severity_of
 
 METHOD = ("moduli", "tangent modulus by local regression in a window of 0.13 of strain")
 REFUSED = ("hold 1 new", "refused: Prony series: a drop of 0.03% is not told from zero")
@@ -42,6 +42,19 @@ def test_doubts_come_first_and_methods_last_and_those_alike_keep_their_order():
 
 def test_the_message_of_a_test_names_the_most_serious_note():
     message = note_message([METHOD, SAID, REFUSED, DOUBT])
-    assert message == f"4 notes (1 doubt of the data, 1 refusal); first: {DOUBT[1]}"
-    assert note_message([METHOD]) == f"1 note; first: {METHOD[1]}"
+    assert message == f"4 notes (1 doubt, 1 refusal); first: identity: {DOUBT[1]}"
+    assert note_message([METHOD]) == f"1 note; first: moduli: {METHOD[1]}"
     assert note_message([]) == ""
+
+
+def test_the_message_of_a_test_says_of_what_the_first_note_speaks_and_counts_each_specimen():
+    text = "the fitted law is not stable: do not use it in a model"
+    message = note_message([("yeoh new", text), ("yeoh used", text)])
+    assert message == f"2 notes (2 doubts); first: yeoh new: {text}"
+
+
+def test_a_note_that_names_its_specimen_is_not_given_it_again():
+    assert full_note("strain new", "new: marks differ") == "new: marks differ"
+    assert full_note("hold 1 new", "new, used: marks differ") == "new, used: marks differ"
+    assert full_note("hold 1 new", "newer marks differ") == "hold 1 new: newer marks differ"
+    assert full_note("", "of the campaign") == "of the campaign"

@@ -62,6 +62,17 @@ def test_a_strain_no_specimen_reaches_asks_for_the_unit_of_position(notes_of):
     assert note.startswith("new: strain reaches 1500, which no specimen does")
 
 
+def test_cycles_that_are_mostly_drift_are_counted(notes_of):
+    samples = np.arange(notes_of.strain.size)
+    # 500 N a cycle beside a range of 1000 N
+    (note,) = notes_of(1000 * notes_of.strain + 5.0 * samples)
+    assert note.startswith("new: 10 of 10 cycles drift by more than 20% of their range")
+    # a jump to a tenth: beside it the drift is more than what is left of the range
+    jump = np.where(samples < 410, 1.0, 0.1)
+    (note,) = notes_of(1000 * notes_of.strain * jump)
+    assert "cycles drift by more than" in note
+
+
 def test_snap_loads_go_slack_and_a_line_that_stays_taut_is_named(notes_of):
     assert notes_of(np.maximum(1000 * (notes_of.strain - 0.7), 0), snap=True) == ()
     (note,) = notes_of(snap=True)

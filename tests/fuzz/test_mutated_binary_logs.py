@@ -1,0 +1,14 @@
+"""HDF5, TDMS and Parquet, spoilt; docs/fuzzing.md has the rule."""
+
+import pytest
+from mutatedruns import hold
+
+
+@pytest.mark.parametrize(
+    ("name", "n_examples"),
+    [("hdf5", 100), ("hdf5-matrix", 100), ("tdms", 110), ("parquet", 100), ("parquet-plain", 100)],
+)
+def test_a_spoilt_log_is_refused_or_flagged_or_gives_the_numbers_in_it(name, n_examples):
+    tally = hold(name, n_examples)
+    assert tally["refused"] > 0 and tally["flagged"] > 0
+    assert tally["as before"] + tally["another log"] > 0

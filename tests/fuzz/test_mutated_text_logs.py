@@ -1,0 +1,15 @@
+"""Text logs, spoilt: refused, flagged, or reduced as they are; docs/fuzzing.md has the rule."""
+
+import pytest
+from mutatedruns import hold
+
+
+@pytest.mark.parametrize(
+    ("name", "n_examples"),
+    [("delimited", 150), ("continental", 150), ("blocks", 120), ("json", 130)],
+)
+def test_a_spoilt_log_is_refused_or_flagged_or_gives_the_numbers_in_it(name, n_examples):
+    tally = hold(name, n_examples)
+    # what is drawn is neither all rubbish nor all sound
+    assert tally["refused"] > 0 and tally["flagged"] > 0
+    assert tally["as before"] + tally["another log"] > 0
