@@ -11,8 +11,10 @@ import pytest
 PACKAGE = Path(__file__).parents[2] / "reduction"
 LAYER = {
     "address": 0,
+    "digits": 0,
     "errors": 0,
     "units": 0,
+    "visible": 0,
     "vocabulary": 0,
     "laboratory": 0,
     "provenance": 0,
@@ -51,6 +53,7 @@ LAYER = {
     "batch": 6,
     "designpage": 6,
     "explore": 7,
+    "verify": 7,
     "cli": 8,
     "__main__": 9,
 }
@@ -80,6 +83,7 @@ EDGES = {
     "batch",
     "designpage",
     "explore",
+    "verify",
     "cli",
     "__main__",
 }
@@ -137,6 +141,8 @@ def test_imports_below_the_edge_are_numpy_and_scipy(path):
     }  # fmt: skip
     if room(path) == "workers":  # threads start in one place
         standard |= {"os", "concurrent"}
+    if room(path) == "visible":  # and what steers a terminal is known in one
+        standard |= {"unicodedata"}
     if room(path) == "samples":  # and scratch files are made in one
         standard |= {"ctypes", "os", "mmap", "tempfile"}
     for parts, line in imports(path):
