@@ -69,7 +69,10 @@ NOT_IN_SUITE = {
     "accuracy": "errors against a truth, not cost; docs/method.md",
     "coverage_ropes": "coverage of intervals, not cost; docs/uncertainty.md",
     "coverage_tethers": "coverage of intervals, not cost; docs/uncertainty.md",
+    "same_bytes": "products in other surroundings, not cost; docs/reproducing.md",
+    "between_versions": "products by other releases, not cost; docs/reproducing.md",
     "monte_carlo": "uncertainty against draws, not cost; docs/benchmarks.md",
+    "hostile": "files that are refused; docs/hostile-input.md",
 }
 HEAD = "| benchmark | what | median (least to most) | ratio | wanted | |\n|---|---|---|---|---|---|"
 

@@ -1,10 +1,18 @@
 """Cyclic tests made from a law, for the tests of the stages that reduce them."""
 
+import hypothesis
 import numpy as np
 import pytest
 from visits import browser, visit
 
 from reduction.cycles.product import Cycles
+
+# an example takes as long as the machine lets it: others may work beside
+hypothesis.settings.register_profile("any machine", deadline=None)
+hypothesis.settings.load_profile("any machine")
+
+# needs atheris, and is run by hand
+collect_ignore = ["fuzz_readers.py"]
 
 # a process of the tests has one browser, whichever folder asks for it first
 __all__ = ["browser", "visit"]

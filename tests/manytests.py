@@ -96,7 +96,7 @@ def write_many(folder, n_tests, *, n_cycles=10):
 WITHOUT_PAGE = """
 from reduction.batch import run
 from reduction.cli.main import app
-run.write_report = lambda folder, reports, units: None
+run.write_report = lambda folder, reports, **shown: None
 app()
 """
 

@@ -126,15 +126,15 @@ def _show(found: PredictedArmour, output: CommandOutput, system: UnitSystem) -> 
     output.show(table)
     held, free = found.axial_stiffness
     output.say(
-        f"cable: tension {per_newton * float(found.together.tension[0]):.5g} {force}, torque "
-        f"{float(found.together.torque[0]):.4g} N m; axial stiffness {per_newton * held:.5g} "
-        f"{force} held from turning, {per_newton * free:.5g} {force} free to turn"
+        f"cable: tension {short(per_newton * float(found.together.tension[0]))} {force}, torque "
+        f"{float(found.together.torque[0]):.4g} N m; axial stiffness {short(per_newton * held)} "
+        f"{force} held from turning, {short(per_newton * free)} {force} free to turn"
     )
     if found.strength is not None:
         output.say(
             f"first yield: {found.layer_names[found.strength.governing_layer]} at "
             f"{100 * found.strength.strain:.4g} %, tension of the cable "
-            f"{per_newton * found.strength.tension:.5g} {force}"
+            f"{short(per_newton * found.strength.tension)} {force}"
         )
     for sentence in found.use[0].statement:
         output.say(f"  {sentence}")

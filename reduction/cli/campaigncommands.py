@@ -44,7 +44,9 @@ def sniff(
 
 def check(
     campaign: CampaignPath,
-    test: Annotated[list[str] | None, typer.Option("--test", help="Only this test.")] = None,
+    test: Annotated[
+        list[str] | None, typer.Option("--test", help="Only this test; may be repeated.")
+    ] = None,
     allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
@@ -71,7 +73,9 @@ def run(
         str | None,
         typer.Option(metavar="ADDRESS", help="Dask scheduler with workers, tcp://HOST:PORT."),
     ] = None,
-    test: Annotated[list[str] | None, typer.Option("--test", help="Only this test.")] = None,
+    test: Annotated[
+        list[str] | None, typer.Option("--test", help="Only this test; may be repeated.")
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Redo unchanged tests too.")] = False,
     allow_remote: AllowRemote = False,
     json: Json = False,

@@ -10,10 +10,11 @@ import json as json_module
 import os
 import sys
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, field
+from typing import TextIO
 
 import typer
 from rich.cells import cell_len
@@ -24,8 +25,10 @@ from rich.text import Text
 
 from reduction.address import without_secrets
 from reduction.cli.plaintable import plain_table
-from reduction.errors import ReductionError, SettingsError
+from reduction.cli.thousands import grouped
+from reduction.errors import ReductionError, SettingsError, refused_by_system
 from reduction.remote.scratch import in_words
+from reduction.visible import visible
 
 __all__ = ["INTERRUPTED", "CommandOutput", "guarded"]
 
@@ -44,10 +47,15 @@ class CommandOutput:
     names: dict[str, str] = field(default_factory=dict)
     """Addresses on the net by the paths of their copies, which nothing that is said names."""
 
-    def say(self, text: str) -> None:
-        """One line of text on standard output, unless JSON or nothing was asked for."""
-        if not (self.json or self.quiet):
-            typer.echo(in_words(text, self.names))
+    def say(self, text: str, *, is_verbatim: bool = False) -> None:
+        """One line of text on standard output, unless JSON or nothing was asked for.
+
+        At a terminal it is broken between words, but for what is there to be copied as it is.
+        """
+        if self.json or self.quiet:
+            return
+        said = visible(in_words(text, self.names))
+        typer.echo(said if is_verbatim else _between_words(said, sys.stdout))
 
     @property
     def is_text(self) -> bool:
@@ -62,11 +70,12 @@ class CommandOutput:
         """
         if not self.is_text:
             return
-        if self.names:
-            table = _in_words(table, self.names)
+        table = _changed(table, lambda cell, _: visible(in_words(cell, self.names)))
         if not sys.stdout.isatty():
             typer.echo(_line_by_line(table))
             return
+        # for eyes alone: what reads a pipe has no use for a blank in a number
+        table = _changed(table, lambda cell, is_right: grouped(cell) if is_right else cell)
         console = Console(highlight=False)
         if _least_width(table, console, words=30) <= console.width:
             console.print(table)
@@ -88,21 +97,45 @@ class CommandOutput:
 
     def error(self, text: str) -> None:
         """One error on standard error."""
-        typer.echo(without_secrets(in_words(text, self.names)), err=True)
+        said = visible(without_secrets(in_words(text, self.names)))
+        typer.echo(_between_words(said, sys.stderr), err=True)
 
     def raise_status(self, status: int) -> None:
         """Keep the highest status seen."""
         self.status = max(self.status, status)
 
 
-def _in_words(table: Table, names: dict[str, str]) -> Table:
-    """A table whose cells name addresses instead of the paths of their copies."""
+def _changed(table: Table, change: Callable[[str, bool], str]) -> Table:
+    """A table with other texts: of a cell, and of whether it stands flush right."""
     said = copy(table)
     said.columns = [column.copy() for column in table.columns]
     said.rows = []
+    is_right = [column.justify == "right" for column in table.columns]
     for row in zip(*(column.cells for column in table.columns), strict=True):
-        said.add_row(*(in_words(cell, names) if isinstance(cell, str) else cell for cell in row))
+        pairs = zip(row, is_right, strict=True)
+        said.add_row(*(change(cell, at) if isinstance(cell, str) else cell for cell, at in pairs))
     return said
+
+
+def _between_words(text: str, stream: TextIO) -> str:
+    """Lines that a terminal would break within a word, broken between words; else as it is.
+
+    A word that is longer than a line, such as an address, stays whole.
+    """
+    if not stream.isatty():
+        return text
+    width = Console(file=stream).width
+    lines = []
+    for line in text.split("\n"):
+        if cell_len(line) <= width:
+            lines.append(line)
+            continue
+        margin = line[: len(line) - len(line.lstrip())] + "  "
+        lines += textwrap.wrap(
+            line, width, subsequent_indent=margin, break_long_words=False, break_on_hyphens=False,
+            replace_whitespace=False,
+        )  # fmt: skip
+    return "\n".join(lines)
 
 
 def _least_width(table: Table, console: Console, *, words: int) -> int:
@@ -190,23 +223,36 @@ def guarded(output: CommandOutput) -> Iterator[CommandOutput]:
             raise SettingsError("--units is not known", found=repr(output.units), needed="si or us")
         yield output
     except ReductionError as error:
-        output.error(str(error))
-        output.raise_status(error.exit_status)
-        if not output.answered:
-            failed = {"tests": [], "error": str(error), "exit_status": error.exit_status}
-            output.answer(failed)
+        _say_failure(output, error)
     except KeyboardInterrupt:
         output.error("interrupted; products that were finished are kept")
         output.status = INTERRUPTED
     except BrokenPipeError:
         # the reader of a pipe went away: not an error of ours, and nothing more can be said
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        if error.errno is None:
+            _say_defect(output, error)
+        else:
+            _say_failure(output, refused_by_system(error))
     except Exception as error:
-        if os.environ.get("REDUCTION_DEBUG"):
-            raise
-        output.error(
-            f"internal error, a defect of this program: {type(error).__name__}: {error}. "
-            "Set REDUCTION_DEBUG=1 to see where, and please report it."
-        )
-        output.raise_status(1)
+        _say_defect(output, error)
     raise typer.Exit(output.status)
+
+
+def _say_failure(output: CommandOutput, error: ReductionError) -> None:
+    output.error(str(error))
+    output.raise_status(error.exit_status)
+    if not output.answered:
+        failed = {"tests": [], "error": str(error), "exit_status": error.exit_status}
+        output.answer(failed)
+
+
+def _say_defect(output: CommandOutput, error: Exception) -> None:
+    if os.environ.get("REDUCTION_DEBUG"):
+        raise error
+    output.error(
+        f"internal error, a defect of this program: {type(error).__name__}: {error}. "
+        "Set REDUCTION_DEBUG=1 to see where, and please report it."
+    )
+    output.raise_status(1)

@@ -9,11 +9,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import cast
 
+from reduction.campaign.find import find_campaign
 from reduction.cli.commandoutput import INTERRUPTED, CommandOutput
 from reduction.cli.progress import campaign_progress
 from reduction.cli.remote import in_order
 from reduction.errors import SettingsError
-from reduction.explore.find import find_campaign
 from reduction.explore.routes import Routes
 from reduction.explore.server import ExploreServer
 from reduction.explore.session import Session
@@ -47,7 +47,7 @@ def serve(
 
     work = Work(told_of_defect)
     units = cast("UnitSystem", output.units)
-    with in_order(), ExploreServer(Routes(session, work, units), port) as server:
+    with in_order(), ExploreServer(Routes(session, work, units), port, told_of_defect) as server:
         output.say(f"{path}: {len(session.surveys)} tests")
         output.say(f"Open {server.address}")
         output.say("Ctrl-C ends it. Only this machine is answered, and only with this address.")

@@ -8,14 +8,10 @@ from typing import Annotated
 import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
-from reduction.cli.options import Json, Quiet, Units
+from reduction.cli.options import Json, OwnCampaign, Quiet, Units
 from reduction.cli.usage import here
 
 __all__ = ["explore"]
-
-
-def _here(path: Path | None) -> Path | None:
-    return None if path is None else here(path)
 
 
 def explore(
@@ -25,15 +21,7 @@ def explore(
             metavar="PROCESSED_DIR", help="processed/CAMPAIGN.", show_default=False, callback=here
         ),
     ],
-    campaign: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="CAMPAIGN.toml",
-            help="Where the campaign is, if not in raw/CAMPAIGN/ beside processed/.",
-            show_default=False,
-            callback=_here,
-        ),
-    ] = None,
+    campaign: OwnCampaign = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Of 127.0.0.1; 0: a free one.")] = 0,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")] = True,
     json: Json = False,

@@ -12,7 +12,7 @@ from rich.table import Table
 from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.lookuppoints import Wanted, points_of
 from reduction.cli.lookupsource import lines_of, one_of
-from reduction.cli.numbers import plain, short, table_of
+from reduction.cli.numbers import as_given, plain, short, table_of, within
 from reduction.export.lookuptable import TENSIONS, format_of_file, table_of_values
 from reduction.export.table import ValueTable
 from reduction.export.write import export_table
@@ -181,7 +181,10 @@ def _table(
     for place, numbers in enumerate(levels):
         table.add_row(
             *numbers,
-            short(factor * float(found.value.ravel()[place])),
+            within(
+                factor * float(found.value.ravel()[place]),
+                *(factor * float(high[place] - low[place]) / 2 for _, low, high in intervals),
+            ),
             *(span(factor, low[place], high[place]) for _, low, high in intervals),
             *(short(100 * float(share.ravel()[place]), 4) for share in shares),
             "; ".join(_remarks(found, place)),
@@ -237,7 +240,7 @@ def shown_levels(
         # names stand below each other's words: there is little room beside seven columns
         words = name.replace("_", "\n")
         heads.append(f"{words}\n[{unit}]")
-        columns.append([short(factor * float(value)) for value in values.ravel()])
+        columns.append([as_given(factor * float(value)) for value in values.ravel()])
         if name in TENSIONS and np.isfinite(strength):
             heads.append("\n[%RBS]")
             columns.append([short(100 * float(value) / strength, 4) for value in values.ravel()])
@@ -254,7 +257,8 @@ def span(factor: float, low: float, high: float) -> str:
     """An interval for a table; a dash where there is none."""
     if not (np.isfinite(low) and np.isfinite(high)):
         return "-"
-    return f"{short(factor * float(low))} to {short(factor * float(high))}"
+    ends, half = (factor * float(low), factor * float(high)), factor * float(high - low) / 2
+    return " to ".join(within(one, half) for one in ends)
 
 
 def _shown(name: str, system: UnitSystem) -> tuple[str, float]:

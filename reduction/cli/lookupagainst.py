@@ -12,7 +12,7 @@ from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.lookup import fold_last, said_of_lines, shown_levels, span, write_table
 from reduction.cli.lookuppoints import Wanted, points_of
 from reduction.cli.lookupsource import lines_of, one_of
-from reduction.cli.numbers import plain, short, table_of
+from reduction.cli.numbers import plain, short, table_of, within
 from reduction.errors import SettingsError
 from reduction.export.lookuptable import format_of_file, table_of_difference
 from reduction.lookup.against import LineDifference, compare_values
@@ -131,11 +131,10 @@ def _table(
         at = {name: float(getattr(found, name).ravel()[place]) for name in numbers}
         table.add_row(
             *cells,
-            *(
-                short(factor * float(one.value.ravel()[place]))
-                for one in (found.first, found.second)
+            *(within(*_with_halves(one, place, factor)) for one in (found.first, found.second)),
+            within(
+                factor * at["difference"], factor * (at["surface_high"] - at["surface_low"]) / 2
             ),
-            short(factor * at["difference"]),
             short(at["ratio"], 4),
             span(factor, at["surface_low"], at["surface_high"]),
             _verdict(found.is_known, found.is_different, place),
@@ -144,6 +143,13 @@ def _table(
             _remark(found, place),
         )
     return table
+
+
+def _with_halves(found: DesignValues, place: int, factor: float) -> tuple[float, ...]:
+    """A value and the half widths of its intervals, as they are shown."""
+    spans = ((found.surface_low, found.surface_high), (found.low, found.high))
+    halves = ((high - low).ravel()[place] / 2 for low, high in spans)
+    return tuple(factor * float(one) for one in (found.value.ravel()[place], *halves))
 
 
 def _verdict(is_known: Bools, is_different: Bools, place: int) -> str:

@@ -21,6 +21,7 @@ from reduction.cli.lookupcommand import lookup
 from reduction.cli.predictioncommands import compare, predict
 from reduction.cli.publishedcommands import export, reproduce
 from reduction.cli.usage import Commands
+from reduction.cli.verifycommand import verify
 
 __all__ = ["app"]
 
@@ -66,5 +67,6 @@ app.command()(budget)
 app.command()(catalogue)
 app.command()(report)
 app.command()(explore)
+app.command()(verify)
 app.command()(reproduce)
 app.command()(schema)

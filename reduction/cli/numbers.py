@@ -10,9 +10,14 @@ from numpy.typing import ArrayLike
 from rich.markup import escape
 from rich.table import Table
 
+from reduction.digits import fixed_number, places_within, plain_number
 from reduction.units import UnitSystem, combined_unit, display_unit
 
-__all__ = ["Shown", "fitted_unit", "plain", "short", "table_of"]
+__all__ = [
+    "Shown", "as_given", "fitted_unit", "plain", "short", "table_of", "within",
+]  # fmt: skip
+
+_LARGE, _HUGE = 1e5, 1e7
 
 
 def fitted_unit(unit: str, transform: str) -> str:
@@ -52,7 +57,26 @@ def plain(values: ArrayLike) -> Any:
 
 def short(value: float, digits: int = 5) -> str:
     """A number for a table; a dash where there is none."""
-    return f"{value:.{digits}g}" if math.isfinite(value) else "-"
+    return plain_number(value, digits) if math.isfinite(value) else "-"
+
+
+def as_given(value: float) -> str:
+    """A level for a table: of a large one no digit before the point is lost."""
+    return f"{value:.0f}" if _LARGE <= abs(value) < _HUGE else short(value)
+
+
+def within(value: float, *halves: float) -> str:
+    """A number that is known within half widths of intervals, to two digits of the narrowest.
+
+    Without any it has five digits.
+
+    Examples
+    --------
+    >>> within(280991.3, 2100.0), within(280991.3, float("nan"))
+    ('281000', '280990')
+    """
+    places = places_within(value, *halves) if math.isfinite(value) else None
+    return short(value) if places is None else fixed_number(value, places, mark="")
 
 
 def table_of(*headings: str, texts: int = 1, title: str | None = None) -> Table:

@@ -8,7 +8,16 @@ from contextlib import contextmanager
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    Task,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+)  # fmt: skip
+from rich.text import Text
 
 from reduction.batch.status import TestStatus
 from reduction.cli.commandoutput import CommandOutput
@@ -16,6 +25,19 @@ from reduction.cli.commandoutput import CommandOutput
 __all__ = ["CampaignProgress", "campaign_progress"]
 
 _MANY = 4  # tests at work that are named one by one
+_WORDS = {
+    "survey": "reading", "reduce": "reducing", "tables": "writing tables",
+    "report": "writing the report",
+}  # fmt: skip
+"""Stages of a run, in words for a person."""
+
+
+class _Count(MofNCompleteColumn):
+    """How many of how many; nothing where nobody knows how many there are."""
+
+    def render(self, task: Task) -> Text:
+        """Text of the column."""
+        return Text() if task.total is None else super().render(task)
 
 
 class CampaignProgress:
@@ -32,7 +54,7 @@ class CampaignProgress:
     def __init__(self, bar: Progress | None = None, *, is_quiet: bool = False) -> None:
         self._bar = bar
         self._is_quiet = is_quiet
-        self._task = None if bar is None else bar.add_task("", total=None)
+        self._task: TaskID | None = None
         self._stage, self._done, self._total = "", 0, 0
         self._running: dict[str, None] = {}
 
@@ -40,9 +62,10 @@ class CampaignProgress:
         """A stage begins."""
         self._stage, self._done, self._total = name, 0, n_tests
         self._running.clear()
-        if self._bar is not None and self._task is not None:
-            self._bar.remove_task(self._task)
-            self._task = self._bar.add_task("", total=n_tests or None)
+        if self._bar is not None:
+            if self._task is not None:
+                self._bar.remove_task(self._task)
+            self._task = self._bar.add_task(self._words(), total=n_tests or None)
         self._show()
 
     def begun(self, test: str) -> None:
@@ -76,11 +99,15 @@ class CampaignProgress:
         more = len(self._running) - len(named)
         return ", ".join(named) + (f" and {more} more" if more else "")
 
+    def _words(self) -> str:
+        return escape(f"{_WORDS.get(self._stage, self._stage)} {self._at_work()}".rstrip())
+
     def _show(self) -> None:
         if self._bar is not None and self._task is not None:
-            words = escape(f"{self._stage} {self._at_work()}".rstrip())
             # at once: what is short would be over before the bar is drawn again by itself
-            self._bar.update(self._task, description=words, completed=self._done, refresh=True)
+            self._bar.update(
+                self._task, description=self._words(), completed=self._done, refresh=True
+            )
 
     def _line(self, text: str) -> None:
         if not self._is_quiet:
@@ -91,7 +118,7 @@ class CampaignProgress:
             sys.stderr.write(f"{text}\n")
             sys.stderr.flush()
         else:
-            self._bar.console.print(text, markup=False, highlight=False, soft_wrap=True)
+            self._bar.console.print(text, markup=False, highlight=False)
 
 
 @contextmanager
@@ -101,7 +128,7 @@ def campaign_progress(output: CommandOutput) -> Iterator[CampaignProgress]:
         yield CampaignProgress(is_quiet=not output.is_text)
         return
     columns = (
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
+        TextColumn("{task.description}"), BarColumn(), _Count(), TimeElapsedColumn(),
     )  # fmt: skip
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         yield CampaignProgress(bar)

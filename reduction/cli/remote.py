@@ -150,9 +150,12 @@ def report_folder(reports: str, *, allow_remote: bool, output: CommandOutput) ->
     if not allowed(reports, allow_remote, what="--reports"):
         yield Path(reports)
         return
+    # what draws is not needed to read
+    from reduction.report.page import is_page_beside
+
     with scratch_folder() as folder, renamed(output.names):
         output.names[str(folder)] = shown_address(reports).rstrip("/")
-        with put_at_end(reports, folder):
+        with put_at_end(reports, folder, beside=is_page_beside):
             yield folder
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import sys
 import time
 from collections.abc import Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
@@ -20,7 +22,8 @@ from reduction.batch.run import run_campaign as run_tests
 from reduction.batch.status import TestStatus
 from reduction.campaign.plan import Campaign
 from reduction.cli.commandoutput import CommandOutput
-from reduction.cli.designvalues import refresh_design_page
+from reduction.cli.designvalues import address_of_design_page, refresh_design_page
+from reduction.cli.processed import processed_folders
 from reduction.cli.progress import campaign_progress
 from reduction.cli.remote import product_folders
 from reduction.cli.workers import chosen_executor
@@ -35,13 +38,17 @@ __all__ = ["check_campaign", "report_again", "run_campaign"]
 
 def _status_table(tests: Sequence[TestStatus]) -> Table:
     rows = []
+    # on one screen the errors stand right below the table
+    is_below = sys.stdout.isatty() and sys.stderr.isatty()
     for test in tests:
         message = escape(test.message)  # text from files of strangers: no markup is read in it
+        if is_below and test.exit_status:
+            message = "see below"
         rate = test.found.get("rate", {}).get("value")
         rows.append(
             {
                 "test": test.test,
-                "status": test.status,
+                "status": "checked" if test.status == "no_work" else test.status,
                 "rows": str(test.n_rows),
                 "rate [Hz]": "" if rate is None else f"{rate:.4g}",
                 "gaps": str(test.found.get("gaps", "")),
@@ -148,7 +155,7 @@ def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: Comman
     for test in statuses:
         for channel, masks in test.found.get("flags", {}).items():
             listed = ", ".join(f"{name} {count}" for name, count in masks.items())
-            output.say(f"  {test.test} {channel}: {listed}")
+            output.say(f"  {test.test}: {channel}: samples flagged: {listed}")
         for note in test.found.get("notes", ()):
             output.say(f"  {test.test}: {note}")
     lines = _model_lines(models, statuses, units)
@@ -212,6 +219,7 @@ def run_campaign(
             # paths, jobs and choices of tests are left out, so that equal inputs give equal bytes
             command="reduction run campaign.toml",
             units=cast("UnitSystem", output.units),
+            values_page=address_of_design_page(processed_here, reports_here, output),
             executor=executor,
             progress=progress,
         )
@@ -230,7 +238,8 @@ def run_campaign(
         output.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
     output.say(f"products: {result.processed}")
     if result.tables:
-        output.say(f"tables:   {', '.join(path.name for path in result.tables)}")
+        number, folder = len(result.tables) - 1, result.tables[0].parent
+        output.say(f"tables:   {folder}: {number} tables, and columns.csv, which explains them")
     document: dict[str, Any] = {
         "campaign": campaign.id,
         "tests": [test.document() for test in result.tests],
@@ -243,10 +252,14 @@ def run_campaign(
         "report": None if result.report is None else str(result.report),
         "client_report": None if client is None else str(client),
     }
-    if result.report is not None:
+    if result.report is None:
+        output.say("report:   none; nothing was made that could be shown")
+    else:
         output.say(f"report:   {result.report}")
     _say_client_report(client, output)
-    document["design_values"] = refresh_design_page(processed_here, reports_here, output)
+    document["design_values"] = refresh_design_page(
+        processed_here, reports_here, output, made=campaign.id
+    )
     output.answer(document)
     _report_failures(output, result.tests, result.parts)
 
@@ -255,19 +268,14 @@ def report_again(
     processed: Path, *, reports: Path, is_printed: bool = False, output: CommandOutput
 ) -> None:
     """Make the reports of one campaign, or of all below a folder, from archives alone."""
-    folders = [processed] if any(processed.glob("*.nc")) else sorted(processed.glob("*/"))
-    folders = [folder for folder in folders if any(folder.glob("*.nc"))]
-    if not folders:
-        raise ArchiveError(
-            f"{processed}: no archive was found",
-            needed="a folder processed/CAMPAIGN with *.nc in it",
-            hint="`reduction run CAMPAIGN.toml` makes one.",
-        )
+    folders = processed_folders(processed)
     written: dict[str, list[str]] = {"reports": [], "client_reports": [], "pdfs": []}
     for folder in folders:
         page = write_report(
-            folder, reports / folder.resolve().name, units=cast("UnitSystem", output.units)
-        )
+            folder, reports / folder.resolve().name, units=cast("UnitSystem", output.units),
+            values_page=address_of_design_page(processed, reports, output),
+            unreadable=partial(_say_unreadable, output, folder),
+        )  # fmt: skip
         output.say(f"report: {page}")
         written["reports"].append(str(page))
         client = _client_report(page)
@@ -284,6 +292,11 @@ def report_again(
         )  # fmt: skip
     root = processed.resolve().parent if folders == [processed] else processed
     output.answer(written | {"design_values": refresh_design_page(root, reports, output)})
+
+
+def _say_unreadable(output: CommandOutput, folder: Path, name: str, why: str) -> None:
+    output.error(f"{folder / name} is not in the report: {why}")
+    output.raise_status(ArchiveError.exit_status)
 
 
 def _client_report(page: Path) -> Path | None:

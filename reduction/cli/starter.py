@@ -8,6 +8,7 @@ from reduction.cli.commandoutput import CommandOutput
 from reduction.errors import SettingsError
 from reduction.ingest.sniff import sniff_layout
 from reduction.ingest.starter import starter_campaign
+from reduction.visible import toml_comment
 
 __all__ = ["print_layout", "start_campaign"]
 
@@ -15,9 +16,10 @@ __all__ = ["print_layout", "start_campaign"]
 def print_layout(file: Path, output: CommandOutput) -> None:
     """Print a proposed layout in TOML, and what in it is a guess."""
     sniffed = sniff_layout(file)
-    output.say(sniffed.toml)
+    output.say(sniffed.toml, is_verbatim=True)
     for remark in sniffed.remarks:
-        output.say(f"# {remark}")
+        output.say(f"# {toml_comment(remark)}", is_verbatim=True)
+    output.say("# `reduction init FOLDER` writes it into a campaign.toml beside the logs")
     output.answer({"layout": sniffed.toml, "remarks": list(sniffed.remarks)})
 
 
@@ -38,4 +40,5 @@ def start_campaign(folder: Path, output: CommandOutput) -> None:
         with (folder / name).open("x", encoding="utf-8", newline="") as file:
             file.write(text)
         output.say(f"wrote {folder / name}")
+    output.say(f"next: replace every ? in them, then: reduction check {folder / 'campaign.toml'}")
     output.answer({"written": [str(folder / name) for name in texts]})

@@ -74,7 +74,7 @@ def _show(found: PredictedWaveLoad, output: CommandOutput, system: UnitSystem) -
     regime = found.regime
     output.say(
         f"Keulegan-Carpenter {float(regime.keulegan_carpenter_number):.3g}, "
-        f"Reynolds {float(regime.reynolds_number):.3g}, "
+        f"Reynolds {short(float(regime.reynolds_number), 3)}, "
         f"drag over inertia {float(regime.drag_to_inertia):.3g}"
     )
     table = table_of(
@@ -95,10 +95,10 @@ def _show(found: PredictedWaveLoad, output: CommandOutput, system: UnitSystem) -
     output.show(table)
     anchor = found.anchor
     output.say(
-        f"anchor force: {per_newton * float(anchor.combined):.5g} {force} combined; "
-        f"{per_newton * float(anchor.separate):.5g} {force} as the sum of wave "
-        f"{per_newton * float(anchor.wave):.4g}, current {per_newton * float(anchor.current):.4g} "
-        f"and wind {per_newton * float(anchor.wind):.4g}"
+        f"anchor force: {short(per_newton * float(anchor.combined))} {force} combined; "
+        f"{short(per_newton * float(anchor.separate))} {force} as the sum of wave "
+        f"{short(per_newton * float(anchor.wave), 4)}, current "
+        f"{per_newton * float(anchor.current):.4g} and wind {per_newton * float(anchor.wind):.4g}"
     )
     for note in found.notes:
         output.say(f"note: {note}")

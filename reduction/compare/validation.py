@@ -55,16 +55,22 @@ class _Errors:
 
     def covariance(self) -> Floats:
         n_draws = max(self.inputs.shape[0], 1)
-        by_inputs = self.inputs.T @ self.inputs / n_draws
-        return np.asarray(by_inputs + self.shared.T @ self.shared + np.diag(self.own**2))
+        by_inputs = _product(self.inputs.T, self.inputs) / n_draws
+        by_shared = _product(self.shared.T, self.shared)
+        return np.asarray(by_inputs + by_shared + np.diag(self.own**2))
 
     def draw(self) -> Floats:
         """What E may be if the prediction is right, shape (n_draws, n)."""
         n_draws = self.inputs.shape[0] or N_DRAWS
         normal = np.random.default_rng(_SEED).standard_normal
-        errors = normal((n_draws, self.shared.shape[0])) @ self.shared
+        errors = _product(normal((n_draws, self.shared.shape[0])), self.shared)
         errors += normal((n_draws, self.own.size)) * self.own
         return np.asarray(errors - self.inputs if self.inputs.size else errors)
+
+
+def _product(one: Floats, other: Floats) -> Floats:
+    """Matrix product whose sums are in one order: that of a library depends on its threads."""
+    return np.asarray(np.einsum("ik,kj->ij", one, other, optimize=False))
 
 
 class _Judged(NamedTuple):
@@ -90,7 +96,7 @@ def _judge(error: Floats, errors: _Errors) -> _Judged:
     kept = size > _RANK * size[-1] * size.size
     along = axes.T @ z
     square = float(np.sum(along[kept] ** 2 / size[kept]))
-    of_draws = np.sum((draws @ axes[:, kept]) ** 2 / size[kept], axis=1)
+    of_draws = np.sum(_product(draws, axes[:, kept]) ** 2 / size[kept], axis=1)
     whole = float(z @ z)
     place = int(np.argmax(np.abs(z)))
     return _Judged(

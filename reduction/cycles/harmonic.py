@@ -23,6 +23,7 @@ from reduction.errors import DataError
 from reduction.record import Floats, Integers, freeze_arrays
 
 _AROUND = 10  # cycles on either side whose durations make the period of one
+_LEAST_DETERMINANT = 1e-9  # of the normal equations; 2 where samples are many and even
 
 __all__ = ["CycleBasis", "cycle_basis", "fundamental", "mean_period", "phase_turns"]
 
@@ -77,7 +78,7 @@ def cycle_basis(
     Raises
     ------
     DataError
-        If a cycle takes no time.
+        If a cycle takes no time, or its samples have fewer than three phases.
 
     Examples
     --------
@@ -125,6 +126,16 @@ def cycle_basis(
             products, first - begin, last - begin
         ) + at_end * np.cos(end_phase)
     gram[:, 2, 2] = gram[:, 0, 0] - gram[:, 1, 1]
+    is_flat = ~(np.linalg.det(gram) > _LEAST_DETERMINANT)
+    if is_flat.any():
+        bad = int(np.flatnonzero(is_flat)[0])
+        raise DataError(
+            f"the samples of cycle {bad + 1} stand too close in time to have a fundamental",
+            found=f"{last[bad] - first[bad] + 1} samples from {time[first[bad]]:g} s to "
+            f"{time[last[bad]]:g} s",
+            needed="samples that are spread over the cycle",
+            hint="Check the time channel.",
+        )
     return CycleBasis(
         share,
         cosine,

@@ -66,7 +66,8 @@ def quantities_of_cycles(
 
     Notes
     -----
-    Source: [1]_, eq. 1 and 4, freed of drift.
+    Source: [1]_, eq. 1 and 4, freed of drift.  Where the drift is more than the range of the
+    cycle, what it is taken off is NaN.
 
     Examples
     --------
@@ -94,6 +95,9 @@ def quantities_of_cycles(
         mean_drift(np.stack([row[f"{name}_{part}"] for part in ("rise", "turn", "fall")]), ends)
         for name in ("force", "strain")
     )
+    # drift of more than the range is that of a jump among the neighbours: no steady cycle is left
+    force_drift[np.abs(force_drift) > peak - valley] = np.nan
+    strain_drift[np.abs(strain_drift) > row["high"] - row["low"]] = np.nan
     force_sin = row["force_sine"] + force_drift / np.pi
     strain_sin = row["strain_sine"] + strain_drift / np.pi
     if waveform == "sinusoidal":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from hashlib import sha256
+from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import Any
 
@@ -37,8 +37,8 @@ class CampaignLines:
     name : str
         Of its folder.
     files : dict of str to dict
-        By the name of the archive without its end: ``state``, by which a change is seen, and
-        ``lines``, none where there is nothing to look up.
+        By the name of the archive without its end: ``state``, a digest of its bytes by which a
+        change is seen, and ``lines``, none where there is nothing to look up.
     faults : dict of str to str
         Archives that cannot be read, with the reason.
     left_out : int
@@ -110,6 +110,7 @@ class _Reading:
         self.paths = archives_of_lines(folder)
         self._stamps = {path: _stamp(path) for path in self.paths}
         self.changed = max(int(stamp.split()[0]) for stamp in self._stamps.values())
+        self._digests: dict[Path, str] = {}
         self._name, self._known = folder.name, known
         self._files: dict[Path, dict[str, Any]] = {}
         self._faults: dict[str, str] = {}
@@ -118,8 +119,8 @@ class _Reading:
     def read(self, path: Path) -> int:
         """Read an archive, or take it from what is known; the room that it takes. [bytes]."""
         # surfaces have what the tests beside them say of their specimens
-        own = " ".join(self._stamps.values()) if path.stem == _SURFACES else self._stamps[path]
-        state = sha256(own.encode()).hexdigest()
+        rests_on = self.paths if path.stem == _SURFACES else (path,)
+        state = sha256(" ".join(map(self._digest, rests_on)).encode()).hexdigest()
         before = self._known.get(path.stem)
         if before is not None and before["state"] == state:
             self._files[path] = dict(before)
@@ -131,6 +132,16 @@ class _Reading:
                 self._faults[path.name] = text.replace(str(path), path.name)
                 return 0
         return len(json_text(self._files[path]))
+
+    def _digest(self, path: Path) -> str:
+        """Of all bytes: by times and numbers of files the page would not be the same elsewhere."""
+        if path not in self._digests:
+            try:
+                with path.open("rb") as file:
+                    self._digests[path] = file_digest(file, "sha256").hexdigest()
+            except OSError:
+                self._digests[path] = ""
+        return self._digests[path]
 
     def leave(self, path: Path) -> int:
         """Leave an archive out; it takes no room."""
@@ -146,9 +157,12 @@ class _Reading:
 
 
 def _folders(processed: Path) -> list[Path]:
-    return sorted(
-        one for one in processed.glob("*/") if (one / _STATUS).is_file() and archives_of_lines(one)
-    )
+    try:
+        # a folder that may not be read is no empty one, as `Path.glob` has it
+        found = sorted(processed.iterdir())
+    except FileNotFoundError:
+        return []
+    return [one for one in found if (one / _STATUS).is_file() and archives_of_lines(one)]
 
 
 def _stamp(path: Path) -> str:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, cast, get_args
+from urllib.parse import quote
 
 from jinja2 import Environment, StrictUndefined
 
@@ -28,6 +29,7 @@ __all__ = ["MOST_BYTES", "PAGE_NAME", "render_design_page", "write_design_page"]
 PAGE_NAME = "design-values.html"
 MOST_BYTES = 2_500_000
 """Of the lines of campaigns on one page; of the rest it says how many archives there are."""
+_REPORT = "index.html"
 _FORMAT = 1
 """Of what one page keeps for the next."""
 _TIMES = 3
@@ -56,7 +58,9 @@ _GIVEN: dict[Dimension, tuple[str, ...]] = {
 }
 
 
-def write_design_page(processed: Path, reports: Path) -> Path:
+def write_design_page(
+    processed: Path, reports: Path, *, unreadable: Callable[[Path, str], None] | None = None
+) -> Path:
     """Write the page of a folder of products, or write it again.
 
     Parameters
@@ -65,6 +69,9 @@ def write_design_page(processed: Path, reports: Path) -> Path:
         Folder in which campaigns have theirs; an archive that cannot be read is named on the page.
     reports : pathlib.Path
         Folder of the page; one that is there is replaced in one piece.
+    unreadable : callable, optional
+        Told each archive that cannot be read, and why, before the page is written, which says
+        it too.
 
     Returns
     -------
@@ -81,7 +88,11 @@ def write_design_page(processed: Path, reports: Path) -> Path:
     for _ in range(_TIMES):
         state = state_of(processed)
         campaigns = read_campaigns(processed, known, room=MOST_BYTES)
-        write_whole(path, render_design_page(campaigns))
+        if unreadable is not None:
+            for one in campaigns:
+                for name, why in one.faults.items():
+                    unreadable(processed / one.name / name, why)
+        write_whole(path, render_design_page(campaigns, _reports_beside(reports, campaigns)))
         if state_of(processed) == state:
             break
         # another run ended meanwhile, and the page that it wrote may just have been replaced
@@ -89,13 +100,17 @@ def write_design_page(processed: Path, reports: Path) -> Path:
     return path
 
 
-def render_design_page(campaigns: Sequence[CampaignLines] = ()) -> str:
+def render_design_page(
+    campaigns: Sequence[CampaignLines] = (), reports: Mapping[str, str] | None = None
+) -> str:
     """Return the page as HTML that opens from disk.
 
     Parameters
     ----------
     campaigns : sequence of CampaignLines
         Beside the published lines.
+    reports : mapping of str to str, optional
+        Address of the report of a campaign, from this page, by the name of the campaign.
 
     Returns
     -------
@@ -115,6 +130,7 @@ def render_design_page(campaigns: Sequence[CampaignLines] = ()) -> str:
         "faults": [
             [one.name, name, text] for one in campaigns for name, text in one.faults.items()
         ],
+        "reports": dict(reports or {}),
         "left_out": [[one.name, one.left_out] for one in campaigns if one.left_out],
     }  # fmt: skip
     return page.render(
@@ -122,6 +138,15 @@ def render_design_page(campaigns: Sequence[CampaignLines] = ()) -> str:
         script="\n".join((room / "static" / name).read_text("utf-8") for name in _SCRIPTS),
         data=json_text(data),
     )
+
+
+def _reports_beside(reports: Path, campaigns: Sequence[CampaignLines]) -> dict[str, str]:
+    """Address of each campaign's report that is there, as a link takes it."""
+    return {
+        one.name: f"{quote(one.name)}/{_REPORT}"
+        for one in campaigns
+        if (reports / one.name / _REPORT).is_file()
+    }
 
 
 def _constants() -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from reduction.digits import plain_number
 from reduction.export.abaqus import ABAQUS_POINTS
 from reduction.export.moordyn import MOST_POINTS
 from reduction.export.orcaflex import ORCAFLEX_POINTS
@@ -56,6 +57,7 @@ def closeness_of(line: ExportLine, to: str, form: str | None) -> tuple[str, ...]
     )
     doubt = "DOUBTFUL: " if found.local > _CLOSE else ""
     return (
-        f"{doubt}the written curve is off by up to {found.error:.3g} N, {found.share:.2e} of the "
+        f"{doubt}the written curve is off by up to {plain_number(found.error, 3)} N, "
+        f"{found.share:.2e} of the "
         f"greatest tension; {local_words(found)}",
     )

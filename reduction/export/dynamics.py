@@ -15,6 +15,7 @@ from typing import Literal
 
 import numpy as np
 
+from reduction.digits import plain_number
 from reduction.errors import SettingsError
 from reduction.line.model import apparent_spring_constant, hysteresis_energy
 from reduction.record import Floats, freeze_arrays
@@ -65,7 +66,7 @@ class Viscoelasticity:
         if not all(map(math.isfinite, (*numbers, slope))) or min(*numbers, slope) < 0:
             raise SettingsError(
                 "stiffness and damping of a line are not numbers of at least zero",
-                found=", ".join(f"{value:g}" for value in (*numbers, slope)),
+                found=", ".join(plain_number(value, 6) for value in (*numbers, slope)),
             )
         if slope and not self.mean_tension >= 0:
             raise SettingsError(
@@ -75,7 +76,8 @@ class Viscoelasticity:
         if not self.fast_stiffness > self.static_stiffness > 0:
             raise SettingsError(
                 "the dynamic stiffness is not above the static one",
-                found=f"{self.fast_stiffness:g} N and {self.static_stiffness:g} N",
+                found=f"{plain_number(self.fast_stiffness, 6)} N and "
+                f"{plain_number(self.static_stiffness, 6)} N",
                 needed="a static stiffness above zero and a dynamic one above that",
             )
 
@@ -228,7 +230,8 @@ class Syrope:
             raise SettingsError(
                 "the working curve is stiffer than the dynamic stiffness: its slow part would "
                 "shrink as the tension grows",
-                found=f"{slope[first]:.5g} N at {load[first]:.5g} N, dynamic {fast[first]:.5g} N",
+                found=f"{plain_number(slope[first])} N at {plain_number(load[first])} N, "
+                f"dynamic {plain_number(fast[first])} N",
                 needed="a smaller k1, or a less bent form",
             )
 

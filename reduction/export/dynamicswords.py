@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from reduction.digits import plain_number
 from reduction.export.dynamics import Viscoelasticity
 from reduction.line.product import REASONS, LineParameters
 from reduction.lookup.product import DesignValues
@@ -25,10 +26,11 @@ def said_identified(
     """
     spring = part.fast_stiffness - part.static_stiffness
     return (
-        f"K_1 {spring:.5g} N and tau {part.relaxation_time:.4g} s are identified from the surfaces "
+        f"K_1 {plain_number(spring)} N and tau {plain_number(part.relaxation_time, 4)} s "
+        f"are identified from the surfaces "
         f"of K_ap and H and from K_0 at these levels: the exported line gives back K_ap "
-        f"{part.apparent_stiffness:.5g} N and H "
-        f"{part.hysteresis_energy_at(part.frequency, amplitude):.4g} J/m there"
+        f"{plain_number(part.apparent_stiffness)} N and H "
+        f"{plain_number(part.hysteresis_energy_at(part.frequency, amplitude), 4)} J/m there"
         + _said_known(half, is_exact=is_exact)
     )
 
@@ -41,7 +43,10 @@ def _said_known(half: Mapping[str, Floats], *, is_exact: bool) -> str:
     if not (math.isfinite(spring) and math.isfinite(time)):
         return "; K_ap or H has no interval, and so have K_1 and tau none"
     without = ", K_0 taken as exact: it has no interval" if is_exact else ""
-    return f"; 95 percent of K_1 +-{spring:.3g} N, of tau +-{time:.3g} s{without}"
+    return (
+        f"; 95 percent of K_1 +-{plain_number(spring, 3)} N, of tau "
+        f"+-{plain_number(time, 3)} s{without}"
+    )
 
 
 def said_printed(
@@ -55,7 +60,10 @@ def said_printed(
     if not printed:
         return "the source has no surfaces of K_1 and tau that can be used"
     spring, time = (float(one.value) for one in printed.values())
-    said = f"the printed surfaces of K_1 and tau, {spring:.5g} N and {time:.4g} s, are not used"
+    said = (
+        f"the printed surfaces of K_1 and tau, {plain_number(spring)} N and "
+        f"{plain_number(time, 4)} s, are not used"
+    )
     if not (spring > 0 and time > 0):
         return f"{said}: they are not above zero"
     part = Viscoelasticity(rest, rest + spring, spring * time, frequency=frequency)
@@ -68,7 +76,8 @@ def said_instead(
     """That the printed K_1 and tau stand, and how far off they are."""
     spring = part.fast_stiffness - part.static_stiffness
     return (
-        f"DOUBTFUL: K_1 {spring:.5g} N and tau {part.relaxation_time:.4g} s are those of the "
+        f"DOUBTFUL: K_1 {plain_number(spring)} N and tau "
+        f"{plain_number(part.relaxation_time, 4)} s are those of the "
         f"printed surfaces; none give back K_ap and H there: {REASONS[reason]}. They give "
         f"{_against(part, measured, amplitude)}"
     )
@@ -82,7 +91,9 @@ def _against(part: Viscoelasticity, measured: Mapping[str, DesignValues], amplit
     ):
         own = float(found.value)
         share = f", {100 * (value / own - 1):+.1f} percent" if own > 0 else ""
-        parts.append(f"{name} {value:.5g} {unit} where the line has {own:.5g}{share}")
+        parts.append(
+            f"{name} {plain_number(value)} {unit} where the line has {plain_number(own)}{share}"
+        )
     return "; ".join(parts)
 
 
@@ -102,8 +113,8 @@ def doubts_of_identified(
     time = float(line.relaxation_time)
     if half >= time:
         said.append(
-            f"DOUBTFUL: the dashpot is hardly known: tau {time:.4g} s with a 95 percent interval "
-            f"of +-{half:.3g} s, from those of K_ap, H and K_0"
+            f"DOUBTFUL: the dashpot is hardly known: tau {plain_number(time, 4)} s with a 95 "
+            f"percent interval of +-{plain_number(half, 3)} s, from those of K_ap, H and K_0"
         )
     return said
 
@@ -128,7 +139,10 @@ def said_over_frequency(part: Viscoelasticity, frequencies: Floats, found: Desig
         inside = float(found.surface_low[row]) <= model <= float(found.surface_high[row])
         outside = "" if inside or math.isnan(found.surface_low[row]) else ", OUTSIDE its interval"
         share = f" ({100 * (model / own - 1):+.1f} percent{outside})" if own > 0 else ""
-        rows.append(f"{frequency:.3g} Hz {model:.5g} against {own:.5g} N{share}")
+        rows.append(
+            f"{plain_number(frequency, 3)} Hz {plain_number(model)} against "
+            f"{plain_number(own)} N{share}"
+        )
     return (
         "one K_1 and tau do not hold at every frequency; K_ap of the exported line against the "
         f"surface at this mean tension and amplitude: {', '.join(rows)}"
@@ -139,7 +153,10 @@ def interval_of(found: DesignValues) -> str:
     """The 95 % interval of one surface, in words."""
     if not math.isfinite(float(found.surface_low)):
         return "an interval, which the source does not have"
-    return f"{float(found.surface_low):.4g} to {float(found.surface_high):.4g} {found.unit}"
+    return (
+        f"{plain_number(float(found.surface_low), 4)} to "
+        f"{plain_number(float(found.surface_high), 4)} {found.unit}"
+    )
 
 
 def said_of_value(found: DesignValues) -> str:
@@ -147,7 +164,7 @@ def said_of_value(found: DesignValues) -> str:
     known = math.isfinite(float(found.surface_high))
     is_vague = known and float(found.surface_low) < 0
     return (
-        f"{found.source}: {found.quantity} {float(found.value):.6g} {found.unit}, "
+        f"{found.source}: {found.quantity} {plain_number(float(found.value), 6)} {found.unit}, "
         + (f"95 percent of the surface {interval_of(found)}" if known else "no interval known")
         + (": its lower end is below zero: not told from zero" if is_vague else "")
         + (f", errata {', '.join(found.errata)}" if found.errata else "")

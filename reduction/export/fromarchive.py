@@ -19,6 +19,7 @@ import xarray as xr
 from reduction.archive.open import open_archive
 from reduction.archive.pieceparts import parts_of
 from reduction.archive.stored import stored
+from reduction.digits import plain_number
 from reduction.errors import DataError, SettingsError
 from reduction.export.product import ExportLine
 from reduction.export.spread import CurveSpread
@@ -207,7 +208,9 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
     ]
     if curve == "mean":
         gap = np.nanmax(np.abs(np.diff(by_branch[[branches.index(b) for b in _BRANCHES]], axis=0)))
-        notes.append(f"the branches are up to {gap:.4g} N apart; the loop is not in this curve")
+        notes.append(
+            f"the branches are up to {plain_number(gap, 4)} N apart; the loop is not in this curve"
+        )
     if np.flatnonzero(known).size <= np.ptp(np.flatnonzero(known)):
         notes.append("strain bins without a mean lie within the curve: a straight line joins them")
     strain, tension = strain[known], tension[known]
@@ -257,7 +260,7 @@ def _rising(strain: Floats, tension: Floats) -> dict[str, Floats]:
         first = int(np.argmax(level - tension))
         raise DataError(
             "the curve falls as the strain rises, and one curve of a mooring code cannot",
-            found=f"by {fall:.4g} N at strain {strain[first]:.4g}",
+            found=f"by {plain_number(fall, 4)} N at strain {plain_number(strain[first], 4)}",
             needed=f"a fall of at most {_STEP_BACK:g} of the greatest tension",
         )
     return {"strain": np.array(strain), "tension": np.array(level)}

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from reduction.digits import plain_number
 from reduction.export.product import ExportLine
 from reduction.export.spread import CurveSpread
 from reduction.export.table import TableColumn, ValueTable, spread_columns
@@ -150,7 +151,10 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
     first = int(np.argmax(curve.piece >= 0))
     n_tests = len(set(curve.piece_names))
     tests = f"{n_tests} tests" if n_tests > 1 else "1 test"
-    joins = [f"{low:.4g} to {high:.4g}" for low, high in ranges_of(curve, curve.is_join)]
+    joins = [
+        f"{plain_number(low, 4)} to {plain_number(high, 4)}"
+        for low, high in ranges_of(curve, curve.is_join)
+    ]
     fields = {
         "diameter": source.diameter,
         "rated_break_strength": source.rated_break_strength,

@@ -15,6 +15,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from reduction.digits import plain_number
 from reduction.errors import DataError, SettingsError
 from reduction.export.linedynamics import line_dynamics
 from reduction.export.product import ExportLine
@@ -137,8 +138,9 @@ def _strength(source: LineSource) -> tuple[float, str]:
     # NaN where the line is new: then the rated one stands
     if left < source.rated_break_strength:
         return left, (
-            f"break strength {left:.5g} N: what the line has in its condition; new it was rated "
-            f"{source.rated_break_strength:.5g} N"
+            f"break strength {plain_number(left)} N: what the line has in its condition; "
+            f"new it was rated "
+            f"{plain_number(source.rated_break_strength)} N"
         )
     return source.rated_break_strength, ""
 
@@ -201,19 +203,22 @@ def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[
         if not curve.coefficient.size or tension[first] < _MOST_CUT * top:
             raise DataError(
                 f"the curve of {source.name} does not rise throughout what was tested",
-                found=f"strain {strain[first]:.4g} to {strain[first + 1]:.4g}, tension "
-                f"{tension[first]:.5g} to {tension[first + 1]:.5g} N",
+                found=f"strain {plain_number(strain[first], 4)} to "
+                f"{plain_number(strain[first + 1], 4)}, tension "
+                f"{plain_number(tension[first])} to {plain_number(tension[first + 1])} N",
                 needed="one that rises",
             )
         strain, tension = strain[: first + 1], tension[: first + 1]
         notes.append(
-            f"ends at {tension[-1]:.5g} N, where the polynomial turns back; the source gives it up "
-            f"to {top:.5g} N"
+            f"ends at {plain_number(tension[-1])} N, where the polynomial turns back; the "
+            f"source gives it up "
+            f"to {plain_number(top)} N"
         )
     below = (strain < 0) | ((strain == 0) & (tension > 0))
     if below.any() and tension[below][-1] < _LEAST_CUT * tension[-1]:
         notes.append(
-            f"the polynomial has strain below zero up to {tension[below][-1]:.4g} N, by the "
+            f"the polynomial has strain below zero up to "
+            f"{plain_number(tension[below][-1], 4)} N, by the "
             "constant of its fit; that part is left out"
         )
         strain, tension = strain[~below], tension[~below]
@@ -237,7 +242,8 @@ def _without_constant(strain: Floats, tension: Floats) -> tuple[Floats, Floats, 
     said = (
         f"{doubt}the regression has strain {constant:.4g} at no tension, a constant of its fit and "
         f"no slack that was measured: in its place a straight line from 0 0 joins it at strain "
-        f"{strain[first]:.4g} and {tension[first]:.4g} N; as slack it would be "
+        f"{plain_number(strain[first], 4)} and {plain_number(tension[first], 4)} N; as "
+        f"slack it would be "
         f"{100 * constant:.2g} m in 100 m of line"
     )
     return strain[first:], tension[first:], said

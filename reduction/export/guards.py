@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from reduction.digits import plain_number
 from reduction.export.product import SEA_WATER, ExportLine
 
 __all__ = ["guards_of", "range_of"]
@@ -39,7 +40,7 @@ def range_of(line: ExportLine) -> str:
     low, high = line.tested
     if not low == low:
         return "nothing was tested"
-    words = f"tested from strain {low:.6g} to {high:.6g}"
+    words = f"tested from strain {plain_number(low, 6)} to {plain_number(high, 6)}"
     if low > _SAME * high:
         words += (
             f"; the start, a line from 0 0 up to strain {low:.6g}, was NOT measured on this curve"

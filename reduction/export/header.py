@@ -6,6 +6,7 @@ import re
 import textwrap
 
 from reduction import __version__
+from reduction.digits import plain_number
 from reduction.export.guards import guards_of, range_of
 from reduction.export.product import ExportLine
 from reduction.export.thin import ThinnedCurve, local_words
@@ -56,10 +57,12 @@ def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) ->
         told += [
             f"Curve: {line.curve}",
             f"Holds as {range_of(line)}. The curve ends at strain {curve.strain[-1]:.6g} and "
-            f"tension {curve.tension[-1]:.6g} N; beyond it nothing is known; some codes keep the "
+            f"tension {plain_number(curve.tension[-1], 6)} N; beyond it nothing is known; "
+            f"some codes keep the "
             "last tension there",
             f"{curve.strain.size} points of {line.strain.size}; greatest error "
-            f"{curve.error:.3g} N, {curve.share:.2e} of the greatest tension; {local_words(curve)}",
+            f"{plain_number(curve.error, 3)} N, {curve.share:.2e} of the greatest "
+            f"tension; {local_words(curve)}",
         ]
         if curve.words:
             told.append(f"At the start: {curve.words}")

@@ -20,6 +20,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from reduction.digits import plain_number
 from reduction.errors import DataError, SettingsError
 from reduction.export.dynamics import Viscoelasticity
 from reduction.export.dynamicswords import (
@@ -156,7 +157,9 @@ def line_dynamics(
 def _part(
     rest: DesignValues, spring: float, time: float, levels: Mapping[str, float]
 ) -> Viscoelasticity:
-    holds = ", ".join(f"{name.replace('_', ' ')} {value:.5g}" for name, value in levels.items())
+    holds = ", ".join(
+        f"{name.replace('_', ' ')} {plain_number(value)}" for name, value in levels.items()
+    )
     return Viscoelasticity(
         static_stiffness=float(rest.value),
         dynamic_stiffness=float(rest.value) + spring,
@@ -209,8 +212,8 @@ def _instead(
     apparent = measured[_APPARENT]
     why = f"no K_1 and tau of {source.name} give back its K_ap and H there: {REASONS[reason]}"
     numbers = (
-        f"K_0 {float(rest.value):.5g} N, K_ap {float(apparent.value):.5g} N, H "
-        f"{float(measured[_ENERGY].value):.4g} J/m"
+        f"K_0 {plain_number(float(rest.value))} N, K_ap {plain_number(float(apparent.value))} N, H "
+        f"{plain_number(float(measured[_ENERGY].value), 4)} J/m"
     )
     if not printed:
         raise DataError(why, found=numbers, needed="other levels")
@@ -218,7 +221,7 @@ def _instead(
     if not (spring > 0 and time > 0):
         raise DataError(
             f"{why}; and the printed ones are not above zero",
-            found=f"K_1 {spring:.4g} N, tau {time:.4g} s; {numbers}",
+            found=f"K_1 {plain_number(spring, 4)} N, tau {plain_number(time, 4)} s; {numbers}",
             needed="other levels",
         )
     part = _part(rest, spring, time, levels)
@@ -226,7 +229,7 @@ def _instead(
     if not float(apparent.surface_low) <= model <= float(apparent.surface_high):
         raise DataError(
             f"{why}; and the printed ones give another K_ap than the line has",
-            found=f"K_ap {model:.5g} N; {numbers}",
+            found=f"K_ap {plain_number(model)} N; {numbers}",
             needed=interval_of(apparent),
             hint="Another level, or the curve alone: leave the levels away.",
         )
@@ -271,7 +274,8 @@ def _growth(
     worst = float(np.abs(slope * means + start - total).max())
     words = (
         f"growth of the dynamic stiffness with the mean tension: {slope:.4g}, a straight line "
-        f"through {means.size} of {_MEANS} means over the tested ones, off by up to {worst:.3g} N, "
+        f"through {means.size} of {_MEANS} means over the tested ones, off by up to "
+        f"{plain_number(worst, 3)} N, "
         f"{100 * worst / fast:.2g} percent of EA_d"
     )
     if slope * np.ptp(means) < _ROUNDING * np.abs(total).max():

@@ -29,6 +29,7 @@ from typing import Literal
 
 import numpy as np
 
+from reduction.digits import plain_number
 from reduction.errors import SettingsError
 from reduction.export.deck import deck, line_type, segment_length
 from reduction.export.dynamics import Syrope, Viscoelasticity
@@ -52,10 +53,14 @@ _FAST_SHARE = 0.1
 def table_text(line: ExportLine, curve: ThinnedCurve) -> str:
     """Look-up table: three lines of header, rows with one blank, no line end at the end."""
     low, high = line.tested
-    where = f"tested {low:.4g} to {high:.4g}" if low == low else "nothing tested"
+    where = (
+        f"tested {plain_number(low, 4)} to {plain_number(high, 4)}"
+        if low == low
+        else "nothing tested"
+    )
     made = "SYNTHETIC; " if line.is_synthetic else ""
     first = one_line(
-        f"{line.name}; {made}{line.curve}; error {curve.error:.3g} N; {where}; "
+        f"{line.name}; {made}{line.curve}; error {plain_number(curve.error, 3)} N; {where}; "
         f"{'; '.join(line.sources)}"
     )
     rows = zip(curve.strain, curve.tension, strict=True)
@@ -169,7 +174,7 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
         else "MoorDyn takes the running tension of the slow part for "
         "the mean: about it K_ap of a cycle is 2 to 4 percent above that of static-dynamic on the "
         "published lines",
-        f"BA_d {fast:.4g} N s: {_FAST_SHARE:g} of critical for segments of {apart:g} "
+        f"BA_d {plain_number(fast, 4)} N s: {_FAST_SHARE:g} of critical for segments of {apart:g} "
         "m, numerical, not measured; without it the integration grows",
     )
     return {
@@ -186,10 +191,13 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
 def _stiffness_words(part: Viscoelasticity) -> tuple[str, ...]:
     """What the numbers of the stiffness are."""
     return (
-        f"EA_s {part.static_stiffness:.6g} N is K_0; EA_d {part.fast_stiffness:.6g} N is K_0 + "
+        f"EA_s {plain_number(part.static_stiffness, 6)} N is K_0; EA_d "
+        f"{plain_number(part.fast_stiffness, 6)} N is K_0 + "
         f"K_1; relaxation time {part.relaxation_time:.4g} s",
-        f"the dashpot beside the slow spring is {part.slow_dashpot_coefficient:.6g} N s, which "
-        f"behaves as N = K_1 tau = {part.dashpot_coefficient:.6g} N s of the Maxwell form",
+        f"the dashpot beside the slow spring is "
+        f"{plain_number(part.slow_dashpot_coefficient, 6)} N s, which "
+        f"behaves as N = K_1 tau = {plain_number(part.dashpot_coefficient, 6)} N s of the "
+        f"Maxwell form",
         f"found at {part.holds}" if part.holds else "",
         "a spring constant holds about a mean; the strain of the deck starts at zero tension",
     )

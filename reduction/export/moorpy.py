@@ -22,6 +22,7 @@ from typing import Literal
 
 import numpy as np
 
+from reduction.digits import plain_number
 from reduction.errors import SettingsError
 from reduction.export.deck import deck, line_type
 from reduction.export.header import header_lines, number, real_number
@@ -103,7 +104,7 @@ def _library(line: ExportLine) -> str:
         f"holds for the diameter {1000 * diameter:.4g} mm alone: nothing is known of others",
         f"found at {part.holds}" if part.holds else "",
         "the dynamic stiffness is K_ap at that frequency, since the library has no damping; "
-        f"K_0 + K_1, that of fast cycles, is {part.fast_stiffness:.6g} N"
+        f"K_0 + K_1, that of fast cycles, is {plain_number(part.fast_stiffness, 6)} N"
         if math.isfinite(part.frequency)
         else "",
     )

@@ -64,6 +64,8 @@ def write_netcdf(table: ValueTable, path: Path) -> None:
     try:
         with whole_file(path) as part:
             dataset.to_netcdf(part, format="NETCDF4", engine="netcdf4", encoding=encoding)
+    except ArchiveError:
+        raise
     except (OSError, RuntimeError) as error:
         raise ArchiveError(
             f"{path} cannot be written", found=getattr(error, "strerror", None) or str(error)

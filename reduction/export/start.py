@@ -13,6 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from reduction.digits import plain_number
 from reduction.lookup.product import LineSource
 from reduction.record import Floats
 
@@ -93,7 +94,8 @@ def start_against(
             doubt = "DOUBTFUL: " if abs(off[worst]) > _DOUBT else ""
             said.append(
                 f"{doubt}the straight start is off by {100 * off[worst]:+.0f} percent at strain "
-                f"{at[worst]:.4g}, where {other.name} has {measured[worst]:.4g} N; exported "
+                f"{plain_number(at[worst], 4)}, where {other.name} has "
+                f"{plain_number(measured[worst], 4)} N; exported "
                 "without the test, the tether has what each measured"
             )
     return tuple(said)

@@ -22,6 +22,7 @@ from reduction.export.thin import curve_from_zero
 from reduction.record import Bools, Floats
 from reduction.uncertainty.product import Component
 from reduction.units import UnitSystem, display_unit
+from reduction.visible import safe_cell
 
 __all__ = [
     "CONTRIBUTION",
@@ -181,10 +182,10 @@ def _csv(table: ValueTable, units: UnitSystem) -> str:
     heads, rows = _shown(table, units)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\r\n")
-    writer.writerow([*heads, "what", "source"])
+    writer.writerow(map(safe_cell, [*heads, "what", "source"]))
     said = [table.title, "; ".join(_said(table))]
     for row in rows:
-        writer.writerow([*row, *said])
+        writer.writerow(map(safe_cell, [*row, *said]))
         said = ["", ""]
     return text.getvalue()
 

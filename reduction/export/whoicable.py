@@ -21,6 +21,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
+from reduction.digits import plain_number
 from reduction.errors import SettingsError
 from reduction.export.header import header_lines, one_line, real_number
 from reduction.export.product import SEA_WATER, ExportLine
@@ -71,7 +72,8 @@ def whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> s
     powers = smooth.coefficient
     tension = _expression(smooth, powers)
     remarks = [
-        f"expressions: {smooth.start.size} cubic pieces, greatest error {smooth.error:.3g} N, "
+        f"expressions: {smooth.start.size} cubic pieces, greatest error "
+        f"{plain_number(smooth.error, 3)} N, "
         f"{smooth.share:.2e} of the greatest tension; {local_words(smooth)}; beyond strain "
         f"{smooth.end:.6g} the last piece goes on and nothing is known"
     ]

@@ -24,6 +24,7 @@ from reduction.record import Floats, freeze_arrays
 
 __all__ = ["PronyFit", "fit_prony"]
 
+_DEGENERATE = "no positive terms that can be told apart"
 GRID_TIMES = 20
 STARTS = 3
 DECISIVE = 10.0
@@ -82,14 +83,18 @@ def _starts(
     return starts
 
 
+def _is_positive(fit: SeparableFit) -> bool:
+    return bool(np.all(fit.amplitude[1:] > 0) and fit.amplitude[0] >= 0)
+
+
 def _unsupported(
     fit: SeparableFit, inflation: float, shortest: float, longest: float
 ) -> str | None:
     """Why a fit may not be reported, or None."""
     times, size = np.exp(fit.shape), fit.amplitude[1:]
     uncertainty = fit.standard_uncertainty * np.sqrt(inflation)
-    if np.any(size <= 0) or fit.amplitude[0] < 0:
-        return "a term is negative"
+    if not _is_positive(fit):
+        return _DEGENERATE
     if times.max() > LONGEST_TIME * longest:
         return f"a time of {times.max():.3g} s is too long for a hold of {longest:.3g} s"
     if times.min() < shortest:
@@ -180,13 +185,18 @@ def fit_prony(
     for n_terms in range(1, maximum_terms + 1):
         starts = _starts(time, load, weight, grid, n_terms)
         if starts.size == 0 or time.size <= 2 * n_terms + 1:
-            refused.append(f"{n_terms} terms: no set of positive terms")
+            refused.append(f"{n_terms} terms: {_DEGENERATE}")
             continue
         try:
             fits[n_terms] = fit_separable(basis, load, starts=starts, weights=weight)
-        except FitError as error:
-            refused.append(f"{n_terms} terms: {error.problem}")
-    inflation = min((lag_one_inflation(fit.residual) for fit in fits.values()), default=1.0)
+        except FitError:
+            refused.append(f"{n_terms} terms: {_DEGENERATE}")
+    # terms that cancel each other are found, or not, by the last digits of the library that
+    # searches: they are no witness of how many values are independent
+    inflation = min(
+        (lag_one_inflation(fit.residual) for fit in fits.values() if _is_positive(fit)),
+        default=1.0,
+    )
     independent = time.size / inflation
     floor = max((BLOCK_ERROR * float(np.ptp(load))) ** 2, np.finfo(float).tiny)
     scores: dict[int, float] = {}
@@ -202,7 +212,7 @@ def fit_prony(
         else:
             refused.append(f"{n_terms} terms: {reason}")
     if not supported:
-        raise FitError("no Prony series is supported", found="; ".join(refused))
+        raise FitError("no Prony series is supported", found="; ".join(sorted(refused)))
     n_terms = min(supported, key=lambda key: scores[key])
     if scores[n_terms] > min(scores.values()) + DECISIVE:
         raise FitError(
@@ -214,7 +224,7 @@ def fit_prony(
     )
     if np.exp(fits[n_terms].shape.max()) > longest:
         criterion += "; the slowest time is longer than the hold, so its term is extrapolated"
-    return _reported(fits[n_terms], ramp_duration, "; ".join([criterion, *refused]))
+    return _reported(fits[n_terms], ramp_duration, "; ".join([criterion, *sorted(refused)]))
 
 
 def _reported(fit: SeparableFit, ramp_duration: float, criterion: str) -> PronyFit:

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.digits import plain_number
 from reduction.errors import DataError
 from reduction.lookup.curve import evaluate_curve
 from reduction.lookup.product import LineSource
@@ -118,7 +119,7 @@ def cycle_loads(
         raise DataError(
             f"{int(pushed.sum())} of {pushed.size} amplitudes are above their mean tension: the "
             "line goes slack, and no surface knows of that",
-            found=f"{amplitude[first]:.4g} N about {mean[first]:.4g} N",
+            found=f"{plain_number(amplitude[first], 4)} N about {plain_number(mean[first], 4)} N",
             needed="an amplitude of at most the mean",
         )
     peak, least = mean + amplitude, np.maximum(least, 0.0)
@@ -208,7 +209,9 @@ def _one_tension(line: LineSource, given: Mapping[str, Floats], branch: str) -> 
     for name in ("tension", "mean_tension"):
         if name in given:
             if np.any(given[name] < 0):
-                raise DataError(f"{name} is negative", found=f"{given[name].min():.4g} N")
+                raise DataError(
+                    f"{name} is negative", found=f"{plain_number(given[name].min(), 4)} N"
+                )
             return given[name]
     if "strain" in given:
         for curve in line.curves:
@@ -236,7 +239,7 @@ def _refuse_slack(line: LineSource, loads: CycleLoads) -> None:
         raise DataError(
             f"{line.name} goes slack at {int(loads.is_slack.sum())} of {loads.is_slack.size} "
             "points, and a tether must not",
-            found=f"a minimum tension of zero, peak {peak:.4g} N",
+            found=f"a minimum tension of zero, peak {plain_number(peak, 4)} N",
             needed="a minimum above zero",
             hint="A slack tether tangles and is cut: more stretch, or less amplitude.",
         )

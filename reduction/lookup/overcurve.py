@@ -12,6 +12,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from reduction.digits import plain_number
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.curve import evaluate_curve
 from reduction.lookup.loads import loads_of_line
@@ -76,15 +77,15 @@ def values_of_curve(
         first = at.ravel()[np.flatnonzero(~inside.ravel())[0]]
         unit = _unit(curve.variable)
         gaps = "".join(
-            f", nothing between {low:.5g} and {high:.5g}"
+            f", nothing between {plain_number(low)} and {plain_number(high)}"
             for low, high in curve.gaps
             if low < first < high
         )
         raise DataError(
             f"{int((~inside).sum())} of {inside.size} points are outside what was tested of "
             f"{curve.quantity} of {line.name}",
-            found=f"{curve.variable} {first:.5g}{unit}",
-            needed=f"{curve.low:.5g} to {curve.high:.5g}{unit}{gaps}",
+            found=f"{curve.variable} {plain_number(first)}{unit}",
+            needed=f"{plain_number(curve.low)} to {plain_number(curve.high)}{unit}{gaps}",
             hint=". ".join(
                 part
                 for part in (
@@ -130,8 +131,9 @@ def _joints(curve: LineCurve, at: Floats) -> list[str]:
         return []
     meet = (np.diff(curve.at) == 0) & (np.diff(curve.value) != 0)
     return [
-        f"at {curve.variable} {curve.at[place]:.5g} two pieces meet: {curve.value[place]:.4g}"
-        f"{_unit(curve.quantity)} below, {curve.value[place + 1]:.4g} above"
+        f"at {curve.variable} {plain_number(curve.at[place])} two pieces meet: "
+        f"{plain_number(curve.value[place], 4)}"
+        f"{_unit(curve.quantity)} below, {plain_number(curve.value[place + 1], 4)} above"
         for place in np.flatnonzero(meet)
         if np.any(at == curve.at[place])
     ]

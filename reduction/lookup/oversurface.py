@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from reduction.digits import plain_number
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.linesurface import LineSurface
 from reduction.lookup.loads import loads_of_line
@@ -161,7 +162,10 @@ def _refuse_outside(
         rounded = surface.rounding[place] if surface.rounding.size else 0.0
         if not low - rounded <= value <= high + rounded:
             unit = quantity_of(name).unit
-            told.append(f"{name} {value:.5g} {unit}, tested {low:.5g} to {high:.5g} {unit}")
+            told.append(
+                f"{name} {plain_number(value)} {unit}, tested {plain_number(low)} to "
+                f"{plain_number(high)} {unit}"
+            )
     raise DataError(
         f"{int((~inside).sum())} of {inside.size} points are outside what was tested of "
         f"{surface.quantity} of {line.name}",

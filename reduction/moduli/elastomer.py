@@ -280,7 +280,11 @@ def fit_elastomers(
             notes.append(f"not told from zero: {', '.join(vague)}")
         stable = is_stable(law=law, parameters=parameters, strain_high=float(x[-1]))
         if not stable:
-            notes.append("not stable over its range: do not use it in a model")
+            notes.append(
+                "the fitted law is not stable: below a strain of "
+                f"{100 * float(x[-1]):.3g} % its stress falls with strain in uniaxial, biaxial "
+                "or shear deformation; do not use it in a model"
+            )
         fits.append(
             ElastomerFit(
                 specimen=specimen,

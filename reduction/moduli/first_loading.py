@@ -141,7 +141,7 @@ def _rise_of(strain: Floats, tension: Floats, is_still: Callable[[slice], Bools]
         floor = highest[1:] - band
         still = np.zeros(smooth.size, dtype=bool) if is_still is None else is_still(part)
         # comparisons with NaN are false: a missing sample rises nowhere, and breaks nothing
-        is_spike = np.abs(strain[part] - smooth) > highest[1:] - floor
+        is_spike = np.abs(strain[part] - smooth) > band
         rises = (smooth >= floor) & ~still & ~is_spike & np.isfinite(tension[part])
         breaks = np.cumsum(still | (smooth < floor))
         rising = np.flatnonzero(rises & (smooth >= rise.reached))

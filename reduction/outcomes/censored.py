@@ -97,7 +97,9 @@ def _terms(deviate: Floats, is_bound: Bools, scatter: Scatter) -> tuple[Floats, 
 def _check_maximum(response: Floats, design: Floats, is_bound: Bools) -> None:
     """Refuse what has no maximum: a coefficient, or the precision, that may grow for ever."""
     failed, columns = response[~is_bound], design[~is_bound]
-    if np.linalg.matrix_rank(columns) < design.shape[1]:
+    # numpy before 2.4 gives no rank to a matrix without rows or columns
+    rank = np.linalg.matrix_rank(columns) if columns.size else 0
+    if rank < design.shape[1]:
         raise FitError(
             "the failures leave a coefficient open",
             found=f"{failed.size} failures for {design.shape[1]} coefficients",

@@ -8,7 +8,7 @@ from reduction.pipeline.armour import PredictedArmour
 from reduction.report.figures.armour import THEORY_WORDS, moment_unit, of_layers
 from reduction.report.hoseview import DEGREES
 from reduction.report.htmltable import Cell, Table, count, make_table, number, span, words
-from reduction.report.style import Shown, shown
+from reduction.report.style import Shown, shown, with_prefix
 from reduction.units import UnitSystem
 
 __all__ = ["cable_table", "design_table", "layers_table", "use_table", "wires_table"]
@@ -95,14 +95,14 @@ def cable_table(found: PredictedArmour, units: UnitSystem) -> Table:
     held, free = found.axial_stiffness
     together = found.together
     rows = [
-        [words(force.label("tension")), number(float(together.tension[0]), force)],
+        _force_row("tension", float(together.tension[0]), force),
         [words(moment.label("torque")), number(float(together.torque[0]), moment)],
         [
             words("torque that is left over, of the layers' sizes [%]"),
             number(float(together.torque_imbalance[0]), _PERCENT, digits=3),
         ],
-        [words(force.label("axial stiffness, held from turning")), number(held, force)],
-        [words(force.label("axial stiffness, free to turn")), number(free, force)],
+        _force_row("axial stiffness, held from turning", held, force),
+        _force_row("axial stiffness, free to turn", free, force),
     ]
     remarks = ["Stiffness: force per unit strain of the cable, at rest."]
     if found.strength is None:
@@ -111,12 +111,17 @@ def cable_table(found: PredictedArmour, units: UnitSystem) -> Table:
         first = found.layer_names[found.strength.governing_layer]
         rows += [
             [words("strain at first yield [%]"), number(found.strength.strain, _PERCENT)],
-            [words(force.label("tension at first yield")), number(found.strength.tension, force)],
+            _force_row("tension at first yield", found.strength.tension, force),
         ]
         remarks.append(f"Layer {first} yields first.")
     return make_table(
         "The cable.", ("number", "value"), rows, synthetic=False, remarks=remarks
     )  # fmt: skip
+
+
+def _force_row(name: str, value: float, force: Shown) -> list[Cell]:
+    unit = with_prefix(force, value)
+    return [words(unit.label(name)), number(value, unit)]
 
 
 def use_table(found: PredictedArmour) -> Table:

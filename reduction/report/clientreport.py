@@ -208,9 +208,10 @@ def _tests(content: ClientContent) -> Table | None:
     if not (content.tests or content.statuses):
         return None
     table = test_table(content.tests, content.statuses)
-    if any(row.status == "failed" for row in content.statuses) or len(content.statuses) > len(
-        content.tests
-    ):
+    is_amiss = any(row.status == "failed" for row in content.statuses) or any(
+        view.is_of_earlier_run for view in content.tests
+    )
+    if is_amiss or len(content.statuses) > len(content.tests):
         return table
     rows = tuple(row[:-1] for row in table.rows)
     return replace(table, columns=table.columns[:-1], rows=rows)

@@ -61,6 +61,8 @@ def _row(one: Limit, view: TestView | None, rule: DecisionRule, units: UnitSyste
     try:
         if view is None:
             raise ReductionError("there is no archive of the test")
+        if view.is_of_earlier_run:
+            raise ReductionError("the archive of the test is of an earlier run")
         budget = budget_from_archive(view.data, one.quantity, one.at)
     except (ReductionError, ValueError) as error:
         unit = _unit(quantity(one.quantity).unit, units)
@@ -120,5 +122,6 @@ def _limits(one: Limit, unit: Shown) -> Cell:
 
 def _plain(value: float) -> str:
     """A limit as it was written, without the zeros behind it."""
-    text = number_text(value, 6)
-    return text.rstrip("0").rstrip(".") if "." in text else text
+    digits, mark, power = number_text(value, 6).partition("e")
+    plain = digits.rstrip("0").rstrip(".") if "." in digits else digits
+    return f"{plain}{mark}{power}"

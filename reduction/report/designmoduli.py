@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from reduction.archive.freedom import cycles_averaged
 from reduction.moduli.interpolation import curve_at
 from reduction.notes import severity_of
 from reduction.record import Floats
@@ -48,7 +49,8 @@ def design_modulus_table(tests: Sequence[TestView]) -> Table | None:
     order = all_specimens(tests)
     is_of_ropes = bool(tests) and all(view.is_rope for view in tests)
     whole = _OF_ROPE if is_of_ropes else _WHOLE
-    found = [row for view in tests for row in _rows(view, whole)]
+    by_test = [(view, list(_rows(view, whole))) for view in tests]
+    found = [row for _, rows in by_test for row in rows]
     found.sort(key=lambda row: order.index(row[0].text))
     if not found:
         return None
@@ -60,7 +62,6 @@ def design_modulus_table(tests: Sequence[TestView]) -> Table | None:
         stress.label("ascending"), stress.label("descending"),
         "cycles used [1]", "k [1]", "warnings [1]",
     )  # fmt: skip
-    own = {row[1].text for row in found}
     return make_table(
         f"{'Stiffness' if is_of_ropes else 'Modulus'} to design with: of the whole cycle, which is"
         f" amplitude of {'tension' if is_of_ropes else 'stress'} over amplitude of strain, and of"
@@ -70,9 +71,9 @@ def design_modulus_table(tests: Sequence[TestView]) -> Table | None:
         is_tall=len(found) > _MOST_ROWS,
         remarks=[
             plus_minus_of_tests(
-                factors_of(found), [view for view in tests if view.id in own], [whole, _TANGENT]
+                factors_of(found), [view for view, rows in by_test if rows], [whole, _TANGENT]
             ),
-            "Cycles used: of the whole cycle, then of the tangents where those are fewer."
+            "Cycles used: of the whole cycle, then of the tangents where those differ."
             f" {NOT_GIVEN}: a branch has no trustworthy value there, and its section says why."
             " A modulus holds for the strains of its own test: a greater amplitude or a higher"
             " mean has another.",
@@ -90,6 +91,7 @@ def _rows(view: TestView, name: str) -> Iterator[list[Cell]]:
     spread = expanded_of(view, name, whole)
     frequency = view.array_like("test_frequency", whole)
     doubts = _doubts(view)
+    averaged = np.broadcast_to(cycles_averaged(view.data, name), whole.shape)
     for place in np.flatnonzero(np.isfinite(whole)).tolist():
         tangents, counts = _tangents(view, place, float(middle[place]))
         cells = [
@@ -99,11 +101,11 @@ def _rows(view: TestView, name: str) -> Iterator[list[Cell]]:
         low, high = (float(middle[place] + side * half_range[place]) for side in (-1, 1))
         yield [
             words(view.specimens[place]),
-            words(view.id),
+            words(f"{view.id} (earlier run)" if view.is_of_earlier_run else view.id),
             span(low, high, percent, places=0),
             number(float(frequency[place]), digits=2),
             *cells,
-            Cell(_used(view.n_cycles, counts), str(view.n_cycles), is_number=True),
+            Cell(_used(int(averaged[place]), counts), str(averaged[place]), is_number=True),
             Cell(_factor_text(cells), is_number=True),
             Cell(f"{doubts}" if doubts else "none", f"{doubts}", is_number=True),
         ]

@@ -53,6 +53,11 @@ class Figure:
         return any(any(value is not None for value in trace["y"]) for trace in self.data)
 
     @property
+    def is_in_space(self) -> bool:
+        """True where it is drawn in three dimensions, which plotly does as a picture."""
+        return "scene" in self.layout
+
+    @property
     def label(self) -> str:
         """What a screen reader says."""
         names = [trace["name"] for trace in self.data if trace.get("showlegend", True)]

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, floor, isfinite, log10
 
+from reduction.digits import fixed_number, places_of
 from reduction.report.style import Shown
 
 __all__ = [
@@ -31,7 +32,6 @@ __all__ = [
 ]
 
 NOT_GIVEN = "\N{EN DASH}"
-_MOST_DECIMALS = 12
 _LEAST_LEADING = 2.0
 _LEAST_PROBABILITY = 1e-4
 _MISSING = 1e-3
@@ -133,7 +133,7 @@ def number_text(value: float, digits: int = 4) -> str:
         return "0"
     if not 1e-4 <= abs(value) < 1e9:
         return f"{value:.{digits - 1}e}"
-    return f"{value:,.{_decimals(value, digits)}f}"
+    return f"{value:,.{max(places_of(value, digits), 0)}f}"
 
 
 def measured(
@@ -172,8 +172,8 @@ def measured(
         text = f"{value * scale:.4g} ± {half:.2g}"
         return Cell(text, _exact(value), is_number=True, factors=factors)
     leading = half / 10.0 ** floor(log10(half))
-    places = _places(half, 1 if is_short and leading >= _LEAST_LEADING else 2)
-    shown = f"{_fixed(value * scale, places)} ± {_fixed(half, places)}"
+    places = places_of(half, 1 if is_short and leading >= _LEAST_LEADING else 2)
+    shown = f"{fixed_number(value * scale, places)} ± {fixed_number(half, places)}"
     return Cell(shown, _exact(value), is_number=True, factors=factors)
 
 
@@ -199,8 +199,8 @@ def with_interval(value: float, low: float, high: float, unit: Shown) -> tuple[C
     """
     if not (isfinite(low) and isfinite(high)):
         return number(value, unit), Cell(NOT_GIVEN, is_number=True)
-    places = _places((high - low) / 2 * unit.factor, 2)
-    shown, *ends = (_fixed(one * unit.factor, places) for one in (value, low, high))
+    places = places_of((high - low) / 2 * unit.factor, 2)
+    shown, *ends = (fixed_number(one * unit.factor, places) for one in (value, low, high))
     interval = Cell(" to ".join(ends), f"{_exact(low)} {_exact(high)}", is_number=True)
     return Cell(shown, _exact(value), is_number=True), interval
 
@@ -246,28 +246,19 @@ def share_text(value: float) -> str:
 
 
 def span(low: float, high: float, unit: Shown, *, places: int) -> Cell:
-    """Return a cell of a range, both ends to so many decimal places."""
+    """Return a cell of a range, both ends to so many decimal places or more: two digits of it.
+
+    Examples
+    --------
+    >>> span(0.0021, 0.0043, Shown("%", 100.0), places=0).text
+    '0.21 to 0.43'
+    """
     if not (isfinite(low) and isfinite(high)):
         return Cell(NOT_GIVEN, "", is_number=True)
     ends = (low * unit.factor, high * unit.factor)
-    text = " to ".join(_fixed(end, places) for end in ends)
+    places = max(places, places_of(ends[1] - ends[0], 2))
+    text = " to ".join(fixed_number(end, places) for end in ends)
     return Cell(text, f"{_exact(low)} {_exact(high)}", is_number=True)
-
-
-def _fixed(value: float, places: int) -> str:
-    """Return a number to so many places; what rounds to zero has no sign."""
-    return f"{round(value, places) + 0.0:,.{max(places, 0)}f}"
-
-
-def _decimals(value: float, digits: int) -> int:
-    return max(_places(value, digits), 0)
-
-
-def _places(value: float, digits: int) -> int:
-    """Return the place of the last of so many digits, below zero where it is before the point."""
-    if value == 0:
-        return 0
-    return min(digits - 1 - floor(log10(abs(value))), _MOST_DECIMALS)
 
 
 def _exact(value: float) -> str:

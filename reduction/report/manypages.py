@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from reduction.archive.whole import take_away
 from reduction.archive.write import write_whole
 from reduction.report.render import Link, Page, RenderedSection, render_page
 
-__all__ = ["MOST_BYTES", "over_pages", "write_pages"]
+__all__ = ["MOST_BYTES", "MOST_IN_ALL", "is_page_of_tests", "over_pages", "write_pages"]
 
 MOST_BYTES = 9_000_000
 """Of the sections on a page: with the program that draws (4.9 MB) it stays below 15 MB. [1]"""
+MOST_IN_ALL = 14_500_000
+"""Of a page with all that stands on it. [1]"""
 _NAME = "tests-{:02}.html"
+_OWN = re.compile(r"tests-\d{2,}\.html")
+"""Names that are given here: a page of somebody else beside them stays."""
+
+
+def is_page_of_tests(name: str) -> bool:
+    """Whether a file of this name holds sections for which the page of a campaign has no room."""
+    return _OWN.fullmatch(name) is not None
 
 
 def over_pages(
@@ -52,7 +63,11 @@ def over_pages(
 
 
 def write_pages(
-    content: Page, sections: Sequence[RenderedSection], out: Path, most: int = MOST_BYTES
+    content: Page,
+    sections: Sequence[RenderedSection],
+    out: Path,
+    most: int = MOST_BYTES,
+    most_in_all: int = MOST_IN_ALL,
 ) -> Path:
     """Write the page of a campaign, and those beside it where it has no room for all sections.
 
@@ -66,6 +81,8 @@ def write_pages(
         Folder of the pages.
     most : int
         Bytes of sections on a page. [1]
+    most_in_all : int
+        Bytes of the page of the campaign, from which its sections stand beside it. [1]
 
     Returns
     -------
@@ -81,9 +98,11 @@ def write_pages(
     pages = over_pages(sections, most)
     index = out / "index.html"
     kept: set[Path] = set()
+    text = ""
     if len(pages) == 1:
-        content = replace(content, sections=pages[0], links=_links(pages[0]))
-    else:
+        text = render_page(replace(content, sections=pages[0], links=_links(pages[0])))
+    # tables and figures over all tests take room, too
+    if len(pages) > 1 or (pages[0] and len(text.encode("utf-8")) > most_in_all):
         names = [_NAME.format(number) for number in range(1, len(pages) + 1)]
         beside = [Link(name, _words(page)) for name, page in zip(names, pages, strict=True)]
         for name, page in zip(names, pages, strict=True):
@@ -92,10 +111,11 @@ def write_pages(
         links = [
             link for name, page in zip(names, pages, strict=True) for link in _links(page, name)
         ]
-        content = replace(content, links=links, beside=beside)
-    write_whole(index, render_page(content))
-    for path in set(out.glob(_NAME.replace("{:02}", "*"))) - kept:
-        path.unlink(missing_ok=True)
+        text = render_page(replace(content, links=links, beside=beside))
+    write_whole(index, text)
+    for path in out.iterdir():
+        if is_page_of_tests(path.name) and path not in kept:
+            take_away(path)
     return index
 
 
@@ -122,5 +142,6 @@ def _part_of(content: Page, page: Sequence[RenderedSection], beside: Sequence[Li
         sections=page,
         links=_links(page),
         home="index.html",
+        values_page=content.values_page,
         is_part=True,
     )

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from reduction.archive.laboratory import read_details
 from reduction.archive.open import open_archive
 from reduction.archive.products import archives_of_tests
+from reduction.archive.whole import take_away
 from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
 from reduction.report.clientreport import PAGE_NAME, ClientContent, render_client_report
@@ -23,18 +25,19 @@ from reduction.report.figures.campaign import (
 from reduction.report.figures.ratios import draw_ratios
 from reduction.report.figures.together import draw_specimens_together
 from reduction.report.instruments import instrument_sentences, instrument_table
-from reduction.report.manypages import write_pages
+from reduction.report.manypages import is_page_of_tests, write_pages
 from reduction.report.render import Page, RenderedSection, about_page, render_section
 from reduction.report.section import Section, make_part, make_section
 from reduction.report.specimentables import specimen_notes, specimen_table
 from reduction.report.stepwisetables import interval_table
 from reduction.report.summary import find_faults, summary_sentence, test_table, tiles
 from reduction.report.testtables import segment_table
-from reduction.report.view import Status, TestView, any_synthetic, natural_order
+from reduction.report.view import OF_NO_TEST, Status, TestView, any_synthetic, natural_order
 from reduction.report.whole import WholeCampaign, is_there, read_whole
 from reduction.units import UnitSystem
+from reduction.visible import bare_cell
 
-__all__ = ["write_report"]
+__all__ = ["is_page_beside", "write_report"]
 
 _LAST = 10**9
 _OF_TESTS = (
@@ -48,7 +51,26 @@ Name = tuple[tuple[int, int, str], ...]
 Place = tuple[int, str, Name, bool, str, float, Name]
 
 
-def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Path:
+def is_page_beside(name: str) -> bool:
+    """Whether a file of this name is a page beside that of a campaign, gone where none is needed.
+
+    Examples
+    --------
+    >>> [is_page_beside(name) for name in ("client-report.html", "tests-02.html", "index.html")]
+    [True, True, False]
+    """
+    return name == PAGE_NAME or is_page_of_tests(name)
+
+
+def write_report(
+    processed: Path,
+    out: Path,
+    *,
+    units: UnitSystem = "si",
+    values_page: str = "",
+    stray: Collection[str] = (),
+    unreadable: Callable[[str, str], None] | None = None,
+) -> Path:
     """Write the page of a campaign.
 
     Parameters
@@ -59,6 +81,13 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
         Folder of the page; made where it is not there.
     units : UnitSystem
         What a reader is shown; ``us`` is psi, lbf and ft.
+    values_page : str
+        Address of the design-value page from ``out``; empty where there is none to lead to.
+    stray : collection of str
+        Files that nothing in the campaign stands for now; what is shown of them says so.
+    unreadable : callable, optional
+        Told the name of each archive that cannot be read, and why, before the page is written,
+        which says it too.
 
     Returns
     -------
@@ -82,16 +111,19 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
             hint="Run the campaign first.",
         )
     by_test = {row.test: row for row in statuses}
+    has_statuses = (processed / "status.csv").is_file()
     details = read_details(processed)
     tests: list[TestView] = []
     rendered: dict[str, RenderedSection] = {}
     sections: dict[str, Section] = {}
-    unreadable: dict[str, str] = {}
+    not_shown: dict[str, str] = {}
     starts: dict[str, float] = {}
     for index, path in enumerate(paths):
         try:
             with open_archive(path) as data:
-                view = TestView(f"test-{index}", data, units, by_test.get(data.attrs["test"]))
+                name = data.attrs["test"]
+                known = by_test.get(name) or (Status(name, OF_NO_TEST) if has_statuses else None)
+                view = TestView(f"test-{index}", data, units, known)
                 section = make_section(view)
                 rendered[view.key] = render_section(section, is_folded=len(paths) > 1)
                 if details is not None:
@@ -100,11 +132,17 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
                 tests.append(view.without_samples())
         except ArchiveError as error:
             # the page is the same wherever the archives lie
-            unreadable[path.name] = str(error).replace(str(path), path.name)
+            not_shown[path.name] = str(error).replace(str(path), path.name)
     by_id = {view.id: view for view in tests}
     tests.sort(key=lambda view: _place(view, by_id, starts))
-    whole = read_whole(processed, by_id, units, unreadable)
-    content = _page_of(tests, whole, statuses, unreadable, units, processed.name)
+    whole = read_whole(processed, by_id, units, not_shown, stray)
+    if unreadable is not None:
+        for name, why in not_shown.items():
+            unreadable(name, why)
+    content = replace(
+        _page_of(tests, whole, statuses, not_shown, units, processed.name),
+        values_page=values_page,
+    )
     outcomes = [
         render_section(section, is_folded=len(paths) + len(whole.outcomes) > 1)
         for _, section in whole.outcomes
@@ -112,7 +150,7 @@ def write_report(processed: Path, out: Path, *, units: UnitSystem = "si") -> Pat
     page = write_pages(content, [*outcomes, *(rendered[view.key] for view in tests)], out)
     beside = out / PAGE_NAME
     if details is None:
-        beside.unlink(missing_ok=True)  # of an earlier run: the campaign has no such report now
+        take_away(beside)  # of an earlier run: the campaign has no such report now
     else:
         of_client = ClientContent(
             details, tests, whole, [sections[view.key] for view in tests], statuses,
@@ -190,7 +228,7 @@ def _read_statuses(path: Path) -> list[Status]:
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise ArchiveError(f"{path} cannot be read", found=str(error)) from error
     names = Status.__dataclass_fields__
-    return [Status(**{name: row.get(name) or "" for name in names}) for row in rows]
+    return [Status(**{name: bare_cell(row.get(name) or "") for name in names}) for row in rows]
 
 
 def _place(view: TestView, by_id: Mapping[str, TestView], starts: Mapping[str, float]) -> Place:

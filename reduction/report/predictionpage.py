@@ -25,7 +25,7 @@ from reduction.report.figures.waves import (
 from reduction.report.htmltable import Table, number_text
 from reduction.report.render import Page, about_page, render_page
 from reduction.report.section import Part, Section, make_part
-from reduction.report.style import shown
+from reduction.report.style import Shown, shown, with_prefix
 from reduction.report.summary import Finding, Tile
 from reduction.report.wavetables import (
     anchor_table,
@@ -76,12 +76,12 @@ def write_wave_page(
     """
     unit, force = force_per_length(units), shown("tension", units)
     tiles = [
-        Tile(_with_unit(float(one.greatest) * unit.factor, unit.unit), f"{words}, greatest", "load")
+        Tile(_with_unit(float(one.greatest), unit), f"{words}, greatest", "load")
         for words, one in (
             ("horizontal", found.extremes.horizontal), ("vertical", found.extremes.vertical),
         )
     ]  # fmt: skip
-    anchor = _with_unit(abs(float(found.anchor.combined)) * force.factor, force.unit)
+    anchor = _with_unit(abs(float(found.anchor.combined)), force)
     tiles.append(Tile(anchor, "anchor force", "load"))
     parts = [
         make_part("Load over time", draw_wave_load(found, units)),
@@ -93,8 +93,8 @@ def write_wave_page(
         make_part("Coefficients", (), [coefficient_table(found)]),
     ]  # fmt: skip
     return _write(
-        out, f"Wave load {name}", "load", parts, answer=extremes_table(found, units), tiles=tiles,
-        notes=found.notes, units=units, about=_OF_WAVE,
+        out, _title("Wave load", name), "load", parts, answer=extremes_table(found, units),
+        tiles=tiles, notes=found.notes, units=units, about=_OF_WAVE,
     )  # fmt: skip
 
 
@@ -126,13 +126,13 @@ def write_armour_page(
     """
     force = shown("tension", units)
     size = len(found.layer_names)
-    tension = _with_unit(float(found.together.tension[0]) * force.factor, force.unit)
+    tension = _with_unit(float(found.together.tension[0]), force)
     tiles = [
         Tile(f"{size:,}", "layer" if size == 1 else "layers", "armour"),
         Tile(tension, f"at {100 * float(found.strain[0]):g} % of strain", "armour"),
     ]
     if found.strength is not None:
-        load = _with_unit(found.strength.tension * force.factor, force.unit)
+        load = _with_unit(found.strength.tension, force)
         tiles.append(Tile(load, "at first yield", "armour"))
     parts = [
         make_part(
@@ -142,8 +142,8 @@ def write_armour_page(
         make_part("Where each theory holds", draw_errors(found), [use_table(found)]),
     ]
     return _write(
-        out, f"Armour {name}", "armour", parts, answer=layers_table(found, units), tiles=tiles,
-        notes=found.notes, units=units, about=_OF_ARMOUR,
+        out, _title("Armour", name), "armour", parts, answer=layers_table(found, units),
+        tiles=tiles, notes=found.notes, units=units, about=_OF_ARMOUR,
     )  # fmt: skip
 
 
@@ -181,5 +181,11 @@ def _write(
     return path
 
 
-def _with_unit(value: float, unit: str) -> str:
-    return f"{number_text(value)} {unit}"
+def _title(kind: str, name: str) -> str:
+    """Kind and name of a case; a name that says the kind again is left out."""
+    return kind if name.lower() in kind.lower() else f"{kind} {name}"
+
+
+def _with_unit(value: float, unit: Shown) -> str:
+    found = with_prefix(unit, value)
+    return f"{number_text(value * found.factor)} {found.unit}"

@@ -86,6 +86,8 @@ class Page:
         Pages that hold the sections which this one has no room for.
     home : str
         Where the name at the head of the contents leads.
+    values_page : str
+        Address of the page of design values; empty where there is none.
     is_part : bool
         Whether it is such a page beside another, which says what is wrong.
     """
@@ -114,6 +116,7 @@ class Page:
     links: Sequence[Link] = ()
     beside: Sequence[Link] = ()
     home: str = "#top"
+    values_page: str = ""
     is_part: bool = False
 
 

@@ -37,6 +37,7 @@ __all__ = [
     "shown",
     "superscript",
     "symbol",
+    "with_prefix",
 ]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#686868")
@@ -75,6 +76,7 @@ _PREFIXED: dict[Kind, tuple[str, float]] = {
     "energy": ("J/m", 1.0),
 }
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_TAKE_PREFIX = ("N", "Pa", "J/m")
 _INCHES_IN_A_FOOT = 12.0
 
 
@@ -108,6 +110,30 @@ def shown(kind: Kind, system: UnitSystem) -> Shown:
     if kind == "small length":
         return Shown("in", factor * _INCHES_IN_A_FOOT)
     return Shown({"in2": "in²"}.get(unit, unit), factor)
+
+
+def with_prefix(unit: Shown, greatest: float) -> Shown:
+    """Return an SI unit with the prefix that leaves five digits at most before the point.
+
+    Parameters
+    ----------
+    unit : Shown
+        Another unit, or one that has a prefix, stays as it is.
+    greatest : float
+        Size of what is shown in it. [SI]
+
+    Examples
+    --------
+    >>> with_prefix(Shown("N", 1.0), 2.2e8), with_prefix(Shown("lbf", 0.2248), 2.2e8)
+    (Shown(unit='MN', factor=1e-06), Shown(unit='lbf', factor=0.2248))
+    """
+    if unit.unit not in _TAKE_PREFIX:
+        return unit
+    prefixed = ((1e7, "M", 1e-6), (1e4, "k", 1e-3))
+    for least, letter, factor in prefixed:
+        if abs(greatest) * unit.factor >= least:
+            return Shown(f"{letter}{unit.unit}", unit.factor * factor)
+    return unit
 
 
 def colour(index: int) -> str:

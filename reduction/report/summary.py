@@ -10,11 +10,11 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.notes import SEVERITIES, severity_of
+from reduction.notes import SEVERITIES, full_note, severity_of
 from reduction.notes import Severity as NoteSeverity
 from reduction.report.htmltable import NOT_GIVEN, Cell, Table, count, make_table, span, words
 from reduction.report.style import shorten, shown
-from reduction.report.view import Status, TestView, all_specimens, any_synthetic
+from reduction.report.view import OF_NO_TEST, Status, TestView, all_specimens, any_synthetic
 
 __all__ = [
     "Finding", "Severity", "Tile", "all_notes", "brief", "find_faults", "grouped_notes",
@@ -24,7 +24,7 @@ __all__ = [
 Severity = Literal["failure", "warning", "note", "refusal"]
 _ORDER: tuple[Severity, ...] = ("failure", "warning", "note", "refusal")
 _NOT_SHOWN = "no archive"
-_STATUS_WORDS = {"unchanged": "reduced earlier, unchanged"}
+_STATUS_WORDS = {OF_NO_TEST: "of an earlier run: no test of the campaign now"}
 _FINDING: dict[NoteSeverity, Severity] = {
     "doubt": "warning", "refusal": "refusal", "note": "note", "method": "note",
 }  # fmt: skip
@@ -34,6 +34,9 @@ _HEADINGS: dict[NoteSeverity, str] = {
     "note": "Also to know",
     "method": "How numbers were made",
 }
+_NO_TEST = (
+    "The campaign has no such test now: what is shown is of an earlier run, whose archive was left."
+)
 _MOST_NAMES = 200
 """Characters of the list of specimens under the title."""
 # an archive counts the holds of each specimen apart, the page goes by time
@@ -92,12 +95,10 @@ def find_faults(
 
 def all_notes(view: TestView) -> list[str]:
     """Return every note of a test, with the stage that gave it where the note does not say."""
-    notes = []
-    for stage, text in zip(view.texts("note_stage"), view.texts("note"), strict=True):
-        room = stage.split(" ")[-1]
-        is_said = text.startswith((f"{stage}:", f"{room}:", f"{room},"))
-        notes.append(text if is_said else f"{stage}: {text}")
-    return notes
+    return [
+        full_note(stage, text)
+        for stage, text in zip(view.texts("note_stage"), view.texts("note"), strict=True)
+    ]
 
 
 def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
@@ -211,6 +212,8 @@ def _all_faults(
             yield "warning", row.test, text, text
     for view in tests:
         status = view.status
+        if status and status.status == OF_NO_TEST:
+            yield "warning", view.id, _NO_TEST, _NO_TEST
         archived_hash = " ".join(view.attribute("raw_file_sha256").split())
         if status and status.status != "failed" and status.raw_sha256 not in ("", archived_hash):
             text = "The archive was made from other raw files than status.csv."
@@ -257,7 +260,6 @@ def _reached(view: TestView) -> Cell:
 
 
 def _test_row(view: TestView, *, is_by_load: bool) -> list[Cell]:
-    status = "archived" if view.status is None else _words(view.status.status)
     return [
         words(view.id),
         words(view.kind),
@@ -266,7 +268,7 @@ def _test_row(view: TestView, *, is_by_load: bool) -> list[Cell]:
         _reached(view),
         count(float(view.n_cycles)),
         count(view.scalar("n_rows_kept")),
-        words(status),
+        words(_status(view)),
     ]
 
 
@@ -274,6 +276,15 @@ def _target(view: TestView) -> str:
     """Return the target strain of the plan in percent; the archive has "0.75 to 1.25"."""
     ends = view.attribute("target_strain").split(" to ")
     return " to ".join(f"{100 * float(end):g}" for end in ends) if ends != [""] else ""
+
+
+def _status(view: TestView) -> str:
+    """Return what became of a test, whichever run made its archive: the page is the same then."""
+    if view.status is None:
+        return "archived"
+    if view.status.status == "unchanged":
+        return "reduced with notes" if view.texts("note") else "reduced"
+    return _words(view.status.status)
 
 
 def _words(status: str) -> str:

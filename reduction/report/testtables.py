@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from reduction.archive.freedom import cycles_averaged
 from reduction.record import Floats
 from reduction.report.htmltable import (
     Cell,
@@ -65,6 +66,9 @@ def _segments(view: TestView) -> Iterator[list[Cell]]:
     }
     methods = view.texts("strain_method") or ("",) * len(view.specimens)
     branches = view.texts("branch_name") or BRANCH_NAMES
+    averaged = np.broadcast_to(
+        cycles_averaged(view.data, "segment_modulus"), (len(view.specimens),)
+    )
     for own in zip(*np.nonzero(np.isfinite(modulus)), strict=True):
         specimen, branch, segment = (int(place) for place in own)
         yield [
@@ -90,7 +94,7 @@ def _segments(view: TestView) -> Iterator[list[Cell]]:
                 shown("tension", view.units),
                 places=0,
             ),
-            count(float(view.n_cycles)),
+            count(float(averaged[specimen])),
             words(methods[specimen]),
         ]
 

@@ -13,8 +13,10 @@ from reduction.archive.kept import stored_cycles
 from reduction.record import Floats, Integers
 from reduction.units import UnitSystem
 
-__all__ = ["Status", "TestView", "all_specimens", "any_synthetic", "natural_order"]
+__all__ = ["OF_NO_TEST", "Status", "TestView", "all_specimens", "any_synthetic", "natural_order"]
 
+OF_NO_TEST = "of_no_test"
+"""Status of an archive that status.csv has no row for: the campaign has no such test now."""
 _REACHED = ("mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
 
 
@@ -57,6 +59,11 @@ class TestView:
     def id(self) -> str:
         """Name of the test."""
         return self.attribute("test")
+
+    @property
+    def is_of_earlier_run(self) -> bool:
+        """True where the last run of the campaign did not make this archive or let it stand."""
+        return self.status is not None and self.status.status in ("failed", OF_NO_TEST)
 
     @property
     def kind(self) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from reduction.digits import plain_number
 from reduction.pipeline.waveload import PredictedWaveLoad
 from reduction.predict.coefficients import CODE_OF_HYDROLOGY, PUBLISHED_COEFFICIENTS
 from reduction.report.figures.waves import THEORY_NAMES, force_per_length
@@ -150,7 +151,7 @@ def coefficient_table(found: PredictedWaveLoad) -> Table:
             number(found.inertia_coefficient, digits=3),
             words(
                 f"KC {float(regime.keulegan_carpenter_number):.3g},"
-                f" Re {float(regime.reynolds_number):.3g}"
+                f" Re {plain_number(float(regime.reynolds_number), 3)}"
             ),
         ]
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -41,6 +41,9 @@ from reduction.units import UnitSystem
 __all__ = ["WholeCampaign", "is_there", "read_whole"]
 
 _SHOWN = ("outcomes", "surfaces", "predictions", "comparisons", "change_in_length")
+_STRAY = (
+    "Nothing in the campaign stands for this archive now: what is shown of it is of an earlier run."
+)
 _Read = TypeVar("_Read")
 
 
@@ -53,6 +56,7 @@ class WholeCampaign:
     hoses: tuple[tuple[HoseView, Section], ...]
     compared: tuple[tuple[ComparisonView, Section], ...]
     ropes: tuple[tuple[RopeView, Section], ...]
+    stray: tuple[str, ...] = ()
 
     @property
     def views(self) -> list[OutcomeView | ExperimentView | HoseView | ComparisonView | RopeView]:
@@ -88,7 +92,8 @@ class WholeCampaign:
     @property
     def findings(self) -> list[Finding]:
         """What a reader must know first."""
-        found = [one for view, _ in self.experiments for one in experiment_findings(view)]
+        found = [Finding("warning", (name,), _STRAY) for name in self.stray]
+        found += [one for view, _ in self.experiments for one in experiment_findings(view)]
         found += [one for view, _ in self.compared for one in comparison_findings(view)]
         return found + [one for view, _ in self.hoses for one in hose_findings(view)]
 
@@ -137,7 +142,11 @@ def is_there(processed: Path) -> bool:
 
 
 def read_whole(
-    processed: Path, tests: Mapping[str, TestView], units: UnitSystem, unreadable: dict[str, str]
+    processed: Path,
+    tests: Mapping[str, TestView],
+    units: UnitSystem,
+    unreadable: dict[str, str],
+    stray: Collection[str] = (),
 ) -> WholeCampaign:
     """Read what there is; a file that cannot be read is told in ``unreadable``.
 
@@ -151,6 +160,8 @@ def read_whole(
         What a reader is shown.
     unreadable : dict of str to str
         File name to message; added to.
+    stray : collection of str
+        Names of archives that nothing in the campaign stands for now.
     """
 
     def outcomes(data: xr.Dataset) -> list[tuple[OutcomeView, Section]]:
@@ -180,6 +191,7 @@ def read_whole(
         hoses=_read(processed / "predictions.nc", hoses, unreadable),
         compared=_read(processed / "comparisons.nc", compared, unreadable),
         ropes=_read(processed / "change_in_length.nc", ropes, unreadable),
+        stray=tuple(f"{name}.nc" for name in _SHOWN if f"{name}.nc" in stray),
     )
 
 

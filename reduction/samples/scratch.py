@@ -21,6 +21,7 @@ from reduction.errors import DataError
 __all__ = [
     "ColumnWriter",
     "beside",
+    "check_room",
     "empty_like",
     "give_back",
     "is_on_disk",
@@ -48,6 +49,32 @@ def scratch_folder() -> Path:
         return Path(stated)  # tempfile would pass over one that is full or not there, for /tmp
     usual = Path("/var/tmp")  # noqa: S108 - files there have no name
     return usual if os.access(usual, os.W_OK) else Path(tempfile.gettempdir())
+
+
+def check_room(folder: Path, n_bytes: int) -> None:
+    """Refuse what a file states before the disk is full of it.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Where scratch files are to lie.
+    n_bytes : int
+        How many bytes they will have at least. [1]
+
+    Raises
+    ------
+    DataError
+        If the disk has less room.
+    """
+    if not hasattr(os, "statvfs"):  # only POSIX systems say it in this way
+        return
+    try:
+        disk = os.statvfs(folder)
+    except OSError:  # a folder that is not there is told when a file is made in it
+        return
+    free = disk.f_bavail * disk.f_frsize
+    if n_bytes > free:
+        raise _no_space(folder, n_bytes, f"{free / 1e6:.0f} MB are free")
 
 
 def is_on_disk(array: NDArray[Any]) -> bool:
@@ -179,7 +206,7 @@ class ColumnWriter:
                 left = left[self._file.write(left) :]
         except OSError as error:
             n_bytes = self.size * self._dtype.itemsize
-            raise _no_space(self._folder, n_bytes, error) from error
+            raise _no_space(self._folder, n_bytes, error.strerror) from error
 
     def finish(self) -> NDArray[Any]:
         """Return the column, shape (size,); nothing may be added any more.
@@ -229,7 +256,7 @@ def _reserve(file: IO[bytes], n_bytes: int, folder: Path) -> None:
         else:
             file.truncate(n_bytes)
     except OSError as error:
-        raise _no_space(folder, n_bytes, error) from error
+        raise _no_space(folder, n_bytes, error.strerror) from error
 
 
 def _mapped(file: IO[bytes], n_bytes: int, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
@@ -249,10 +276,10 @@ def _mapped(file: IO[bytes], n_bytes: int, folder: Path, dtype: np.dtype[Any]) -
     return np.ndarray(n_bytes // dtype.itemsize, dtype=dtype, buffer=found)
 
 
-def _no_space(folder: Path, n_bytes: int, error: OSError) -> DataError:
+def _no_space(folder: Path, n_bytes: int, why: str | None) -> DataError:
     return DataError(
         "the scratch files of a long log do not fit on the disk",
-        found=f"no room for {n_bytes / 1e6:.0f} MB in {folder}: {error.strerror}",
+        found=f"no room for {n_bytes / 1e6:.0f} MB in {folder}: {why}",
         needed="about 60 bytes a row and specimen",
         hint="Set TMPDIR to a folder on a disk with room.",
     )

@@ -110,7 +110,8 @@ def _default_method(
     raise DataError(
         f"nothing says how position becomes strain of '{specimen.name}'",
         needed="splice marks, a strain channel, or a gauge length where there are no splices",
-        hint="Give strain = { marks = ... } or specimens.NAME.gauge_length in campaign.toml.",
+        hint='Give strain = { marks = "marks.csv" } under [defaults], or gauge_length under each'
+        " [specimens.NAME], in campaign.toml.",
     )
 
 

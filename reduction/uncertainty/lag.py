@@ -60,6 +60,7 @@ _NEWTON_STEPS = 8
 _WINDOWS = (1.0, 0.7, 0.5)  # of the reach, the first for the estimate
 _EARLY = 2.0  # standard uncertainties
 _ROUNDING = 1e-9  # of a ramp
+_FLAT = 1e-12  # determinant of the normal equations of a parabola; 5e-4 of even samples
 _PASSES = 3
 
 
@@ -246,6 +247,9 @@ def _corners(
             basis = np.stack([np.ones_like(at), at, at**2], axis=-1)
             gram[some] += np.einsum("tsi,tsj->tij", basis, basis)
             sums[some] += np.einsum("tsi,ts->ti", basis, take_samples(series, window))
+        # beside a gap all samples of a side may be one instant, which no parabola goes through
+        is_flat = np.linalg.det(gram) <= _FLAT * gram[:, 0, 0] ** 3
+        gram[is_flat], sums[is_flat] = np.eye(3), np.nan
         sides.append(np.asarray(np.linalg.solve(gram, sums[..., None])[..., 0], np.float64))
     root, sharp, jump = _crossing(*sides)
     return at_turn + root * scale, sharp, jump / scale

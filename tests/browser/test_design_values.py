@@ -18,9 +18,12 @@ from odd_lines import odd_lines
 from reduction.batch import run as batch_run
 from reduction.campaign.load import load_campaign
 from reduction.cli.lookupsource import lines_of
+from reduction.cli.numbers import as_given, within
+from reduction.cli.thousands import grouped
 from reduction.designpage.campaigns import CampaignLines
 from reduction.designpage.linedata import line_data
 from reduction.designpage.page import render_design_page, write_design_page
+from reduction.digits import fixed_number, plain_number
 from reduction.lookup.product import LineCurve, LineSource
 from reduction.published.linesource import published_sources
 from reduction.uncertainty.combine import coverage_factor
@@ -107,6 +110,8 @@ def test_questions_put_into_the_form_are_answered_in_the_same_words(made, shown,
             cells = page.locator("[data-head]").evaluate_all(
                 "all => Object.fromEntries(all.map(one => [one.dataset.head, one.textContent]))"
             )
+            # a blank between thousands is for eyes alone
+            cells = {head: text.replace("\u202f", "") for head, text in cells.items()}
             row = {head: text for head, text in wanted["row"] if head != "remark"}
             assert cells == row
             remarks = dict(wanted["row"])["remark"]
@@ -206,6 +211,21 @@ def test_numbers_are_written_by_the_rules_of_python(small, visit):
         for count in digits:
             found = page.evaluate(f"values => values.map((one) => {script}(one, {count}))", values)
             assert found == [f"{one:.{count}{form}}" for one in values]
+    for count in (2, 3, 4, 5, 6):
+        found = page.evaluate(f"values => values.map((one) => plainNumber(one, {count}))", values)
+        assert found == [plain_number(one, count) for one in values]
+    for places in range(-6, 4):
+        found = page.evaluate(f"values => values.map((one) => fixedNumber(one, {places}))", values)
+        assert found == [fixed_number(one, places, mark="") for one in values]
+    halves = [*(10 ** chance.uniform(-6, 10, len(values) - 3)).tolist(), 0.0, 1000.0, 999.9999999]
+    pairs = list(zip(values, halves, strict=True))
+    found = page.evaluate("pairs => pairs.map(([one, half]) => within(one, half, 7 * half))", pairs)
+    assert found == [within(one, half, 7 * half) for one, half in pairs]
+    found = page.evaluate("values => values.map(asGiven)", values)
+    assert found == [as_given(one) for one in values]
+    texts = [*found, *(f"{one} to {one}" for one in found)]
+    shown = page.evaluate("texts => texts.map(grouped)", texts)
+    assert [one.replace("\u202f", " ") for one in shown] == [grouped(one) for one in texts]
     found = page.evaluate("[NaN, Infinity, -Infinity, 0.26].map((one) => fixed(one, 1, '+'))")
     assert found == [f"{one:+.1f}" for one in (np.nan, np.inf, -np.inf, 0.26)]
 

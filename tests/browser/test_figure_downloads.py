@@ -83,6 +83,14 @@ def test_a_figure_in_space_is_saved_as_all_others(campaigns, visit):
     _, columns, rows = table_of(content)
     assert [one.partition(" [")[2] for one in columns[1:4]] == ["N]", "N]", "N]"]
     assert len(rows) > 100 and all(row[3] for row in rows[:50])
+    # a surface in space is a picture inside its drawing, and says so; contours are lines
+    button = shown.page.locator(f"#{key}").get_by_role("button", name="SVG: ")
+    assert button.get_attribute("aria-label").startswith("SVG: picture inside a drawing of ")
+    assert "(holds a picture)" in shown.page.locator(f"#{key} .save").inner_text()
+    flat = key.replace("-surface", "-contour-1")
+    assert "picture" not in shown.page.locator(f"#{flat} .save").inner_text()
+    drawings = [take(shown, one, "SVG")[1] for one in (key, flat)]
+    assert [one.count(b"<image") for one in drawings] == [1, 0]
     _, content = take(shown, key, "PNG")
     assert content[:8] == b"\x89PNG\r\n\x1a\n" and len(content) > 10_000
     assert shown.errors == []

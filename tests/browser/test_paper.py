@@ -39,6 +39,24 @@ def test_nothing_is_wider_than_the_sheet_and_all_is_there(paper, small, visit):
     assert shown.errors == []
 
 
+def test_a_column_headed_by_a_long_name_is_not_cut_off(small, visit):
+    shown = visit(small.page)
+    page = shown.page
+    page.evaluate(
+        """() => document.querySelectorAll("main table").forEach(table => {
+             for (const head of [...table.tHead.rows[0].cells].slice(1, 4)) head.textContent = "N".repeat(100); })"""
+    )
+    # a printer asks while the page still has the rules of the screen
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    page.emulate_media(media="print")
+    page.set_viewport_size({"width": SHEETS["A4"], "height": 900})
+    assert page.evaluate(CUT, SHEETS["A4"]) == []
+    smallest = page.evaluate(
+        "Math.min(...[...document.querySelectorAll('main table')].map(one => parseFloat(getComputedStyle(one).fontSize)))"
+    )
+    assert smallest > 4  # CSS pixels
+
+
 def test_a_reader_who_opens_the_page_and_prints_it_has_every_section_and_figure(
     small, visit, tmp_path
 ):

@@ -3,6 +3,8 @@
 import csv
 import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -203,6 +205,7 @@ def test_init_writes_a_starter_once_and_never_over_a_file(small, command):
     done = command("init", small / "raw")
     assert done.returncode == 0, done.stderr
     assert {"campaign.toml", "tests.csv"} <= {path.name for path in (small / "raw").iterdir()}
+    assert f"then: reduction check {small / 'raw' / 'campaign.toml'}" in done.stdout
     again = command("init", small / "raw")
     assert again.returncode == 2 and "a campaign is there already" in again.stderr
     check = command("check", small / "raw" / "campaign.toml")
@@ -235,6 +238,23 @@ def test_a_log_that_is_not_there_fails_its_own_test_alone(small, command):
     assert statuses == {"A": "failed", "B": "reduced_with_notes"}
 
 
+def test_the_start_of_a_command_loads_no_heavy_package():
+    heavy = {"numpy", "pandas", "scipy", "pint", "xarray", "netCDF4", "pyarrow", "plotly"}
+    code = f"import sys, reduction.cli.main; print(sorted({heavy} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
+def test_a_run_in_which_every_test_fails_has_a_page_that_says_so(small, command):
+    for name in ("A.csv", "B.csv"):
+        (small / "raw" / name).unlink()
+    done = command("run", small / "raw" / "campaign.toml", cwd=small)
+    assert done.returncode == 3
+    assert "report:   reports/small/index.html" in done.stdout
+    page = (small / "reports" / "small" / "index.html").read_text(encoding="utf-8")
+    assert "A.csv: the file cannot be read" in page and "B.csv: the file cannot be read" in page
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -261,6 +281,19 @@ def test_whatever_a_product_says_is_part_of_what_makes_it_unchanged(reduced, com
     done = command("run", campaign, "--json", "--test", "A", cwd=reduced)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["tests"][0]["status"] == "reduced_with_notes"
+
+
+def test_limits_make_no_archive_again_and_refuse_what_is_beyond_them(reduced, command):
+    campaign = reduced / "raw" / "campaign.toml"
+    before = (reduced / "processed" / "small" / "A.nc").read_bytes()
+    campaign.write_text(CAMPAIGN + '[limits]\nfile_size = "1 GB"\ntime = "5 min"\n')
+    again = json.loads(command("run", campaign, "--json", cwd=reduced).stdout)
+    assert [test["status"] for test in again["tests"]] == ["unchanged", "unchanged"]
+    campaign.write_text(CAMPAIGN + "[limits]\ncolumns = 2\n")
+    done = command("run", campaign, "--json", "--force", cwd=reduced)
+    assert done.returncode == 3
+    assert "raise columns under [limits] of campaign.toml" in done.stderr
+    assert (reduced / "processed" / "small" / "A.nc").read_bytes() == before
 
 
 def test_marks_of_a_log_in_steps_serve_the_other_tests_as_before(reduced, command):
@@ -355,7 +388,7 @@ def test_a_line_that_cannot_be_used_is_one_line_and_one_object(command, tmp_path
 def test_a_check_shows_the_status_that_its_json_has(small, command):
     campaign = small / "raw" / "campaign.toml"
     shown = command("check", campaign, cwd=small).stdout
-    assert "no_work" in shown and "ready for a run" in shown
+    assert "checked" in shown and "ready for a run" in shown
     answer = json.loads(command("check", campaign, "--json", cwd=small).stdout)
     assert {(test["status"], test["message"]) for test in answer["tests"]} == {
         ("no_work", "ready for a run")

@@ -20,8 +20,12 @@ def test_a_run_and_a_report_write_the_page(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     page = tmp_path / "again" / "design-values.html"
-    assert f"values:   {page}" in done.stdout
-    assert page.read_text(encoding="utf-8") == text
+    assert f"design values: {page}" in done.stdout
+    # this run left no report of the campaign; where there is one, either page leads to the other
+    linked = text.replace('"reports":{}', '"reports":{"many":"many/index.html"}')
+    assert page.read_text(encoding="utf-8") == linked != text
+    report = (tmp_path / "again" / "many" / "index.html").read_text(encoding="utf-8")
+    assert 'href="../design-values.html"' in report
     for path in (tmp_path / "processed").glob("*/T01.nc"):
         path.write_bytes(b"no archive")
     done = reduction(

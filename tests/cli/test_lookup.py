@@ -1,5 +1,6 @@
 import csv
 import json
+import re
 
 import numpy as np
 import pytest
@@ -385,8 +386,18 @@ def test_no_number_of_a_table_is_cut(command, level):
              "--table", "--extrapolate", "flag", "--mean-tension", level)  # fmt: skip
     text = command(*asked).stdout
     assert "\N{HORIZONTAL ELLIPSIS}" not in text
-    for value in json.loads(command(*asked, "--json").stdout)["value"]:
-        assert f"{value:.5g}" in text
+    answer = json.loads(command(*asked, "--json").stdout)
+    lines = [re.split(r"\s{2,}", line.strip()) for line in text.splitlines()]
+    (heads,) = [line for line in lines if "value [N]" in line]
+    place = heads.index("value [N]")
+    rows = [line for line in lines if len(line) == len(heads) and line is not heads]
+    assert len(rows) == len(answer["value"])
+    for row, value, low, high in zip(
+        rows, answer["value"], *answer["surface_interval"], strict=True
+    ):
+        # no power of ten, and two digits of half the interval: within a twentieth of it
+        assert abs(value) > 1e7 or re.fullmatch(r"-?\d+", row[place])
+        assert float(row[place]) == pytest.approx(value, abs=(high - low) / 40)
 
 
 def test_kinds_are_told_apart_with_the_scatter_between_lines_alone(command):

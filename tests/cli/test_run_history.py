@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import reduction.batch.reduce
-import reduction.batch.run
+import reduction.batch.wanted
 from reduction.archive.open import open_archive
 
 CAMPAIGN = """
@@ -194,7 +194,7 @@ def test_an_earlier_test_that_is_new_and_fails_makes_the_later_ones_anew(row, co
 
 @pytest.mark.parametrize(
     ("module", "part"),
-    [(reduction.batch.run, "basis_of"), (reduction.batch.reduce, "standing_product")],
+    [(reduction.batch.wanted, "basis_of"), (reduction.batch.reduce, "standing_product")],
 )
 def test_a_defect_before_the_reduction_is_the_failure_of_one_test(
     row, command, monkeypatch, module, part

@@ -137,7 +137,7 @@ def test_another_run_gives_the_same_bytes(command, run, folder, tmp_path):
         "run", "elsewhere/campaign.toml", "--processed", "p", "--reports", "r", cwd=tmp_path
     )
     assert done.returncode == 0
-    assert "tables:   strength.csv, exposure.csv" in done.stdout
+    assert "tables:   p/lines/tables: 4 tables, and columns.csv, which" in done.stdout
     again, before = tmp_path / "p" / "lines", folder / "p" / "lines"
     files = [path for path in before.rglob("*") if path.is_file()]
     assert len(files) == 6

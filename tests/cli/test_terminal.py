@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 
@@ -53,7 +54,9 @@ def narrow(tmp_path_factory):
 def test_a_run_with_one_job_shows_how_far_it_is(narrow):
     status, said = narrow
     assert status == 0
-    assert "survey static" in ESCAPE.sub("", said) and "reduce static" in ESCAPE.sub("", said)
+    shown = ESCAPE.sub("", said)
+    assert "reading static" in shown and "reducing static" in shown
+    assert "writing tables" in shown and "/?" not in shown
     assert "\N{BOX DRAWINGS HEAVY HORIZONTAL}" in said and "1/1 static" in ESCAPE.sub("", said)
 
 
@@ -72,6 +75,16 @@ def test_colours_are_left_out_where_nobody_wants_them(tmp_path, narrow):
     assert COLOUR.search(narrow[1])
     status, said = at_terminal("run", CAMPAIGN, *places(tmp_path), NO_COLOR="1")
     assert status == 0 and not COLOUR.search(said)
+
+
+def test_an_error_of_a_test_is_said_once_on_a_screen_and_stands_in_the_table_of_a_pipe(tmp_path):
+    folder = tmp_path / "campaign"
+    shutil.copytree(CAMPAIGN.parent, folder)
+    (folder / "table_4.csv").unlink()
+    status, said = at_terminal("check", folder / "campaign.toml")
+    words = " ".join(ESCAPE.sub("", said).split())
+    assert status == 3 and words.count("cannot be read") == 1 and "see below" in words
+    assert "the file cannot be read" in reduction("check", folder / "campaign.toml").stdout
 
 
 def test_json_at_a_terminal_is_one_object_and_nothing_else(tmp_path):
@@ -104,3 +117,23 @@ def test_help_is_drawn_at_a_terminal_and_plain_and_whole_in_a_pipe():
         plain.split()
     )
     assert max(map(len, plain.splitlines())) <= 80
+
+
+def test_sentences_are_broken_between_words_and_what_is_copied_is_not_broken(tmp_path):
+    line = "rubber-tether-new-T-1", "--quantity", "tangent_modulus", "--strain", "100 %"
+    status, said = at_terminal("lookup", *line, columns=60)
+    said = ESCAPE.sub("", said)
+    lines = said.replace("\r\n", "\n").split("\n")
+    assert status == 0 and max(map(len, lines)) <= 60
+    whole = reduction("lookup", *line).stdout.splitlines()
+    notes = [one for one in whole if one.startswith("note: ") and len(one) > 60]
+    assert notes and all(one in " ".join(said.split()) for one in notes)
+    status, said = at_terminal("lookup", *line[:-1], "900 %", columns=60)
+    assert status == 4 and max(map(len, said.replace("\r\n", "\n").split("\n"))) <= 60
+    log = tmp_path / ("log " * 20 + ".csv")
+    log.write_text("Zeit der Messung in s,Weg des Schlittens in mm,Kraft an der ersten Probe in N\n"
+                   + "".join(f"{k},{k % 7},{k % 5}\n" for k in range(40)), encoding="utf-8")  # fmt: skip
+    sniffed = reduction("sniff", log).stdout.splitlines()
+    _, said = at_terminal("sniff", log)
+    assert max(map(len, sniffed)) > 80
+    assert said.replace("\r\n", "\n").splitlines() == sniffed

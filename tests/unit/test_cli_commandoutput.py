@@ -21,6 +21,19 @@ def table(n_numbers):
     return made
 
 
+@pytest.mark.parametrize(
+    ("is_terminal", "shown"), [(True, ["160 000", "278 900 to 283 100"]), (False, ["160000", "278900 to 283100"])]
+)  # fmt: skip
+def test_thousands_are_parted_for_eyes_and_not_in_a_pipe(capsys, monkeypatch, is_terminal, shown):
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: is_terminal)
+    monkeypatch.setenv("COLUMNS", "80")
+    made = table_of("file", "load\n[N]", "95 %\n[N]")
+    made.add_row("123456.csv", "160000", "278900 to 283100")
+    CommandOutput().show(made)
+    row = capsys.readouterr().out.splitlines()[-1].strip()
+    assert re.split(r"\s{2,}", row) == ["123456.csv", *shown]
+
+
 @pytest.mark.parametrize("n_numbers", [1, 3, 6, 14])
 @pytest.mark.parametrize("width", [40, 80, 100])
 @pytest.mark.parametrize("is_terminal", [True, False])

@@ -52,7 +52,7 @@ def test_a_terminal_has_a_bar_below_the_lines():
         progress.stage("reduce", 3)
         progress.begun("[red]")
         task = bar.tasks[0]
-        assert task.total == 3 and task.description == r"reduce \[red]"
+        assert task.total == 3 and task.description == r"reducing \[red]"
         progress.ended("T-1", row("T-1"))
         assert task.completed == 1
         progress.stage("tables", 0)

@@ -305,6 +305,23 @@ def test_a_cycle_without_time_is_refused():
         cycle_basis(np.zeros(5), np.array([0]), np.array([4]))
 
 
+@pytest.mark.parametrize("time", [[0.0, 1.0, 2.0], [0.0, 1e-12, 2e-12, 3e-12, 1.0]])
+def test_a_cycle_whose_samples_have_too_few_phases_is_refused(time):
+    with pytest.raises(DataError, match="samples of cycle 1 stand too close in time"):
+        cycle_basis(np.array(time), np.array([0]), np.array([len(time) - 1]))
+
+
+def test_a_cycle_beside_a_jump_of_tension_has_no_slope_of_another_sign(triangle):
+    strain, cycles = triangle(n_cycles=6)
+    before = np.arange(strain.size) < 430  # within the fifth cycle
+    tension = np.where(before, 1000 * strain, 100 * strain)
+    loops = close_loops(0.1 * np.arange(strain.size), tension[None], strain[None], cycles)
+    # the last cycle takes its drift from the one before, of which it is many times its range
+    np.testing.assert_allclose(loops.apparent_spring_constant[0, :3], 1000, rtol=1e-9)
+    for name in ("apparent_spring_constant", "hysteresis_energy", "storage_spring_constant"):
+        assert np.isnan(getattr(loops, name)[0]).tolist() == 5 * [False] + [True], name
+
+
 def test_loops_of_a_standard_linear_solid():
     t, tension, strain = ellipse(50, 4)
     loops = close_loops(

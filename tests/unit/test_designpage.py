@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 from importlib.resources import files
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
@@ -121,6 +122,19 @@ def test_an_archive_that_cannot_be_read_is_named_and_the_others_stand(processed,
     assert (campaign, name) == ("many", "T01.nc")
     assert text.startswith("T01.nc is not a netCDF file")
     assert found["campaigns"][0]["names"] == ["T02.a one", "T02.b one"]
+
+
+def test_a_report_that_stands_beside_the_page_is_linked(processed, tmp_path):
+    name = "many & <b> 50%"
+    (processed / "many").rename(processed / name)
+    reports = tmp_path / "reports"
+    assert data_of(made.write_design_page(processed, reports))["reports"] == {}
+    (reports / name).mkdir()
+    (reports / name / "index.html").write_text("a report")
+    page = made.write_design_page(processed, reports)
+    (address,) = data_of(page)["reports"].values()
+    assert (page.parent / unquote(address)).read_text() == "a report"
+    assert address == "many%20%26%20%3Cb%3E%2050%25/index.html"
 
 
 def test_a_folder_that_no_run_left_is_no_campaign(processed, tmp_path):

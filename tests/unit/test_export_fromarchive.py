@@ -34,7 +34,7 @@ def test_archive(tmp_path):
             attrs={
                 "schema_version": SCHEMA_VERSION, "id": "c/T-1", "title": "Tests", "source": "a rig",
                 "raw_file": "T-1.csv", "raw_file_sha256": "ab", "references": "WHOI-2005-10",
-                "synthetic": "no", "test_kind": "cyclic",
+                "synthetic": "no", "test": "T-1", "test_kind": "cyclic",
             }
             | attributes,
         )  # fmt: skip

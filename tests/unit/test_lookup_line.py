@@ -208,7 +208,7 @@ def test_where_two_pieces_meet_both_values_are_told():
     # one branch alone is known: it need not be asked for, and the value says which
     found = look_up(line, "tangent_modulus", strain=1.0)
     assert found.branch == "ascending"
-    assert "at strain 1 two pieces meet: 1e+06 Pa below, 2e+06 above" in found.notes
+    assert "at strain 1 two pieces meet: 1000000 Pa below, 2000000 above" in found.notes
     assert not any(
         "two pieces" in one for one in look_up(line, "tangent_modulus", strain=0.9).notes
     )

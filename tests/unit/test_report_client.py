@@ -13,7 +13,7 @@ from reduction.report import clientfigures
 from reduction.report.clientfields import NOT_STATED
 from reduction.report.conformitytable import RULES, conformity_table
 from reduction.report.page import write_report
-from reduction.report.view import TestView
+from reduction.report.view import OF_NO_TEST, Status, TestView
 
 NASTY = (
     "</style></script><script>alert(1)</script> \"q\" 'x' & \\ \u2028\nnew line } @import url(//x)"
@@ -276,3 +276,20 @@ def test_a_figure_that_cannot_be_drawn_is_named(client, rich_test, monkeypatch):
         page
     )
     assert "T-1: modulus, new" in page.partition("<svg")[2]
+
+
+@pytest.mark.parametrize("status", ["failed", OF_NO_TEST])
+def test_no_statement_of_conformity_rests_on_an_earlier_run(write, rich_test, status):
+    with open_archive(write(rich_test)) as archive:
+        middle = repr(float(archive["strain_bin"].values[2]))
+        at = {"specimen": "new", "branch": "ascending", "strain": middle}
+        details = ReportDetails(decision_rule="guard band", limits=(limit(-1e12, at=at),))
+        views = [TestView("t", archive, "si", Status("T-1", one)) for one in ("reduced", status)]
+        said = [conformity_table(details, [view], "si").rows[0][-1].text for view in views]
+    assert said == ["conforms", "no statement: the archive of the test is of an earlier run"]
+
+
+def test_a_limit_with_a_power_of_ten_keeps_it(judged):
+    at = {"specimen": "new", "branch": "ascending", "strain": "1"}
+    row, _ = judged(limit(2e16, at=at))
+    assert row[4] == "≥ 2e+10"

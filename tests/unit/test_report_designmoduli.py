@@ -1,12 +1,14 @@
 """The modulus to design with: one row a test and specimen, with what a designer has to know."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from reduction.report.designmoduli import design_modulus_table
 from reduction.report.htmltable import NOT_GIVEN
-from reduction.report.view import TestView
+from reduction.report.view import OF_NO_TEST, Status, TestView
 
 S, B = "specimen", ("specimen", "branch_name", "strain_bin")
 NAN = np.nan
@@ -107,3 +109,22 @@ def test_a_test_without_curves_has_its_whole_cycle_alone():
     view = make_view()
     table = design_modulus_table([TestView("k", view.data.drop_dims("strain_bin"))])
     assert texts(table)[0][5:8] == [NOT_GIVEN, NOT_GIVEN, "10"]
+
+
+def test_cycles_used_are_those_after_the_break_in_that_have_a_number():
+    view = make_view()
+    amplitude = np.full((2, 10), 100.0)
+    amplitude[1, 5:8] = NAN
+    data = view.data.assign(tension_amplitude=((S, "cycle"), amplitude))
+    data.attrs["settings"] = '{"reduction": {"cycles": {"break_in_cycles": 1}}}'
+    table = design_modulus_table([TestView("k", data)])
+    assert [row[7] for row in texts(table)] == ["9", "6; 9"]
+    assert [row[7].value for row in table.rows] == ["9", "6"]
+
+
+def test_numbers_of_an_earlier_run_say_so_in_their_row():
+    for status in ("failed", OF_NO_TEST):
+        old = replace(make_view("T-1"), status=Status("T-1", status))
+        now = replace(make_view("T-2"), status=Status("T-2", "unchanged"))
+        names = [row[1] for row in texts(design_modulus_table([old, now]))]
+        assert names == ["T-1 (earlier run)", "T-2"] * 2

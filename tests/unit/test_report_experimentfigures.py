@@ -17,6 +17,7 @@ from reduction.report.figures.screening import draw_effects
 from reduction.report.figures.surfacechecks import draw_checks, draw_pareto, term_words
 from reduction.report.figures.surfaces import draw_contours, draw_surface
 from reduction.report.surfacegrid import make_planes
+from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.surfaces import fit_surfaces
 
 EVERYTHING = (
@@ -98,6 +99,31 @@ def test_the_cube_has_the_law_at_corners_edges_and_centre(lawful):
     shown = sorted(float(text.replace(",", "")) for text in thin["text"])
     corners = [law(f, m, a) for f in (-1, 1) for m in (-1, 1) for a in (-1, 1)]
     assert shown == pytest.approx(sorted(corners), abs=0.6)
+
+
+@pytest.mark.parametrize(
+    ("units", "unit", "factor"), [("si", "kN", 1e-3), ("us", "lbf", 1 / 4.4482216152605)]
+)
+def test_numbers_on_the_cube_end_where_their_interval_does(units, unit, factor):
+    def thousandfold(*coded):
+        return 1000 * law(*coded)
+
+    view = view_of(
+        law_experiment({"apparent_spring_constant": thousandfold}, noise=3e-3), units=units
+    )
+    (figure,) = draw_cube(view, view.surfaces, 0)
+    assert f"[{unit}]" in figure.caption
+    at = evaluate_surfaces(view.surfaces, np.array([[0.0, 0.0, 0.0]]), units="coded")
+    low, high = at.confidence_interval[0, 0] * factor
+    (centre,) = [
+        text for trace in figure.data[2:]
+        for x, y, text in zip(trace["x"], trace["y"], trace["text"], strict=True)
+        if (x, y) == pytest.approx((0.73, 0.67))
+    ]  # fmt: skip
+    number = float(centre.replace(",", ""))
+    # two digits of the half width, which is some units of the third or fourth digit here
+    assert number == pytest.approx(at.value[0, 0] * factor, abs=(high - low) / 40)
+    assert len(centre.replace(",", "").replace(".", "").rstrip("0")) <= 5
 
 
 def test_levels_that_were_not_quite_reached_leave_no_edge_of_the_cube_open():

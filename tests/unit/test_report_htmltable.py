@@ -98,3 +98,12 @@ def test_a_value_and_its_interval_have_the_same_places():
     assert shown == ["5.00", "4.63 to 5.37"]
     value, interval = with_interval(2.0, float("nan"), 3.0, Shown("s", 1.0))
     assert (value.text, interval.text) == ("2.000", NOT_GIVEN)
+
+
+def test_ends_of_a_narrow_range_are_told_apart():
+    percent = Shown("%", 100.0)
+    assert span(0.75, 1.25, percent, places=0).text == "75 to 125"
+    assert span(0.0757, 0.0984, percent, places=0).text == "7.6 to 9.8"
+    # cycles of a wire rope
+    assert span(0.00213, 0.00387, percent, places=0).text == "0.21 to 0.39"
+    assert span(0.5, 0.5, percent, places=1).text == "50.0 to 50.0"

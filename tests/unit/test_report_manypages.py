@@ -72,3 +72,29 @@ def test_pages_of_an_earlier_run_are_taken_away(tmp_path):
     assert sorted(one.name for one in tmp_path.iterdir()) == [
         "index.html", "tests-01.html", "tests-02.html", "tests-of-mine.txt",
     ]  # fmt: skip
+
+
+def test_a_page_of_somebody_else_is_not_taken_away(tmp_path):
+    for name in ("tests-of-mine.html", "tests-1.html", "mytests-02.html", "tests-07.html"):
+        (tmp_path / name).write_text("kept")
+    write_pages(CONTENT, sections(1), tmp_path)
+    # seven of two digits is a name that is given here
+    assert sorted(one.name for one in tmp_path.iterdir()) == [
+        "index.html", "mytests-02.html", "tests-1.html", "tests-of-mine.html",
+    ]  # fmt: skip
+
+
+def test_sections_that_have_room_together_but_not_beside_the_rest_stand_on_a_page_of_their_own(
+    tmp_path,
+):
+    alone = write_pages(CONTENT, [], tmp_path / "alone").stat().st_size
+    page = write_pages(CONTENT, sections(3), tmp_path / "r", most_in_all=alone + 250)
+    names = sorted(one.name for one in page.parent.iterdir())
+    assert names == ["index.html", "tests-01.html"]
+    assert "<p id=test-" not in page.read_text()
+    assert {f"tests-01.html#test-{n}" for n in range(3)} <= set(links(page))
+    text = (page.parent / "tests-01.html").read_text()
+    assert all(f"<p id=test-{n}>" in text for n in range(3))
+    # nothing is gained where there is no section to move
+    assert write_pages(CONTENT, [], tmp_path / "none", most_in_all=1).exists()
+    assert not (tmp_path / "none" / "tests-01.html").exists()

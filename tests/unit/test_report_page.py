@@ -279,9 +279,17 @@ def test_the_summary_of_a_campaign_is_shown_as_it_stands(report, rich_test):
     assert "1 test (1 cyclic)" not in "".join(page.text)
 
 
-def test_a_test_that_was_not_redone_is_said_to_be_reduced(report, rich_test):
+def test_the_page_does_not_tell_the_run_that_made_an_archive_from_a_later_one(report, rich_test):
     page = report(rich_test, status=STATUS + "T-1,unchanged,0,,,0.1\r\n")
-    assert page.rows("Tests in the order")[1][-1][1] == "reduced earlier, unchanged"
+    assert page.rows("Tests in the order")[1][-1][1] == "reduced with notes"
+
+
+def test_of_a_test_without_notes_none_are_said(report, bare_test):
+    test = renamed(replace(bare_test, notes=()), "T-1")
+    with_notes = bool(test.all_notes())
+    page = report(test, status=STATUS + "T-1,unchanged,0,,,0.1\r\n")
+    assert page.rows("Tests in the order")[1][-1][1] == "reduced"
+    assert not with_notes
 
 
 def test_failures_come_first_and_a_kept_archive_is_called_old(report, rich_test):
@@ -358,6 +366,14 @@ def test_headings_go_down_one_level_at_a_time_and_tables_say_what_heads_what(rep
     assert len(ids) == len(set(ids))
     targets = [a["href"] for tag, a in page.elements if tag == "a"]
     assert all(target[1:] in ids for target in targets)
+
+
+def test_the_page_of_design_values_is_linked_where_one_is_written(report, rich_test, tmp_path):
+    report(rich_test)
+    path = write_report(tmp_path, tmp_path / "reports", values_page="../design-values.html")
+    beside = [a["href"] for tag, a in Page(path.read_text(encoding="utf-8")).elements
+              if tag == "a" and not a["href"].startswith("#")]  # fmt: skip
+    assert beside == ["../design-values.html"]
 
 
 def test_a_plot_says_what_it_shows_and_has_a_caption(report, rich_test):
@@ -461,3 +477,22 @@ def test_a_page_in_us_units_says_what_of_it_is_not(report, rich_test):
     words = "Notes, settings and history are as in the archives, in SI."
     assert words in "".join(report(rich_test, units="us").text)
     assert words not in "".join(report(rich_test).text)
+
+
+def test_an_archive_of_a_test_that_the_campaign_has_no_more_says_so(report, rich_test):
+    status = STATUS + "T-1,reduced,0,,,1\r\n"
+    page = report(rich_test, renamed(rich_test, "T-9"), status=status)
+    text = " ".join("".join(page.text).split())
+    assert "T-9 The campaign has no such test now" in text
+    assert "T-1 The campaign has no such test now" not in text
+    rows = {row[0][1]: row[-1][1] for row in page.rows("Tests in the order they were made")[1:]}
+    assert rows["T-1"] == "reduced"
+    assert rows["T-9"] == "of an earlier run: no test of the campaign now"
+
+
+def test_an_archive_of_the_campaign_that_nothing_stands_for_now_says_so(rich_test, write, tmp_path):
+    write(rich_test)
+    page = write_report(tmp_path, tmp_path / "r", stray=["surfaces.nc", "T-9.nc"])
+    text = " ".join("".join(Page(page.read_text(encoding="utf-8")).text).split())
+    assert "surfaces.nc Nothing in the campaign stands for this archive now" in text
+    assert "T-9.nc Nothing" not in text

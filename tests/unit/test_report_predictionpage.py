@@ -24,6 +24,7 @@ from reduction.report.figures.waves import draw_section, draw_surface, draw_wave
 from reduction.report.htmltable import NOT_GIVEN
 from reduction.report.predictionpage import write_armour_page, write_wave_page
 from reduction.report.render import about_page
+from reduction.report.style import Shown, with_prefix
 from reduction.report.wavetables import (
     anchor_table,
     coefficient_table,
@@ -375,3 +376,23 @@ def test_what_a_page_is_made_from_is_said_in_sentences():
     us = about_page("us", "archives", in_si="Notes are in SI.", references="R", definitions=["D."])
     assert us[:3] == ["Units: US customary.", "Notes are in SI.", "Reference: R."]
     assert us[-1] == "D."
+
+
+@pytest.mark.parametrize(("name", "title"), [("armour", "Armour"), ("cable 7", "Armour cable 7")])
+def test_a_name_that_says_the_kind_again_is_left_out(tmp_path, armour, name, title):
+    page = write_armour_page(armour(), tmp_path / "out", name=name).read_text(encoding="utf-8")
+    assert f"<h1>{title}</h1>" in page
+
+
+@pytest.mark.parametrize(
+    ("unit", "size", "shown"),
+    [
+        ("N", 217_559.0, Shown("kN", 1e-3)),
+        ("N", -2.2e8, Shown("MN", 1e-6)),
+        ("N", 9999.0, Shown("N", 1.0)),
+        ("lbf", 2.2e8, Shown("lbf", 1.0)),
+        ("MPa", 2.2e8, Shown("MPa", 1.0)),
+    ],
+)
+def test_a_large_number_has_a_prefix(unit, size, shown):
+    assert with_prefix(Shown(unit, 1.0), size) == shown

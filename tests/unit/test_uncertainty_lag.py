@@ -136,3 +136,14 @@ def test_few_turns_and_few_samples_are_refused():
 def test_series_that_differ_in_length_are_refused():
     with pytest.raises(DataError, match="time, position and tension do not pair up"):
         lag_by_turns(np.arange(9.0), np.arange(9.0), [np.arange(8.0)], [3])
+
+
+def test_a_turn_beside_a_gap_of_days_is_left_out():
+    time, position, force = log("elastic", lag=0.02)
+    turns = np.searchsorted(time, TURNS)
+    # on one side of it all samples are one instant beside the length of the window
+    time = time + np.where(np.arange(time.size) > turns[8] + 3, 1e6, 0.0)
+    found = lag_by_turns(time, position, [force], turns)
+    whole = estimate(*log("elastic", lag=0.02))
+    assert found.lag == pytest.approx(whole.lag, abs=5e-4)
+    assert found.n_turns[0] < whole.n_turns[0]

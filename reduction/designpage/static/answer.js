@@ -12,7 +12,7 @@ function showRow(row) {
   const at = element("dl", null, { class: "at" });
   let last = null;
   for (const [head, text] of row) {
-    const cell = element(head.startsWith("value") ? "strong" : "span", text, { "data-head": head });
+    const cell = element(head.startsWith("value") ? "strong" : "span", head === "remark" ? text : grouped(text), { "data-head": head });
     const words = head.replaceAll("\n", " ").trim(), [, name, unit] = words.match(/^(.*?) ?(?:\[(.*)\])?$/);
     if (head.startsWith("value")) {
       const value = element("p", null, { class: "value" });
@@ -82,7 +82,7 @@ function show() {
     brief("Refused: why");
   } else {
     const remarks = remarksOf(found.found), [unit, factor] = displayUnit(found.found.unit, asked.system);
-    brief(`${symbolOf(asked.quantity)} ${short(factor * found.found.value)} ${unit === "1" ? "" : unit}${remarks.length ? " (flagged)" : ""}`);
+    brief(`${symbolOf(asked.quantity)} ${grouped(valueText(found.found, factor))} ${unit === "1" ? "" : unit}${remarks.length ? " (flagged)" : ""}`);
     if (remarks.length) {
       const flags = listOf(remarks);
       flags.className = "flags";
@@ -126,19 +126,21 @@ function showAbsent(line) {
 function showNotes(line, asked, found) {
   const notes = byId("notes"), facts = element("dl", null, { class: "facts" });
   const fact = (name, text) => text && facts.append(element("dt", name), element("dd", text));
+  const report = Object.hasOwn(DATA.reports, line.campaign) ? DATA.reports[line.campaign] : "";
   const [force, scale] = displayUnit("N", asked.system);
   const printed = asked.quantity === DASHPOT ? [SPRING, TIME] : [asked.quantity];
   fact("source", line.printed
     ? distinct(printed.map((name) => line.printed[name] ?? line.source)).join("; ") : line.source);
   fact("campaign", line.campaign);
+  if (report) facts.lastChild.append(" (", element("a", "its report", { href: report }), ")");
   fact("material", line.material);
   fact("construction", line.construction);
   fact("condition", line.condition);
   fact("diameter", diameterOf(line));
   if (Number.isFinite(line.rated_break_strength)) {
-    fact("%RBS is of", `${short(scale * line.rated_break_strength)} ${force}${line.strength_of ? ` (${line.strength_of})` : ""}`);
+    fact("%RBS is of", `${grouped(short(scale * line.rated_break_strength))} ${force}${line.strength_of ? ` (${line.strength_of})` : ""}`);
   }
-  if (Number.isFinite(line.tensile_strength)) fact("strength it still has", `${short(scale * line.tensile_strength)} ${force}`);
+  if (Number.isFinite(line.tensile_strength)) fact("strength it still has", `${grouped(short(scale * line.tensile_strength))} ${force}`);
   notes.append(element("h3", "Source"), facts);
   if (found.found) {
     notes.append(element("h3", "Notes"), listOf(found.said.map((one) => one.replace(/^note: /, ""))));

@@ -89,12 +89,12 @@ function chartOf({ line, quantity, branch, levels, name, found, x: [xUnit, xFact
   for (const tick of ticks) {
     const y = toY(tick / yFactor);
     root.append(svg("line", { x1: CHART.left, x2: CHART.left + box, y1: y, y2: y, class: "grid" }),
-      svg("text", { x: CHART.left - 5, y: y + 4, class: "tick end" }, general(tick / 1000 ** thousands, 4)));
+      svg("text", { x: CHART.left - 5, y: y + 4, class: "tick end" }, plainNumber(tick / 1000 ** thousands, 4)));
   }
   for (const tick of ticksOf(xFactor * (left - edge), xFactor * (right + edge), 5)) {
     const x = toX(tick / xFactor);
     root.append(svg("line", { x1: x, x2: x, y1: CHART.top + tall, y2: CHART.top + tall + 4, class: "axis" }),
-      svg("text", { x, y: CHART.top + tall + 16, class: "tick middle" }, general(tick, 4)));
+      svg("text", { x, y: CHART.top + tall + 16, class: "tick middle" }, grouped(plainNumber(tick, 4))));
   }
   for (const part of connected(points)) {
     for (const [a, b, kind] of [["low", "high", "run"], ["surface_low", "surface_high", "surface"]]) {

@@ -23,7 +23,7 @@ function identified(rest, apparent, energy, levels) {
 
 function partOf(rest, spring, time, levels) {
   const holds = Object.entries(levels)
-    .map(([name, value]) => `${name.replaceAll("_", " ")} ${general(value, 5)}`).join(", ");
+    .map(([name, value]) => `${name.replaceAll("_", " ")} ${plainNumber(value, 5)}`).join(", ");
   return new Viscoelasticity(rest.value, spring, time,
     { mean: levels.mean_tension, holds: `${holds} (SI)`, frequency: levels.frequency });
 }
@@ -72,19 +72,19 @@ function lineDynamics(line, levels, flag) {
 // Printed K_1 and tau, where K_ap of them is not to be told from that of the surface.
 function instead(line, rest, [apparent, energy], printed, levels, reason) {
   const why = `no K_1 and tau of ${line.name} give back its K_ap and H there: ${DATA.reasons[reason]}`;
-  const numbers = `K_0 ${general(rest.value, 5)} N, K_ap ${general(apparent.value, 5)} N, H `
-    + `${general(energy.value, 4)} J/m`;
+  const numbers = `K_0 ${plainNumber(rest.value, 5)} N, K_ap ${plainNumber(apparent.value, 5)} N, H `
+    + `${plainNumber(energy.value, 4)} J/m`;
   if (!printed.length) throw new Refusal(why, { found: numbers, needed: "other levels" });
   const [spring, time] = printed.map((one) => one.value);
   if (!(spring > 0 && time > 0)) {
     throw new Refusal(`${why}; and the printed ones are not above zero`, {
-      found: `K_1 ${general(spring, 4)} N, tau ${general(time, 4)} s; ${numbers}`, needed: "other levels",
+      found: `K_1 ${plainNumber(spring, 4)} N, tau ${plainNumber(time, 4)} s; ${numbers}`, needed: "other levels",
     });
   }
   const part = partOf(rest, spring, time, levels), model = part.apparent;
   if (!(apparent.surface_low <= model && model <= apparent.surface_high)) {
     throw new Refusal(`${why}; and the printed ones give another K_ap than the line has`, {
-      found: `K_ap ${general(model, 5)} N; ${numbers}`, needed: intervalOf(apparent),
+      found: `K_ap ${plainNumber(model, 5)} N; ${numbers}`, needed: intervalOf(apparent),
       hint: "Another level, or the curve alone: leave the levels away.",
     });
   }
@@ -105,7 +105,7 @@ function overFrequency(line, part, levels) {
     const isInside = found.surface_low <= model && model <= found.surface_high;
     const outside = isInside || Number.isNaN(found.surface_low) ? "" : ", OUTSIDE its interval";
     const share = own > 0 ? ` (${fixed(100 * (model / own - 1), 1, "+")} percent${outside})` : "";
-    return `${general(frequency, 3)} Hz ${general(model, 5)} against ${general(own, 5)} N${share}`;
+    return `${plainNumber(frequency, 3)} Hz ${plainNumber(model, 5)} against ${plainNumber(own, 5)} N${share}`;
   });
   return ["one K_1 and tau do not hold at every frequency; K_ap of the exported line against the "
     + `surface at this mean tension and amplitude: ${rows.join(", ")}`];
@@ -130,8 +130,8 @@ function growthOf(line, levels, fast, isIdentified) {
   const centre = sumOf(means) / means.length, level = sumOf(totals) / totals.length;
   const slope = sumOf(points.map(([x, y]) => (x - centre) * (y - level))) / squares(means.map((x) => x - centre));
   const worst = Math.max(...points.map(([x, y]) => Math.abs(slope * (x - centre) + level - y)));
-  const words = `growth of the dynamic stiffness with the mean tension: ${general(slope, 4)}, a straight line `
-    + `through ${means.length} of 9 means over the tested ones, off by up to ${general(worst, 3)} N, `
+  const words = `growth of the dynamic stiffness with the mean tension: ${plainNumber(slope, 4)}, a straight line `
+    + `through ${means.length} of 9 means over the tested ones, off by up to ${plainNumber(worst, 3)} N, `
     + `${general((100 * worst) / fast, 2)} percent of EA_d`;
   if (slope * (Math.max(...means) - Math.min(...means)) < 1e-9 * Math.max(...totals.map(Math.abs))) {
     return [0, `${words}; it does not grow, and no slope is exported`];
@@ -154,25 +154,25 @@ function totalAt(line, levels, isIdentified) {
 
 function saidIdentified(part, amplitude, half, isExact) {
   const known = Number.isFinite(half.spring) && Number.isFinite(half.time)
-    ? `; 95 percent of K_1 +-${general(half.spring, 3)} N, of tau +-${general(half.time, 3)} s`
+    ? `; 95 percent of K_1 +-${plainNumber(half.spring, 3)} N, of tau +-${plainNumber(half.time, 3)} s`
       + (isExact ? ", K_0 taken as exact: it has no interval" : "")
     : "; K_ap or H has no interval, and so have K_1 and tau none";
-  return `K_1 ${general(part.spring, 5)} N and tau ${general(part.time, 4)} s are identified from the surfaces `
+  return `K_1 ${plainNumber(part.spring, 5)} N and tau ${plainNumber(part.time, 4)} s are identified from the surfaces `
     + "of K_ap and H and from K_0 at these levels: the exported line gives back K_ap "
-    + `${general(part.apparent, 5)} N and H ${general(part.energyAt(part.frequency, amplitude), 4)} J/m there${known}`;
+    + `${plainNumber(part.apparent, 5)} N and H ${plainNumber(part.energyAt(part.frequency, amplitude), 4)} J/m there${known}`;
 }
 
 function saidPrinted(rest, printed, measured, frequency, amplitude) {
   if (!printed.length) return "the source has no surfaces of K_1 and tau that can be used";
   const [spring, time] = printed.map((one) => one.value);
-  const said = `the printed surfaces of K_1 and tau, ${general(spring, 5)} N and ${general(time, 4)} s, are not used`;
+  const said = `the printed surfaces of K_1 and tau, ${plainNumber(spring, 5)} N and ${plainNumber(time, 4)} s, are not used`;
   if (!(spring > 0 && time > 0)) return `${said}: they are not above zero`;
   const part = new Viscoelasticity(rest, spring, time, { frequency });
   return `${said}: they would give ${against(part, measured, amplitude)}`;
 }
 
 function saidInstead(part, measured, amplitude, reason) {
-  return `DOUBTFUL: K_1 ${general(part.spring, 5)} N and tau ${general(part.time, 4)} s are those of the `
+  return `DOUBTFUL: K_1 ${plainNumber(part.spring, 5)} N and tau ${plainNumber(part.time, 4)} s are those of the `
     + `printed surfaces; none give back K_ap and H there: ${DATA.reasons[reason]}. They give `
     + against(part, measured, amplitude);
 }
@@ -182,7 +182,7 @@ function against(part, measured, amplitude) {
   return [["K_ap", "N"], ["H", "J/m"]].map(([name, unit], place) => {
     const own = measured[place].value;
     const share = own > 0 ? `, ${fixed(100 * (model[place] / own - 1), 1, "+")} percent` : "";
-    return `${name} ${general(model[place], 5)} ${unit} where the line has ${general(own, 5)}${share}`;
+    return `${name} ${plainNumber(model[place], 5)} ${unit} where the line has ${plainNumber(own, 5)}${share}`;
   }).join("; ");
 }
 
@@ -195,8 +195,8 @@ function doubtsOfIdentified(found, half, energy) {
       + `${intervalOf(energy)}, holds zero`);
   }
   if (half.time >= found.time) {
-    said.push(`DOUBTFUL: the dashpot is hardly known: tau ${general(found.time, 4)} s with a 95 percent interval `
-      + `of +-${general(half.time, 3)} s, from those of K_ap, H and K_0`);
+    said.push(`DOUBTFUL: the dashpot is hardly known: tau ${plainNumber(found.time, 4)} s with a 95 percent interval `
+      + `of +-${plainNumber(half.time, 3)} s, from those of K_ap, H and K_0`);
   }
   return said;
 }
@@ -214,12 +214,12 @@ function doubtsOfPrinted(time) {
 
 function intervalOf(found) {
   if (!Number.isFinite(found.surface_low)) return "an interval, which the source does not have";
-  return `${general(found.surface_low, 4)} to ${general(found.surface_high, 4)} ${found.unit}`;
+  return `${plainNumber(found.surface_low, 4)} to ${plainNumber(found.surface_high, 4)} ${found.unit}`;
 }
 
 function saidOfValue(found) {
   const isKnown = Number.isFinite(found.surface_high);
-  return `${found.source}: ${found.quantity} ${general(found.value, 6)} ${found.unit}, `
+  return `${found.source}: ${found.quantity} ${plainNumber(found.value, 6)} ${found.unit}, `
     + (isKnown ? `95 percent of the surface ${intervalOf(found)}` : "no interval known")
     + (isKnown && found.surface_low < 0 ? ": its lower end is below zero: not told from zero" : "")
     + (found.errata.length ? `, errata ${found.errata.join(", ")}` : "")

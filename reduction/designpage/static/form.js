@@ -146,7 +146,7 @@ function makeLevels() {
     select.addEventListener("change", () => {
       const old = STATE.levels[name], value = Number(old[0]);
       const si = levelInSi(name, value, old[1], line.rated_break_strength);
-      const text = old[0] !== "" && Number.isFinite(si) ? general(inUnit(line, name, si, select.value), 6) : old[0];
+      const text = old[0] !== "" && Number.isFinite(si) ? plainNumber(inUnit(line, name, si, select.value), 6) : old[0];
       STATE.levels[name] = [text, select.value, old[2]];
       input.value = text;
       byId(`tested-${name}`).textContent = testedText(line, name, low, high, select.value);
@@ -162,7 +162,7 @@ function typedIn(units, name) {
   if (!before || !before[2] || units.includes(before[1]) || before[1] === "%RBS") return before;
   const unit = units.find((one) => one !== "%RBS");
   const number = (Number(before[0]) * scaleOf(DATA.levels[name], before[1])) / scaleOf(DATA.levels[name], unit);
-  return [before[0] !== "" && Number.isFinite(number) ? general(number, 6) : before[0], unit, true];
+  return [before[0] !== "" && Number.isFinite(number) ? plainNumber(number, 6) : before[0], unit, true];
 }
 
 function testedText(line, name, low, high, unit) {

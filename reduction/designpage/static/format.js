@@ -69,9 +69,59 @@ function scientific(value, digits) {
   return signOf(value) + (digits ? `${text[0]}.${text.slice(1)}` : text) + powerText(power);
 }
 
+// As reduction.digits.plain_number.
+function plainNumber(value, digits = 5) {
+  const text = general(value, digits), size = Math.abs(Number(text));
+  return size >= 10 ** digits && size < 1e7 ? fixed(Number(text), 0) : text;
+}
+
+// As reduction.digits.fixed_number, with no mark between thousands.
+function fixedNumber(value, places) {
+  const unit = 10 ** Math.max(-places, 0);
+  let rounded = value;
+  if (places < 0) {
+    const count = value / unit, whole = Math.round(count);
+    // the language rounds a half up
+    rounded = (Math.abs(count % 1) === 0.5 && whole % 2 ? whole - 1 : whole) * unit;
+  }
+  const text = fixed(rounded, Math.max(places, 0));
+  return Number(text) === 0 ? text.replace("-", "") : text;
+}
+
+// As reduction.digits.places_of.
+function placesOf(value, digits) {
+  if (value === 0) return 0;
+  return Math.min(digits - 1 - Number(value.toExponential(16).split("e")[1]), 12);
+}
+
+// As reduction.digits.places_within; null where that is None.
+function placesWithin(value, halves) {
+  const known = halves.filter((half) => Number.isFinite(half) && half > 0);
+  const size = Math.max(Math.abs(value), ...known);
+  if (!known.length || size < 1e-4 || size >= 1e9) return null;
+  return Math.max(Math.min(placesOf(Math.min(...known), 2), placesOf(value, 7)), placesOf(value, 2));
+}
+
 // A number for a table; a dash where there is none.
 function short(value, digits = 5) {
-  return Number.isFinite(value) ? general(value, digits) : "-";
+  return Number.isFinite(value) ? plainNumber(value, digits) : "-";
+}
+
+// A level for a table: of a large one no digit before the point is lost.
+function asGiven(value) {
+  const size = Math.abs(value);
+  return size >= 1e5 && size < 1e7 ? fixed(value, 0) : short(value);
+}
+
+// A number that is known within half widths of intervals, to two digits of the narrowest.
+function within(value, ...halves) {
+  const places = Number.isFinite(value) ? placesWithin(value, halves) : null;
+  return places === null ? short(value) : fixedNumber(value, places);
+}
+
+// What is shown of a number of the page: a narrow blank between thousands from 100000 on.
+function grouped(text) {
+  return text.replace(/(?<![\d.])\d{6,}/g, (digits) => digits.replace(/\B(?=(\d{3})+$)/g, "\u202f"));
 }
 
 // Numbers of the data: null is none, the text inf is infinite.

@@ -52,11 +52,11 @@ class Viscoelasticity {
     const all = [rest, dynamic, dashpot, 0];
     if (!all.every(Number.isFinite) || Math.min(...all) < 0) {
       throw new Refusal("stiffness and damping of a line are not numbers of at least zero",
-        { found: all.map((one) => general(one, 6)).join(", ") });
+        { found: all.map((one) => plainNumber(one, 6)).join(", ") });
     }
     if (!(dynamic > rest && rest > 0)) {
       throw new Refusal("the dynamic stiffness is not above the static one", {
-        found: `${general(dynamic, 6)} N and ${general(rest, 6)} N`,
+        found: `${plainNumber(dynamic, 6)} N and ${plainNumber(rest, 6)} N`,
         needed: "a static stiffness above zero and a dynamic one above that",
       });
     }

@@ -49,7 +49,7 @@ function statedLine(curve, stated) {
   }
   if (line.wet_linear_density >= line.linear_density) {
     throw new Refusal(`${line.name} is not lighter in water than in air`, {
-      found: `${general(line.wet_linear_density, 6)} kg/m in water, ${general(line.linear_density, 6)} kg/m in air`,
+      found: `${plainNumber(line.wet_linear_density, 6)} kg/m in water, ${plainNumber(line.linear_density, 6)} kg/m in air`,
       needed: "a wet linear density below the dry one",
     });
   }
@@ -67,19 +67,19 @@ function needed(line, name) {
 function volumeDiameter(line) {
   const { water, fibres } = DATA.export;
   let displaced = (line.linear_density - line.wet_linear_density) / water;
-  let words = `dry and wet mass in water of ${general(water, 6)} kg/m3`;
+  let words = `dry and wet mass in water of ${plainNumber(water, 6)} kg/m3`;
   const material = line.material.trim().toLowerCase();
   const density = Object.hasOwn(fibres, material) ? fibres[material] : NaN;
   if (!Number.isFinite(displaced)) {
     displaced = line.linear_density / density;
-    words = `the mass a length and the density of ${line.material} fibre, ${general(density, 6)} kg/m3 `
+    words = `the mass a length and the density of ${line.material} fibre, ${plainNumber(density, 6)} kg/m3 `
       + "(Bigon and Regazzoni, The Morrow Guide to Knots, p. 14), since no wet mass is stated";
   }
   if (displaced > 0) {
     const diameter = Math.sqrt((4 * displaced) / Math.PI);
     const nominal = Number.isNaN(line.diameter) ? ""
-      : `; drag refers to it, and not to the nominal ${general(1000 * line.diameter, 4)} mm`;
-    return [diameter, `diameter: ${general(1000 * diameter, 4)} mm, of the displaced volume, from ${words}${nominal}`];
+      : `; drag refers to it, and not to the nominal ${plainNumber(1000 * line.diameter, 4)} mm`;
+    return [diameter, `diameter: ${plainNumber(1000 * diameter, 4)} mm, of the displaced volume, from ${words}${nominal}`];
   }
   return [needed(line, "diameter"), "diameter: nominal; the displaced volume of a rope is smaller"];
 }
@@ -88,8 +88,8 @@ function rangeOf(line) {
   const [low, high] = line.tested;
   if (Number.isNaN(low)) return "nothing was tested";
   const start = low > EDGE * high
-    ? `; the start, a line from 0 0 up to strain ${general(low, 6)}, was NOT measured on this curve` : "";
-  return `tested from strain ${general(low, 6)} to ${general(high, 6)}${start}`;
+    ? `; the start, a line from 0 0 up to strain ${plainNumber(low, 6)}, was NOT measured on this curve` : "";
+  return `tested from strain ${plainNumber(low, 6)} to ${plainNumber(high, 6)}${start}`;
 }
 
 // What of a line is in doubt.
@@ -98,10 +98,10 @@ function doubtsOf(line) {
   if (!(Number.isFinite(mass) && Number.isFinite(nominal))) return [];
   const volume = volumeDiameter(line)[0];
   const floats = ((DATA.export.water * Math.PI) / 4) * volume ** 2;
-  const unfit = (than) => [`DOUBTFUL: the displaced volume has a diameter of ${general(1000 * volume, 4)} mm, `
-    + `${than} the nominal one of ${general(1000 * nominal, 4)} mm: mass a length and diameter do not fit`];
+  const unfit = (than) => [`DOUBTFUL: the displaced volume has a diameter of ${plainNumber(1000 * volume, 4)} mm, `
+    + `${than} the nominal one of ${plainNumber(1000 * nominal, 4)} mm: mass a length and diameter do not fit`];
   if (mass < floats && !Number.isFinite(line.wet_linear_density)) {
-    return [`DOUBTFUL: the line floats: ${general(mass, 4)} kg/m displaces ${general(floats, 4)} kg/m of `
+    return [`DOUBTFUL: the line floats: ${plainNumber(mass, 4)} kg/m displaces ${plainNumber(floats, 4)} kg/m of `
       + "water. Unless it does, state --wet-linear-density"];
   }
   if (volume > (1 + EDGE) * nominal) return unfit("above");
@@ -115,10 +115,10 @@ function headerLines(line, curve, remarks) {
     const last = curve.strain.length - 1;
     told.push(
       `Curve: ${line.curve}`,
-      `Holds as ${rangeOf(line)}. The curve ends at strain ${general(curve.strain[last], 6)} and `
-        + `tension ${general(curve.tension[last], 6)} N; beyond it nothing is known; some codes keep the `
+      `Holds as ${rangeOf(line)}. The curve ends at strain ${plainNumber(curve.strain[last], 6)} and `
+        + `tension ${plainNumber(curve.tension[last], 6)} N; beyond it nothing is known; some codes keep the `
         + "last tension there",
-      `${curve.strain.length} points of ${line.strain.length}; greatest error ${general(curve.error, 3)} N, `
+      `${curve.strain.length} points of ${line.strain.length}; greatest error ${plainNumber(curve.error, 3)} N, `
         + `${scientific(curve.share, 2)} of the greatest tension; ${curve.local}`);
     if (curve.words) told.push(`At the start: ${curve.words}`);
   }
@@ -167,7 +167,7 @@ function deckOf(line, row, head, strain, stiffness) {
     "1 disableOutTime",
     "0 g",
     `${number15(2 * depth)} WtrDpth`,
-    `${general(step, 3)} dtM`,
+    `${plainNumber(step, 3)} dtM`,
     "10 TmaxIC",
     "0.1 dtIC",
     `${rule} OUTPUTS ${rule}`,

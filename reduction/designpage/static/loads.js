@@ -13,13 +13,13 @@ class Refusal extends Error {
 }
 
 function cycleLoads(mean, amplitude, line) {
-  if (amplitude < 0) throw new Refusal("an amplitude is negative", { found: `${general(amplitude, 6)} N` });
+  if (amplitude < 0) throw new Refusal("an amplitude is negative", { found: `${plainNumber(amplitude, 6)} N` });
   const least = mean - amplitude;
   if (least < -EDGE * Math.max(mean, 1)) {
     throw new Refusal(
       "1 of 1 amplitudes are above their mean tension: the line goes slack, and no surface knows of that",
       {
-        found: `${general(amplitude, 4)} N about ${general(mean, 4)} N`,
+        found: `${plainNumber(amplitude, 4)} N about ${plainNumber(mean, 4)} N`,
         needed: "an amplitude of at most the mean",
       });
   }
@@ -41,7 +41,7 @@ function oneTension(line, levels, branch) {
   for (const name of ["tension", "mean_tension"]) {
     if (name in levels) {
       if (levels[name] < 0) {
-        throw new Refusal(`${name} is negative`, { found: `${general(levels[name], 4)} N` });
+        throw new Refusal(`${name} is negative`, { found: `${plainNumber(levels[name], 4)} N` });
       }
       return levels[name];
     }
@@ -62,7 +62,7 @@ function loadsOfLine(line, levels, branch = "") {
   if (line.is_tether) {
     if (loads.is_slack) {
       throw new Refusal(`${line.name} goes slack at 1 of 1 points, and a tether must not`, {
-        found: `a minimum tension of zero, peak ${general(loads.peak, 4)} N`,
+        found: `a minimum tension of zero, peak ${plainNumber(loads.peak, 4)} N`,
         needed: "a minimum above zero",
         hint: "A slack tether tangles and is cut: more stretch, or less amplitude.",
       });

@@ -30,7 +30,7 @@ function lookUp(line, quantity, levels, { branch = null, flag = false } = {}) {
     if (!Number.isFinite(value)) throw new Refusal(`${name} is not finite`, { needed: "numbers" });
     if (name === "frequency" && value <= 0) {
       throw new Refusal("a frequency is not positive",
-        { found: `${general(value, 5)} Hz`, needed: "above zero" });
+        { found: `${plainNumber(value, 5)} Hz`, needed: "above zero" });
     }
   }
   if (surface && line.factors.every((name) => name in levels)) {
@@ -85,7 +85,7 @@ function valuesOfSurface(line, surface, levels, flag) {
       const rounded = surface.rounding.length ? surface.rounding[place] : 0;
       if (low - rounded <= value && value <= high + rounded) return [];
       const unit = unitOf(name);
-      return [`${name} ${general(value, 5)} ${unit}, tested ${general(low, 5)} to ${general(high, 5)} ${unit}`];
+      return [`${name} ${plainNumber(value, 5)} ${unit}, tested ${plainNumber(low, 5)} to ${plainNumber(high, 5)} ${unit}`];
     });
     throw new Refusal(`1 of 1 points are outside what was tested of ${surface.quantity} of ${line.name}`, {
       found: told.join("; "),
@@ -109,10 +109,10 @@ function valuesOfCurve(line, curve, levels, flag) {
   if (!flag && !points.inside) {
     const unit = unitBehind(curve.variable);
     const gaps = curve.gaps.filter(([low, high]) => low < x && x < high)
-      .map(([low, high]) => `, nothing between ${general(low, 5)} and ${general(high, 5)}`).join("");
+      .map(([low, high]) => `, nothing between ${plainNumber(low, 5)} and ${plainNumber(high, 5)}`).join("");
     throw new Refusal(`1 of 1 points are outside what was tested of ${curve.quantity} of ${line.name}`, {
-      found: `${curve.variable} ${general(x, 5)}${unit}`,
-      needed: `${general(curve.low, 5)} to ${general(curve.high, 5)}${unit}${gaps}`,
+      found: `${curve.variable} ${plainNumber(x, 5)}${unit}`,
+      needed: `${plainNumber(curve.low, 5)} to ${plainNumber(curve.high, 5)}${unit}${gaps}`,
       hint: [curve.range_note, FLAG_HINT].filter(Boolean).join(". "),
     });
   }
@@ -134,8 +134,8 @@ function jointsOf(curve, x) {
     const above = curve.value[place + 1];
     const meet = place + 1 < curve.at.length && curve.at[place + 1] - curve.at[place] === 0
       && above - below !== 0 && x === curve.at[place];
-    return meet ? [`at ${curve.variable} ${general(curve.at[place], 5)} two pieces meet: `
-      + `${general(below, 4)}${unitBehind(curve.quantity)} below, ${general(above, 4)} above`] : [];
+    return meet ? [`at ${curve.variable} ${plainNumber(curve.at[place], 5)} two pieces meet: `
+      + `${plainNumber(below, 4)}${unitBehind(curve.quantity)} below, ${plainNumber(above, 4)} above`] : [];
   });
 }
 

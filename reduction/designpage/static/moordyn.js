@@ -19,7 +19,7 @@ function moordynFiles({ line: key, form, curve, levels = null, isShare = false, 
   const dynamics = lineDynamics(of, levels, flag);
   const line = statedLine({ ...known, sources: [...known.sources, ...dynamics.sources] }, stated);
   if (isShare && of.rated_break_strength > 0) {
-    line.sources.push(`levels in percent of the break strength: of ${general(of.rated_break_strength, 6)} N, `
+    line.sources.push(`levels in percent of the break strength: of ${plainNumber(of.rated_break_strength, 6)} N, `
       + "that of the source");
   }
   line.notes = distinct([...line.notes, ...dynamics.notes, ...line.last_notes]).filter(Boolean);
@@ -35,7 +35,7 @@ function tableFiles(line) {
   const curve = thinCurve(line.strain, line.tension), table = `${line.file}_table.txt`, damping = DATA.export.numerical_damping;
   const head = headerLines(line, curve, [
     ...saidOfType(line),
-    `internal damping ${general(damping, 6)}: MoorDyn takes a number below zero for minus a `
+    `internal damping ${plainNumber(damping, 6)}: MoorDyn takes a number below zero for minus a `
       + "share of critical damping, and finds the damping of each segment by it; numerical, not measured",
     `${table} belongs beside this file`,
   ]);
@@ -43,9 +43,9 @@ function tableFiles(line) {
   const steepest = Math.max(...curve.strain.slice(1).map((strain, place) => (
     (curve.tension[place + 1] - curve.tension[place]) / (strain - curve.strain[place]))));
   const [low, high] = line.tested;
-  const where = Number.isNaN(low) ? "nothing tested" : `tested ${general(low, 4)} to ${general(high, 4)}`;
+  const where = Number.isNaN(low) ? "nothing tested" : `tested ${plainNumber(low, 4)} to ${plainNumber(high, 4)}`;
   const first = oneLine(`${line.name}; ${line.synthetic ? "SYNTHETIC; " : ""}${line.curve}; error `
-    + `${general(curve.error, 3)} N; ${where}; ${line.sources.join("; ")}`);
+    + `${plainNumber(curve.error, 3)} N; ${where}; ${line.sources.join("; ")}`);
   const rows = curve.strain.map((strain, place) => `${number15(strain)} ${number15(curve.tension[place])}`);
   return [
     [`${line.file}.dat`, deckOf(line, row, head, line.strain[line.strain.length - 1] / 2, steepest)],
@@ -61,7 +61,7 @@ function stiffnessFiles(line, part, form) {
   if (form === "load-dependent") {
     if (!(part.slope > 0)) {
       throw new Refusal(`no growth of the dynamic stiffness of ${line.name} with the mean tension can be written`, {
-        found: part.growth || `slope ${general(part.slope, 6)}`,
+        found: part.growth || `slope ${plainNumber(part.slope, 6)}`,
         needed: "a slope above zero, and a stiffness above zero at no tension",
         hint: "Use --form static-dynamic.",
       });
@@ -70,15 +70,15 @@ function stiffnessFiles(line, part, form) {
   }
   const head = headerLines(line, null, [
     ...saidOfType(line),
-    `EA_s ${general(part.rest, 6)} N is K_0; EA_d ${general(part.fast, 6)} N is K_0 + K_1; relaxation time `
-      + `${general(part.time, 4)} s`,
-    `the dashpot beside the slow spring is ${general(part.slowDashpot, 6)} N s, which behaves as `
-      + `N = K_1 tau = ${general(part.dashpot, 6)} N s of the Maxwell form`,
+    `EA_s ${plainNumber(part.rest, 6)} N is K_0; EA_d ${plainNumber(part.fast, 6)} N is K_0 + K_1; relaxation time `
+      + `${plainNumber(part.time, 4)} s`,
+    `the dashpot beside the slow spring is ${plainNumber(part.slowDashpot, 6)} N s, which behaves as `
+      + `N = K_1 tau = ${plainNumber(part.dashpot, 6)} N s of the Maxwell form`,
     part.holds ? `found at ${part.holds}` : "",
     "a spring constant holds about a mean; the strain of the deck starts at zero tension",
     form === "static-dynamic" ? "" : "MoorDyn takes the running tension of the slow part for "
       + "the mean: about it K_ap of a cycle is 2 to 4 percent above that of static-dynamic on the published lines",
-    `BA_d ${general(fast, 4)} N s: 0.1 of critical for segments of ${general(apart, 6)} m, numerical, not `
+    `BA_d ${plainNumber(fast, 4)} N s: 0.1 of critical for segments of ${plainNumber(apart, 6)} m, numerical, not `
       + "measured; without it the integration grows",
   ]);
   const row = lineTypeRow(line, stiffness, damping);

@@ -49,6 +49,10 @@ function about() {
   byId("about").textContent = `${DATA.published.length} lines and tethers of published reports`
     + `${campaigns ? ` and ${LINES.length - DATA.published.length} lines of ${campaigns} campaign${campaigns > 1 ? "s" : ""}` : ""}, `
     + `with intervals, tested range and source. Made by mooring-reduction ${DATA.version}.`;
+  const reports = Object.entries(DATA.reports);
+  byId("reports").hidden = !reports.length;
+  byId("reports").replaceChildren("Reports: ", ...reports.flatMap(([campaign, address], place) => (
+    [...(place ? [", "] : []), element("a", campaign, { href: address })])));
   const told = [
     ...DATA.faults.map(([campaign, file, text]) => `${campaign}: ${file} cannot be read: ${text}`),
     ...DATA.left_out.map(([campaign, count]) => `${campaign}: ${count} more archives have no room on this page; `

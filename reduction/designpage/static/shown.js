@@ -12,7 +12,8 @@ function unitOfLevel(name, system) {
 
 function span(factor, low, high) {
   if (!(Number.isFinite(low) && Number.isFinite(high))) return "-";
-  return `${short(factor * low)} to ${short(factor * high)}`;
+  const half = (factor * (high - low)) / 2;
+  return `${within(factor * low, half)} to ${within(factor * high, half)}`;
 }
 
 function remarksOf(found) {
@@ -28,18 +29,23 @@ function remarksOf(found) {
   ].filter((one) => one[1]).map((one) => one[0]);
 }
 
+// The value as the row has it, to what its intervals leave.
+function valueText(found, factor) {
+  return within(factor * found.value, ...intervalsOf(found).map(([, low, high]) => (factor * (high - low)) / 2));
+}
+
 // Headings and cells of one row, as the table of the command has them.
 function rowOf(line, found, levels, system) {
   const row = [];
   for (const [name, value] of Object.entries(levels)) {
     const [unit, factor] = unitOfLevel(name, system);
-    row.push([`${name.replaceAll("_", "\n")}\n[${unit}]`, short(factor * value)]);
+    row.push([`${name.replaceAll("_", "\n")}\n[${unit}]`, asGiven(factor * value)]);
     if (TENSIONS.includes(name) && Number.isFinite(line.rated_break_strength)) {
       row.push(["\n[%RBS]", short((100 * value) / line.rated_break_strength, 4)]);
     }
   }
   const [unit, factor] = displayUnit(found.unit, system);
-  row.push([`value\n[${unit}]`, short(factor * found.value)]);
+  row.push([`value\n[${unit}]`, valueText(found, factor)]);
   row.push(...intervalsOf(found).map(([head, low, high]) => [head, span(factor, low, high)]));
   row.push(["peak\n[%RBS]", short(100 * found.peak_share, 4)]);
   row.push(["minimum\n[%RBS]", short(100 * found.minimum_share, 4)]);

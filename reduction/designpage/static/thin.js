@@ -17,8 +17,8 @@ function curveFromZero(strain, tension) {
     const first = back.indexOf(true);
     throw new Refusal(`a curve turns back at ${back.filter(Boolean).length} of ${back.length} steps: a loop is `
       + "not exported", {
-      found: `strain ${general(strain[first], 6)} to ${general(strain[first + 1], 6)}, tension `
-        + `${general(tension[first], 6)} to ${general(tension[first + 1], 6)} N after point ${first + 1}`,
+      found: `strain ${plainNumber(strain[first], 6)} to ${plainNumber(strain[first + 1], 6)}, tension `
+        + `${plainNumber(tension[first], 6)} to ${plainNumber(tension[first + 1], 6)} N after point ${first + 1}`,
       needed: "one branch, or a mean: strain rising, tension not falling",
     });
   }
@@ -26,13 +26,13 @@ function curveFromZero(strain, tension) {
   if (atNone.length) {
     const least = Math.max(...strain.filter((one) => one <= 0));
     throw new Refusal("a curve has tension where it has no strain", {
-      found: `${general(Math.max(...tension.filter((_, place) => strain[place] <= 0)), 6)} N at strain ${general(least, 6)}`,
+      found: `${plainNumber(Math.max(...tension.filter((_, place) => strain[place] <= 0)), 6)} N at strain ${plainNumber(least, 6)}`,
       needed: "strain of the length at zero tension",
     });
   }
   const kept = tension.map((load) => load > 0);
   if (!kept.some(Boolean)) {
-    throw new Refusal("a curve ends at no tension", { found: `${general(tension[tension.length - 1], 6)} N` });
+    throw new Refusal("a curve ends at no tension", { found: `${plainNumber(tension[tension.length - 1], 6)} N` });
   }
   const slack = strain.filter((one, place) => one > 0 && !kept[place]);
   const ofKept = (values) => values.filter((_, place) => kept[place]);
@@ -41,18 +41,18 @@ function curveFromZero(strain, tension) {
     const last = slack[slack.length - 1];
     at = [0, last, ...ofKept(strain)];
     load = [0, 0, ...ofKept(tension)];
-    words = `slack from 0 0 to strain ${general(last, 6)}`;
+    words = `slack from 0 0 to strain ${plainNumber(last, 6)}`;
   } else {
     at = [0, ...ofKept(strain)];
     load = [0, ...ofKept(tension)];
     words = strain.some((one, place) => one === 0 && !kept[place]) ? ""
-      : `a straight line from 0 0 to the first point at strain ${general(at[1], 6)}`;
+      : `a straight line from 0 0 to the first point at strain ${plainNumber(at[1], 6)}`;
   }
   const last = load.length - 1;
   if (stepsBetween(load).some((step) => step <= 1e-12 * load[last])) {
     const lift = LIFT * load[last];
     load = load.map((one, place) => one + (lift * at[place]) / at[last]);
-    const added = `${general(LIFT, 6)} of the greatest tension added over the strain, where it did not rise`;
+    const added = `${plainNumber(LIFT, 6)} of the greatest tension added over the strain, where it did not rise`;
     words = words ? `${words}; ${added}` : added;
   }
   return [at, load, words];
@@ -119,6 +119,6 @@ function thinCurve(strain, tension) {
   });
   return {
     strain: kept, tension: held, error, share: error / high, words,
-    local: `${scientific(local, 2)} of the tension there, or of ${general(LEAST_OF_GREATEST, 6)} of the greatest`,
+    local: `${scientific(local, 2)} of the tension there, or of ${plainNumber(LEAST_OF_GREATEST, 6)} of the greatest`,
   };
 }

@@ -18,8 +18,8 @@ from reduction.record import Bools, Floats
 from reduction.report.experimentview import ExperimentView, in_words, response_unit
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
 from reduction.report.figures.surfaces import base_response, scale_words
-from reduction.report.htmltable import number_text
-from reduction.report.style import COLOURS, plot_text
+from reduction.report.htmltable import number_text, with_interval
+from reduction.report.style import COLOURS, Shown, plot_text, with_prefix
 from reduction.report.surfacegrid import leverage_ratio
 from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
@@ -30,7 +30,6 @@ __all__ = ["draw_cube"]
 _GREY = "#8C8C8C"
 _DEPTH = (0.46, 0.34)
 """By which the back of the cube is shifted right and up."""
-_DIGITS = 4
 
 
 def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> list[Figure]:
@@ -54,7 +53,9 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
         return []
     place = _projected(grid)
     ratio = leverage_ratio(view, surfaces, at)[index]
-    data = [*_edges(), *_cube_points(place, value, ratio > ABOVE_LEVERAGE)]
+    shown = with_prefix(unit, float(np.nanmax(np.abs(at.value[index]))))
+    texts = _short_texts(at.value[index], at.confidence_interval[index], shown)
+    data = [*_edges(), *_cube_points(place, texts, ratio > ABOVE_LEVERAGE)]
     ends = [
         f"{in_words(view.factors[k])} {number_text(view.levels(k)[0], 3)} to"
         f" {number_text(view.levels(k)[2], 3)} {view.factor_units[k].unit}"
@@ -64,8 +65,9 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
         make_figure(
             f"{view.key}-{name}-cube", f"{view.name}: {words} on the cube",
             f"Value of the surface of the {words}{scale_words(name)} at corners, edges and centre"
-            f" [{unit.unit}]: to the right {ends[0]}, upward {ends[1]}, away {ends[2]}. Open"
-            " markers: the runs say less there than at the worst of them.",
+            f" [{shown.unit}]: to the right {ends[0]}, upward {ends[1]}, away {ends[2]}. Open"
+            " markers: the runs say less there than at the worst of them. A value ends at the"
+            " second digit of half its 95 % interval.",
             data, synthetic=view.is_synthetic, height=430,
             xaxis={
                 **axis(f"{view.factor_label(order[0])}, low to high"),
@@ -107,7 +109,15 @@ def _edges() -> list[Trace]:
     ]
 
 
-def _cube_points(place: Floats, value: Floats, is_thin: Bools) -> list[Trace]:
+def _short_texts(value: Floats, interval: Floats, unit: Shown) -> list[str]:
+    """Return values to two digits of half their 95 % interval; to four where there is none."""
+    return [
+        with_interval(float(one), float(low), float(high), unit)[0].text
+        for one, (low, high) in zip(value, interval, strict=True)
+    ]
+
+
+def _cube_points(place: Floats, text: list[str], is_thin: Bools) -> list[Trace]:
     traces: list[Trace] = []
     for own, looks in ((~is_thin, "circle"), (is_thin, "circle-open")):
         traces.append(
@@ -115,7 +125,7 @@ def _cube_points(place: Floats, value: Floats, is_thin: Bools) -> list[Trace]:
                 "type": "scatter", "mode": "markers+text", "showlegend": False,
                 "name": "runs say little" if looks == "circle-open" else "runs say much",
                 "x": plain_numbers(place[own, 0]), "y": plain_numbers(place[own, 1]),
-                "text": [number_text(one, _DIGITS) for one in value[own]],
+                "text": [one for one, is_own in zip(text, own, strict=True) if is_own],
                 "textposition": "top center", "textfont": {"size": 11}, "hoverinfo": "text",
                 "marker": {"size": 8, "color": COLOURS[0], "symbol": looks},
             }

@@ -53,7 +53,7 @@ def position_of(view: TestView) -> tuple[str, Floats] | None:
 def draw_record(view: TestView) -> list[Figure]:
     """Draw position over tension against time, phases shaded, flagged samples marked."""
     time, tension = view.array("time"), view.array("tension")
-    if time is None or tension is None or view.is_stepwise:
+    if time is None or tension is None or not time.size or view.is_stepwise:
         return []
     in_tension = shown("tension", view.units)
     in_time, seconds = shown("time", view.units), 1.0

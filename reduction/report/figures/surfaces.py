@@ -69,7 +69,7 @@ def draw_surface(
             f" {in_words(view.factors[planes.across[1]])}, {in_words(held)} held in the middle of"
             f" its range{scale_words(name)}. Points: the runs made at this {in_words(held)}, lines"
             " their distance from the surface. Turn it with the pointer; the same values"
-            " stand in the contours.",
+            " stand in the contours, whose SVG is lines throughout.",
             data, synthetic=view.is_synthetic, height=430,
             scene={
                 "xaxis": axis(view.factor_label(planes.across[0])),
@@ -106,7 +106,7 @@ def draw_contours(
                 "x": plain_numbers(x), "y": plain_numbers(y),
                 "z": [plain_numbers(row, _DIGITS) for row in value[place]],
                 "colorscale": _SCALE, "line": {"color": _INK, "width": 0.8},
-                "contours": {"coloring": "heatmap", "showlabels": True,
+                "contours": {"coloring": "fill", "showlabels": True,
                              "labelfont": {"color": _INK, "size": 10}},
                 "colorbar": {
                     "title": {"text": unit.unit}, "thickness": 10, "tickfont": {"size": 10},

@@ -167,8 +167,10 @@ for (const plot of plots) {
   for (const [ending, [word, what]] of Object.entries(KINDS)) {
     const button = document.createElement("button");
     button.type = "button";
+    // what is drawn in space is drawn as a picture
+    const isPicture = ending === "svg" && "space" in plot.dataset;
     button.textContent = word;
-    button.setAttribute("aria-label", `${word}: ${what} ${plot.parentElement.dataset.title}`);
+    button.setAttribute("aria-label", `${word}: ${isPicture ? "picture inside a drawing of" : what} ${plot.parentElement.dataset.title}`);
     button.addEventListener("click", async () => {
       try {
         const blob = ending === "csv" ? new Blob([csvOf(plot)], { type: "text/csv" }) : await pictureOf(plot, ending);
@@ -178,7 +180,7 @@ for (const plot of plots) {
         throw error;
       }
     });
-    row.append(button);
+    row.append(button, ...(isPicture ? ["(holds a picture) "] : []));
   }
   plot.parentElement.append(row);
 }

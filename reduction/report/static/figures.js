@@ -7,10 +7,14 @@ const drawn = new Set();
 const stale = new Set(); // drawn, but not as they ought to look now
 const inSight = new Set();
 let printing = false;
-// the two blues, lighter by one step each: the darker one fades on a dark page
-const ON_DARK = [["#56B4E9", "#B3E0FF"], ["#0072B2", "#4AA3DF"]];
+// the two blues, lighter by one step each, and the grey: the darker ones fade on a dark page
+const ON_DARK = [["#56B4E9", "#B3E0FF"], ["#0072B2", "#4AA3DF"], ["#686868", "#C4C4C4"]];
 const AXIS = 52; // ticks and title under a plot, in CSS pixels
 const TITLE = 14; // letters of a title
+const SMALL = 11; // of a legend
+const KEY = 40; // of an entry of it, beside its words
+const GAP = 5; // between two
+const MARGIN = { left: 64, right: 16 }; // of a plot
 const LINE = 18; // a line of one
 const RAISED = 10; // by which plotly draws a title of several lines too high
 // what an A4 or Letter page with 15 mm margins holds, in CSS pixels: one figure, or two abreast
@@ -76,8 +80,8 @@ const themed = (layout, title, { legend, height, colours }) => {
     paper_bgcolor: colours.paper,
     plot_bgcolor: colours.paper,
     font: { family: getComputedStyle(document.body).fontFamily, size: 12, color: colours.ink },
-    margin: { l: 64, r: 16, t: above, b: AXIS + legend },
-    legend: { orientation: "h", x: 0, y: 0, yref: "container", yanchor: "bottom", tracegroupgap: 0, font: { size: 11 }, ...layout.legend },
+    margin: { l: MARGIN.left, r: MARGIN.right, t: above, b: AXIS + legend },
+    legend: { orientation: "h", x: 0, y: 0, yref: "container", yanchor: "bottom", tracegroupgap: 0, font: { size: SMALL }, ...layout.legend },
     hoverlabel: { namelength: 40 },
     hovermode: "closest",
     title: { ...layout.title, text: title.join("<br>"), x: 0.01, xanchor: "left", y: 1 - (8 + (more && RAISED)) / height, yanchor: "top", yref: "container", font: { size: TITLE } },
@@ -108,18 +112,48 @@ const themed = (layout, title, { legend, height, colours }) => {
   return result;
 };
 
-// a legend under the axes takes its height from the plot unless the figure grows with it
-const legendHeight = (data, width) => {
+const widthOf = (text) => ruler.measureText(plain(text)).width;
+
+// room beside the axes: numbers of many digits, a column of names, or a second axis take it from the plot
+const sidesOf = (data, layout) => {
+  const labels = (layout.yaxis?.ticktext ?? data.flatMap((trace) => trace.y ?? [])).filter((one) => typeof one === "string");
+  const longest = Math.max(0, ...labels.flatMap((one) => one.split("<br>")).map(widthOf));
+  return Math.max(MARGIN.left + 12, 34 + longest) + (layout.yaxis2?.side === "right" ? MARGIN.left : MARGIN.right);
+};
+
+// a legend under the axes takes its height from the plot unless the figure grows with it; rows as plotly fills them
+const legendHeight = (data, layout, width) => {
   const entries = data.filter((trace) => trace.showlegend !== false);
-  const longest = Math.max(0, ...entries.map((trace) => trace.name.length));
-  const columns = Math.max(1, Math.floor((width - 80) / (52 + 6.2 * longest)));
-  return entries.length > 1 ? 12 + 19 * Math.ceil(entries.length / columns) : 0;
+  if (entries.length < 2) return 0;
+  ruler.font = `${SMALL}px ${getComputedStyle(document.body).fontFamily}`;
+  const room = width - sidesOf(data, layout);
+  const isGrouped = (layout.legend?.traceorder ?? "grouped").includes("grouped") && entries.some((one) => one.legendgroup);
+  const groups = new Map();
+  entries.forEach(({ legendgroup, name }, place) => {
+    const key = isGrouped && legendgroup ? legendgroup : place;
+    groups.set(key, [...groups.get(key) ?? [], KEY + widthOf(name)]);
+  });
+  // those of a group stand one below the other; without groups all are in one row, or in columns of one width
+  const blocks = [...groups.values()].map((own) => [GAP + Math.max(...own), own.length]);
+  const isOneRow = blocks.reduce((sum, [own]) => sum + own, -GAP) < room;
+  const column = isGrouped || isOneRow ? 0 : Math.max(...blocks.map(([own]) => own));
+  let [rows, tallest, used] = [0, 0, 0];
+  for (const [own, count] of blocks) {
+    const needed = Math.max(own, column);
+    if (used && used + needed - (isGrouped ? 0 : GAP) >= room) {
+      rows += tallest;
+      [tallest, used] = [0, 0];
+    }
+    used += needed;
+    tallest = Math.max(tallest, count);
+  }
+  return 12 + 19 * (rows + tallest);
 };
 
 /** A figure as it is drawn so wide in these colours, with what is shown of the chosen cycle. */
 const figureOf = (plot, width, colours, isDark = false) => {
   const { data, layout } = withCycle(plot, readFigure(plot, isDark), colours);
-  const legend = legendHeight(data, width);
+  const legend = legendHeight(data, layout, width);
   if (layout.scene && width < 420) {
     // from farther away, or the numbers of the axes leave the figure
     for (const axis of ["x", "y", "z"]) layout.scene.camera.eye[axis] *= 1.25;
