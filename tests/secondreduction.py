@@ -79,8 +79,8 @@ def _strain(reading, strain):
     if reading.gauge_length is None:
         return strain
     zero = np.nanmedian(reading.position - strain * reading.gauge_length)
-    rests = np.nanmedian(reading.position[:6]), np.nanmedian(reading.position[-6:])
-    if min(abs(zero - rest) for rest in rests) > 0.02 * reading.gauge_length:
+    rests = np.concatenate([reading.position[:6], reading.position[-6:]])
+    if not np.nanmin(np.abs(zero - rests)) <= 0.02 * reading.gauge_length:
         return np.full(strain.shape, np.inf)
     return (reading.position - zero) / reading.gauge_length
 

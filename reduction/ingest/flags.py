@@ -19,8 +19,14 @@ from reduction.ingest.quality import (
     time_faults,
 )
 from reduction.ingest.stamps import bridge_stamps
+from reduction.ingest.steps import find_lone_steps
 from reduction.record import Bools, Floats, Quality, Record
-from reduction.samples.blocks import count_samples, finite_extremes, sample_blocks
+from reduction.samples.blocks import (
+    count_samples,
+    finite_extremes,
+    sample_blocks,
+    take_samples,
+)
 from reduction.samples.scratch import zeros_like
 from reduction.samples.search import any_sample, first_sample
 from reduction.settings import QualitySettings
@@ -30,6 +36,10 @@ __all__ = ["flag_record"]
 
 _Flags = NDArray[np.uint16]
 _NO_READING = np.uint16(Quality.MISSING | Quality.STUCK)
+_TOLD_OTHERWISE = np.uint16(
+    Quality.MISSING | Quality.STUCK | Quality.SATURATED | Quality.SPIKE | Quality.GAP
+    | Quality.REPEATED_OR_BACKWARD_TIME
+)  # fmt: skip
 _IMPOSSIBLE_SHARE = 0.01  # of a record in lengths of zero or less: the datum is wrong
 
 
@@ -121,6 +131,7 @@ def flag_record(
             f"steps differ by more than {settings.rate_tolerance:.0%} from their median "
             f"{timing.step:.4g} s ({timing.shortest:.4g} to {timing.longest:.4g} s, gaps apart)"
         )
+    found += _lone_steps(flagged, settings)
     account = account_rows(flagged)
     if any(account.n_flagged.values()):
         listed = "; ".join(
@@ -158,6 +169,41 @@ def _missing(name: str, values: Floats) -> Bools:
 def _spikes(values: Floats, settings: QualitySettings) -> Bools:
     noise, _ = noise_of(values)
     return find_spikes(values, noise=noise, factor=settings.spike_factor)
+
+
+def _lone_steps(record: Record, settings: QualitySettings) -> list[str]:
+    """A note for each channel that steps, and stays, where what it is measured with does not."""
+    position, tension = record.crosshead_position[np.newaxis], record.tension
+    of_time = record.crosshead_position_quality_flag
+    channels = [("crosshead_position", "m", position[0], tension, of_time)]
+    for name, load, of_load in zip(record.specimens, tension, record.quality_flag, strict=True):
+        channels.append((f"tension of '{name}'", "N", load, position, of_load))
+    noise = [noise_of(channel[2])[0] for channel in channels]
+    notes = [""] * len(channels)
+
+    def look(index: int) -> None:
+        name, unit, values, beside, flags = channels[index]
+        step = find_lone_steps(
+            values, beside, noise=noise[index], factor=settings.spike_factor,
+            noise_beside=np.array(noise[1:] if index == 0 else noise[:1]),
+        )  # fmt: skip
+        # what is known against a sample beside it has been told
+        told = take_samples(flags, step) | take_samples(flags, step + 1)
+        told |= take_samples(of_time, step + 1)
+        step = step[(told & _TOLD_OTHERWISE) == 0]
+        if step.size:
+            first = int(step[0])
+            low, high = values[first : first + 2].tolist()
+            others = f", and at {step.size - 1} more" if step.size > 1 else ""
+            notes[index] = (
+                f"{name} steps from {low:.4g} to {high:.4g} {unit} between sample {first + 1} "
+                f"({record.time[first]:.6g} s) and the next{others}, and stays there, while "
+                f"{'tension does' if index == 0 else 'the position does'} not: a slip, a break, a "
+                "zero that was set again, or another unit from there on; numbers across it mix both"
+            )
+
+    run_blocks(look, range(len(channels)))
+    return [note for note in notes if note]
 
 
 def _no_length(position: Floats, flags: _Flags) -> Bools:

@@ -25,6 +25,7 @@ __all__ = [
     "find_outside_range",
     "find_spikes",
     "noise_of",
+    "sampled_windows",
     "time_faults",
 ]
 
@@ -117,7 +118,7 @@ def find_outside_range(values: Floats, low: float, high: float) -> Bools:
     return outside
 
 
-def _sampled(values: Floats) -> Floats:
+def sampled_windows(values: Floats) -> Floats:
     """Windows spread evenly over a series, one a row; a short series is one window."""
     if values.size <= _WINDOWS * _WINDOW:
         return values[np.newaxis]
@@ -148,7 +149,7 @@ def time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> Ti
     """
     n_samples = time.size
     gap, backward = zeros_like(time, dtype=bool), zeros_like(time, dtype=bool)
-    steps = np.diff(_sampled(time), axis=1).ravel()
+    steps = np.diff(sampled_windows(time), axis=1).ravel()
     steps = steps[steps > 0]
     if not steps.size:
         backward[1:] = True
@@ -211,7 +212,7 @@ def noise_of(values: Floats) -> tuple[float, float]:
     step : float
         Smallest change between neighbours; 0 for a constant series. [as values]
     """
-    windows = _sampled(values)
+    windows = sampled_windows(values)
     changes = np.abs(np.diff(windows, axis=1))
     changes = changes[changes > 0]
     step = float(changes.min()) if changes.size else 0.0

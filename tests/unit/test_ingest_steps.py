@@ -1,0 +1,124 @@
+import numpy as np
+import pytest
+
+from reduction.ingest.flags import flag_record
+from reduction.ingest.quality import noise_of
+from reduction.ingest.steps import find_lone_steps
+from reduction.record import Record
+from reduction.settings import QualitySettings
+
+TIME = np.arange(0, 200, 0.1)
+WAVE = np.abs(TIME % 20 - 10)
+RANDOM = np.random.default_rng(19970612)
+TENSION_NOISE, POSITION_NOISE = 0.3, 1e-3
+TENSION = 200 + 10 * WAVE + RANDOM.normal(0, TENSION_NOISE, TIME.size)
+POSITION = 6.0 + 0.1 * WAVE + RANDOM.normal(0, POSITION_NOISE, TIME.size)
+
+
+def steps(tension, position=POSITION, noise=TENSION_NOISE):
+    return find_lone_steps(
+        tension, position[np.newaxis], noise=noise, factor=12.0,
+        noise_beside=np.array([POSITION_NOISE]),
+    ).tolist()  # fmt: skip
+
+
+def notes(*, tension=TENSION, position=POSITION, time=TIME, specimens=("new",)):
+    load = np.atleast_2d(tension)
+    record = Record(
+        test_id="T-1", specimens=specimens, time=time.copy(), crosshead_position=position.copy(),
+        tension=load.copy(), quality_flag=np.zeros(load.shape, dtype=np.uint16),
+        crosshead_position_quality_flag=np.zeros(time.size, dtype=np.uint16),
+        n_rows_read=time.size,
+    )  # fmt: skip
+    return flag_record(record, settings=QualitySettings()).notes
+
+
+@pytest.mark.parametrize("place", [1, 50, 100, 777, 1500, 1998])
+@pytest.mark.parametrize("size", [-60.0, 9.0, 400.0])
+def test_a_step_that_stays_is_found_at_its_sample(place, size):
+    tension = TENSION.copy()
+    tension[place:] += size
+    assert steps(tension) == [place - 1]
+
+
+@pytest.mark.parametrize("factor", [4.4482216, 1 / 4.4482216, 0.1, -1.0])
+def test_another_unit_from_a_row_on_is_a_step(factor):
+    tension = TENSION.copy()
+    tension[912:] *= factor
+    assert steps(tension) == [911]
+
+
+def test_a_step_that_the_other_channel_makes_as_well_is_the_test():
+    tension, position = TENSION.copy(), POSITION.copy()
+    tension[912:] += 80.0
+    position[912:] += 0.8
+    assert steps(tension) == [911]
+    assert steps(tension, position) == []
+
+
+def test_what_comes_back_at_once_is_no_step_that_stays():
+    tension = TENSION.copy()
+    tension[912] += 80.0
+    assert steps(tension) == []
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_a_step_counts_from_twelve_times_the_noise_and_a_twentieth_of_the_range(share):
+    tension = np.where(TIME < 100, 0.0, share * 12 * TENSION_NOISE)
+    tension += np.where(TIME % 2 < 1, 0.0, 1e-3)
+    assert steps(tension) == ([999] if share > 1 else [])
+    tension = np.linspace(0, 100, TIME.size)
+    low = 0.05 * 98.0  # of the range between the outer hundredths
+    tension[1000:] += share * low / (1 - 0.05 * share)
+    assert steps(tension) == ([999] if share > 1 else [])
+
+
+@pytest.mark.parametrize("every", [7, 40, 100])
+def test_coarse_samples_of_waves_step_nowhere(every):
+    square = np.where(np.arange(400) % 8 < 4, 0.0, 1.0)
+    for values in (TENSION[::every], np.round(TENSION[::every], -1)):
+        assert steps(values, POSITION[::every], noise_of(values)[0]) == []
+    assert steps(100 * square, square) == []
+
+
+def test_missing_samples_hide_nothing_beside_them_and_are_no_step():
+    tension = TENSION.copy()
+    tension[[200, 909, 1400]] = np.nan
+    tension[912:] += 80.0
+    assert steps(tension) == [911]
+    tension[912] = np.nan
+    assert steps(tension) == []
+
+
+def test_the_note_says_channel_values_sample_and_time():
+    tension = TENSION.copy()
+    tension[912:] *= 4.4482216
+    (note,) = notes(tension=np.array([TENSION, tension]), specimens=("a", "b"))
+    low, high = tension[911], tension[912]
+    assert note.startswith(
+        f"tension of 'b' steps from {low:.4g} to {high:.4g} N between sample 912 (91.1 s) and the "
+        "next, and stays there, while the position does not: a slip, a break, "
+    )
+    position = POSITION.copy()
+    position[912:] *= 0.3048
+    position[1312:] *= 0.3048
+    (note,) = notes(position=position)
+    assert note.startswith("crosshead_position steps from ") and "and at 1 more, and" in note
+    assert "while tension does not" in note
+
+
+@pytest.mark.parametrize("fault", ["gap", "missing", "stuck", "drop-out"])
+def test_what_a_flag_has_told_is_not_told_twice(fault):
+    tension, time = TENSION.copy(), TIME.copy()
+    if fault == "gap":
+        tension[912:] += 80.0
+        time[912:] += 60.0
+    elif fault == "missing":
+        tension[912:] += 80.0
+        tension[912] = np.nan
+    elif fault == "stuck":
+        tension[730:812] = tension[730]
+    else:
+        tension[912:920] = 0.0
+    assert notes(tension=tension, time=time)
+    assert not any("steps from" in note for note in notes(tension=tension, time=time))
