@@ -23,6 +23,8 @@ from reduction.units import UnitSystem, display_unit
 
 __all__ = ["plan_runs"]
 
+_ROUNDING = 1e-9
+
 
 def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Print the run sheet of SPEC.toml, and write it where asked for."""
@@ -199,14 +201,16 @@ def _show_precision(
 
 
 def _kinds(precision: ExpectedPrecision) -> dict[str, int]:
-    """The worst point of each kind."""
-    worst: dict[str, int] = {}
-    for place in np.argsort(-precision.point_variance_factor, kind="stable").tolist():
-        kind = precision.point_kind[place]
+    """The worst point of each kind, the surest kind first."""
+    factor, worst = precision.point_variance_factor, dict[str, int]()
+    for kind in dict.fromkeys(precision.point_kind):
+        places = np.flatnonzero([one == kind for one in precision.point_kind])
+        # corners are as bad as each other but for rounding, which each processor does its own way
+        is_worst = factor[places] >= (1 - _ROUNDING) * factor[places].max()
+        place = int(places[is_worst.argmax()])
         beyond = " (beyond the runs)" if precision.is_beyond_design[place] else ""
-        if kind not in {name.partition(" ")[0] for name in worst}:
-            worst[kind + beyond] = place
-    return dict(reversed(worst.items()))
+        worst[kind + beyond] = place
+    return dict(sorted(worst.items(), key=lambda one: float(factor[one[1]])))
 
 
 def _document(

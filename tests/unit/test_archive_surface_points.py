@@ -241,12 +241,12 @@ def test_every_ridge_is_that_of_ridge_path_with_the_intervals_of_its_own_surface
             np.testing.assert_array_equal(there["coded_level"], path.coded[index])
             np.testing.assert_array_equal(there["level"], path.engineering[index])
             at = evaluate_surfaces(surfaces, path.coded[index], units="coded")
-            np.testing.assert_array_equal(there["value"], at.value[index])
-            np.testing.assert_array_equal(
-                there["simultaneous_high"], at.simultaneous_interval[index, :, 1]
+            np.testing.assert_allclose(there["value"], at.value[index], rtol=1e-13)
+            np.testing.assert_allclose(
+                there["simultaneous_high"], at.simultaneous_interval[index, :, 1], rtol=1e-13
             )
-            np.testing.assert_array_equal(
-                there["simultaneous_low"], at.simultaneous_interval[index, :, 0]
+            np.testing.assert_allclose(
+                there["simultaneous_low"], at.simultaneous_interval[index, :, 0], rtol=1e-13
             )
 
 
