@@ -84,7 +84,7 @@ def parse_place(name: str, text: str) -> str:
 
 def label_of(archive: xr.Dataset, dim: str, index: int) -> Any:
     """Label of an entry of a dimension, or its number where it has none."""
-    return archive[dim].values[index] if dim in archive.variables else index + 1
+    return archive.variables[dim].values[index] if dim in archive.variables else index + 1
 
 
 def words_of(
@@ -120,15 +120,17 @@ def words_of(
     IndexError
         If there is no such entry.
     """
-    if dim in archive.variables and archive[dim].dtype.kind == "f":
-        at = float(archive[dim].values[index])
-        return _number(at if on_axis is None or dim not in ON_AN_AXIS else on_axis, archive[dim])
+    if dim in archive.variables and archive.variables[dim].dtype.kind == "f":
+        at = float(archive.variables[dim].values[index])
+        return _number(
+            at if on_axis is None or dim not in ON_AN_AXIS else on_axis, archive.variables[dim]
+        )
     found = []
     for name in _WORDS.get(dim, ()):
-        if name not in archive or dim not in archive[name].dims:
+        if name not in archive or dim not in archive.variables[name].dims:
             continue
-        one = archive[name].isel({key: at for key, at in {**place, dim: index}.items()
-                                  if key in archive[name].dims})  # fmt: skip
+        one = archive.variables[name].isel({key: at for key, at in {**place, dim: index}.items()
+                                  if key in archive.variables[name].dims})  # fmt: skip
         if one.ndim == 0 and str(one.values) not in ("", "nan"):
             text = str(one.values)
             found.append(
@@ -141,7 +143,7 @@ def _told(name: str, dim: str) -> str:
     return name.removeprefix(f"{dim}_").replace("_", " ")
 
 
-def _meaning(one: xr.DataArray) -> str:
+def _meaning(one: xr.Variable) -> str:
     meanings, values = one.attrs.get("flag_meanings"), one.attrs.get("flag_values")
     if meanings is not None and values is not None:
         known = dict(zip(np.atleast_1d(values).tolist(), str(meanings).split(), strict=False))
@@ -149,7 +151,7 @@ def _meaning(one: xr.DataArray) -> str:
     return _number(float(one.values), one)
 
 
-def _number(value: float, variable: xr.DataArray) -> str:
+def _number(value: float, variable: xr.Variable) -> str:
     unit = str(variable.attrs.get("units", ""))
     return f"{value:.6g}" if unit in ("", "1") else f"{value:.6g} {unit}"
 

@@ -79,8 +79,8 @@ def cycles_averaged(archive: xr.Dataset, name: str) -> Floats:
     settings = json.loads(str(archive.attrs.get("settings") or "{}"))
     break_in = settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0)
     for single in (name.removeprefix("test_"), _SINGLE):
-        if single in archive and archive[single].dims == ("specimen", "cycle"):
-            known = np.isfinite(archive[single].values[:, break_in:])
+        if single in archive and archive.variables[single].dims == ("specimen", "cycle"):
+            known = np.isfinite(archive.variables[single].values[:, break_in:])
             return np.asarray(known.sum(axis=1))
     return np.asarray(max(archive.sizes.get("cycle", 0) - break_in, 0))
 
@@ -123,20 +123,20 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
     base = name.removesuffix("_engineering").removesuffix("_coefficient")
     for stated in (f"{base}_term_degrees_of_freedom", f"{name}_degrees_of_freedom"):
         if stated in archive:
-            return np.asarray(archive[stated].values, dtype=np.float64)
+            return np.asarray(archive.variables[stated].values, dtype=np.float64)
     for of in _OF_SURFACE:
         if f"{name.removesuffix(of)}_term_degrees_of_freedom" in archive and name.endswith(of):
-            found = archive[f"{name.removesuffix(of)}_term_degrees_of_freedom"].values
+            found = archive.variables[f"{name.removesuffix(of)}_term_degrees_of_freedom"].values
             # all terms of a surface together count as the one that is known from the fewest
             fewest = np.min(found, axis=-1, where=np.isfinite(found), initial=np.inf)
             return np.asarray(fewest[:, None])
     if _READINGS.get(name) in archive:
-        read = np.isfinite(archive[_READINGS[name]].values).sum(axis=-1)
+        read = np.isfinite(archive.variables[_READINGS[name]].values).sum(axis=-1)
         return np.asarray(np.maximum(read - 1.0, 1.0))
     if _COUNTS.get(name) in archive:
-        count = np.asarray(archive[_COUNTS[name]].values, dtype=np.float64)
+        count = np.asarray(archive.variables[_COUNTS[name]].values, dtype=np.float64)
         return np.where(count > 1, count - 1, np.inf)
-    dims = set(map(str, archive[name].dims)) if name in archive else set()
+    dims = set(map(str, archive.variables[name].dims)) if name in archive else set()
     if _OF_SAMPLES & dims or name.startswith(_ONCE):
         return np.asarray(np.inf)
     fitted = 2.0 if name.endswith(_LINES) else 1.0
@@ -148,7 +148,7 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
         return np.asarray(2.0 * (n_cycles - 1) ** 2 / (3 * n_cycles - 4))
     count = cycles_averaged(archive, name)
     if count.ndim:
-        own = tuple(archive[name].dims) if name in archive else ()
+        own = tuple(archive.variables[name].dims) if name in archive else ()
         # what stands behind the specimen: branches, segments and the like
         behind = [1] * (len(own) - 1)
         count = count.reshape(-1, *behind) if own[:1] == ("specimen",) else count.min()

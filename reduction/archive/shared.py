@@ -235,7 +235,7 @@ def shared_contributions(archive: xr.Dataset, name: str, *place: int) -> dict[Co
 def components_of(archive: xr.Dataset, experiment: int | None = None) -> list[Component]:
     """Every shared error of an archive, or of one of its experiments, in order."""
     names = ("uncertainty_source", "uncertainty_source_of", "uncertainty_source_number")
-    columns = [archive[name].values for name in names]
+    columns = [archive.variables[name].values for name in names]
     own = columns if experiment is None else [column[experiment] for column in columns]
     kept = stored(archive, FREEDOM)
     known = np.full(len(own[0]), np.inf)

@@ -141,7 +141,7 @@ class TestView:
         """Values of a variable; missing flags and counts keep their numbers."""
         if name not in self.data:
             return None
-        return np.asarray(self.data[name].values, dtype=np.float64)
+        return np.asarray(self.data.variables[name].values, dtype=np.float64)
 
     def array_like(self, name: str, other: Floats) -> Floats:
         """Values of a variable, or NaN in the shape of another."""
@@ -157,7 +157,7 @@ class TestView:
         """Values of a text variable; empty where there is none."""
         if name not in self.data:
             return ()
-        return tuple(str(value) for value in np.ravel(self.data[name].values))
+        return tuple(str(value) for value in np.ravel(self.data.variables[name].values))
 
     @property
     def hold_numbers(self) -> tuple[int, ...]:
