@@ -4,31 +4,47 @@ The processes are forked from one that has loaded the package, which is quicker 
 what they share with it counts as theirs: the memory is what a user would see.
 """
 
+import importlib
 import json
 import os
 import resource
 import signal
 import subprocess
 import sys
+import tempfile
 import time
+import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-SHARE = 1_000_000  # bytes of what was printed that are kept
+SHARE = 5_000_000  # bytes of what was printed that are kept
+# what most commands load
+LOADED = (
+    "reduction.cli.main", "reduction.cli.runs", "reduction.batch.run", "reduction.batch.results",
+    "reduction.report.page", "reduction.tables.write", "reduction.ingest.sniff",
+    "reduction.lookup.loads", "reduction.designpage.page",
+)  # fmt: skip
+WIDE = {"NO_COLOR": "1", "COLUMNS": "400"}
 MOST_MEMORY = 8_000_000_000  # of one command, that a fault does no harm to the machine
 MOST_ON_DISK = 2_000_000_000
 
 
 @dataclass(frozen=True)
 class Bounded:
-    """What became of a command: status (minus a signal), printed text, bytes, seconds."""
+    """What became of a command: status (minus a signal), what it printed, bytes, seconds."""
 
     status: int
-    text: str
+    out: str
+    errors: str
     memory: int
     seconds: float
     is_late: bool
+
+    @property
+    def text(self):
+        """All that was printed."""
+        return self.out + self.errors
 
 
 class BoundedRuns:
@@ -41,7 +57,7 @@ class BoundedRuns:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
-            env=os.environ | {"PYTHONPATH": str(ROOT), "NO_COLOR": "1", "COLUMNS": "400"},
+            env=os.environ | {"PYTHONPATH": str(ROOT)},
         )
         return self
 
@@ -50,17 +66,22 @@ class BoundedRuns:
         self._server.wait()
         self._server.stdout.close()
 
-    def run(self, *arguments, seconds=60.0):
-        """``reduction ARGUMENTS``, killed after so many seconds."""
-        return self._asked({"arguments": [*map(str, arguments)]}, seconds)
+    def run(self, *arguments, seconds=60.0, cwd=ROOT, environment=WIDE, is_bounded=True):
+        """``reduction ARGUMENTS``, killed after so many seconds.
+
+        ``environment`` is added to that of this process; memory and disk are not bounded where
+        ``is_bounded`` is false.
+        """
+        asked = {"arguments": [*map(str, arguments)], "is_bounded": is_bounded}
+        return self._asked(asked, seconds, str(cwd), os.environ | environment)
 
     def read(self, path, layout, limits=None, seconds=60.0):
         """The layout of a log proposed, and the log read; both may be refused."""
         asked = {"path": str(path), "layout": layout, "limits": limits or {}}
-        return self._asked(asked, seconds)
+        return self._asked(asked, seconds, str(ROOT), os.environ | WIDE)
 
-    def _asked(self, asked, seconds):
-        self._server.stdin.write(json.dumps([asked, seconds]) + "\n")
+    def _asked(self, asked, seconds, cwd, environment):
+        self._server.stdin.write(json.dumps([asked, seconds, cwd, dict(environment)]) + "\n")
         self._server.stdin.flush()
         return Bounded(**json.loads(self._server.stdout.readline()))
 
@@ -99,77 +120,70 @@ def _read(path, layout, limits):
     _say(f"read {log.n_rows_read} rows;", *log.notes)
 
 
-def _forked(asked, seconds):
+def _forked(asked, seconds, cwd, environment):
     """Fork, run, wait for the end or the deadline."""
-    reading, writing = os.pipe()
-    begin = time.monotonic()
-    child = os.fork()
-    if not child:
-        os.dup2(writing, 1)
-        os.dup2(writing, 2)
-        os.close(reading)
-        status = 1
-        resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
-        resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_ON_DISK, MOST_ON_DISK))
-        resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 10, int(seconds) + 10))
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        try:
-            _command(**asked) if "arguments" in asked else _read(**asked)
-            status = 0
-        except SystemExit as end:
-            status = end.code if isinstance(end.code, int) else int(end.code is not None)
-        except BaseException:
-            import traceback
-
-            traceback.print_exc()
-        finally:
-            sys.stdout.flush()
-            sys.stderr.flush()
-            os._exit(status)
-    os.close(writing)
-    os.set_blocking(reading, False)
-    text, is_late = b"", False
-    while True:
-        try:
-            text = (text + os.read(reading, SHARE))[:SHARE]
-        except BlockingIOError:
-            pass
-        done, status, usage = os.wait4(child, os.WNOHANG)
-        if done:
-            break
-        if time.monotonic() - begin > seconds and not is_late:
-            os.kill(child, signal.SIGKILL)
-            is_late = True
-        time.sleep(0.005)
-    while more := _rest(reading):
-        text = (text + more)[:SHARE]
-    os.close(reading)
-    return Bounded(
-        os.waitstatus_to_exitcode(status),
-        text.decode(errors="replace"),
-        usage.ru_maxrss * 1024,
-        time.monotonic() - begin,
-        is_late,
-    )
+    is_bounded = asked.pop("is_bounded", True)
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as errors:
+        begin, is_late = time.monotonic(), False
+        child = os.fork()
+        if not child:
+            os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+            os.dup2(out.fileno(), 1)
+            os.dup2(errors.fileno(), 2)
+            if is_bounded:
+                _bound(seconds)
+            _child(asked, cwd, environment)
+        while not (ended := os.wait4(child, os.WNOHANG))[0]:
+            if time.monotonic() - begin > seconds and not is_late:
+                os.kill(child, signal.SIGKILL)
+                is_late = True
+            time.sleep(0.005)
+        _, status, usage = ended
+        return Bounded(
+            os.waitstatus_to_exitcode(status), _printed(out), _printed(errors),
+            usage.ru_maxrss * 1024, time.monotonic() - begin, is_late,
+        )  # fmt: skip
 
 
-def _rest(reading):
+def _bound(seconds):
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_ON_DISK, MOST_ON_DISK))
+    resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 10, int(seconds) + 10))
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+
+
+def _child(asked, cwd, environment):
+    """What the forked process does; it does not come back."""
+    status = 1
     try:
-        return os.read(reading, SHARE)
-    except BlockingIOError:
-        return b""
+        os.chdir(cwd)
+        os.environ.clear()
+        os.environ.update(environment)
+        time.tzset()
+        _command(**asked) if "arguments" in asked else _read(**asked)
+        status = 0
+    except SystemExit as end:
+        status = end.code if isinstance(end.code, int) else int(end.code is not None)
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+
+
+def _printed(file):
+    file.seek(0)
+    return file.read(SHARE).decode(errors="replace")
 
 
 def _serve():
-    import reduction.batch.run
-    import reduction.cli.main
-    import reduction.ingest.read
-    import reduction.ingest.sniff  # noqa: F401
+    for name in LOADED:
+        importlib.import_module(name)
 
     answers = os.fdopen(os.dup(1), "w")
     for line in sys.stdin:
-        asked, seconds = json.loads(line)
-        answers.write(json.dumps(_forked(asked, seconds).__dict__) + "\n")
+        answers.write(json.dumps(_forked(*json.loads(line)).__dict__) + "\n")
         answers.flush()
 
 

@@ -1,27 +1,42 @@
 """The command in a process of its own, and a campaign of the project that it ran."""
 
+import atexit
 import json
 import os
 import subprocess
 import sys
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
+from boundedruns import BoundedRuns
 from manytests import wait_for
 
 ROOT = Path(__file__).parents[1]
 
 
 def reduction(*arguments, cwd=ROOT, **environment):
-    """Run the command as a user would, in a process of its own."""
-    return subprocess.run(
-        [sys.executable, "-m", "reduction", *map(str, arguments)],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        check=False,
-        env=os.environ | {"PYTHONPATH": str(ROOT)} | environment,
-    )
+    """Run the command as a user would, in a process of its own.
+
+    It is forked from one that has loaded the package, which saves the start, unless something of
+    the environment is another or the command starts processes itself.
+    """
+    words = [*map(str, arguments)]
+    if environment or {"--jobs", "--scheduler"} & set(words):
+        return subprocess.run(
+            [sys.executable, "-m", "reduction", *words], cwd=cwd, capture_output=True, text=True,
+            check=False, env=os.environ | {"PYTHONPATH": str(ROOT)} | environment,
+        )  # fmt: skip
+    done = _loaded().run(*words, cwd=cwd, seconds=900, environment={}, is_bounded=False)
+    return subprocess.CompletedProcess(words, done.status, done.out, done.errors)
+
+
+@cache
+def _loaded():
+    """The process from which commands are forked; it ends with that of the tests."""
+    runs = BoundedRuns().__enter__()
+    atexit.register(runs.__exit__)
+    return runs
 
 
 @dataclass(frozen=True)
