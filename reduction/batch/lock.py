@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import platform
@@ -21,6 +22,8 @@ __all__ = ["LOCK_NAME", "RunLock", "run_lock"]
 
 LOCK_NAME = "run.lock"
 _BOOT = Path("/proc/sys/kernel/random/boot_id")
+# FAT, and shares of other systems
+_NO_LINKS = {errno.EPERM, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK}
 _NAMESPACE = Path("/proc/self/ns/pid")
 
 
@@ -139,51 +142,80 @@ def _remove_empty(folders: Sequence[Path]) -> None:
 
 
 def _take(path: Path, own: _Holder, remark: Callable[[str], None]) -> None:
-    for _ in range(100):
+    # with a text from its first moment: one without, of a process that was killed, is nobody's
+    part = path.with_name(f".{path.name}.{own.token}.part")
+    try:
+        for _ in range(100):
+            if _made(path, part, own):
+                return
+            text, refused = _read(path)
+            if refused:
+                raise _refusal(path, None, own, refused)
+            if text is None:
+                continue  # given back in this moment
+            holder = _holder_in(text)
+            if holder is None or not _is_gone(holder, own):
+                raise _refusal(path, holder, own)
+            if _put_away(path, text):
+                remark(f"{path}: taken over from {holder}, which is no more")
+        raise _refusal(path, None, own)
+    finally:
+        with suppress(OSError):  # the next run takes it away
+            part.unlink(missing_ok=True)
+
+
+def _made(path: Path, part: Path, own: _Holder) -> bool:
+    """Whether the lock was not there, and is now."""
+    try:
+        if not part.exists():  # who held the lock before may have swept it
+            _write(part, own)
+        os.link(part, path)
+    except (FileExistsError, FileNotFoundError):
+        return False
+    except OSError as error:
+        if error.errno not in _NO_LINKS:
+            raise
+        return _made_in_place(path, own)
+    return True
+
+
+def _made_in_place(path: Path, own: _Holder) -> bool:
+    """The same on a file system without links."""
+    try:
+        _write(path, own)
+    except FileExistsError:
+        return False
+    return True
+
+
+def _write(path: Path, own: _Holder) -> None:
+    # one of several that try at once makes the file, on NFS too
+    with path.open("x", encoding="utf-8") as file:
         try:
-            # one of several that try at once makes the file, on NFS too
-            handle = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
-        except FileExistsError:
-            pass
-        else:
-            try:
-                with os.fdopen(handle, "w", encoding="utf-8") as file:
-                    json.dump(asdict(own), file, indent=1)
-                    file.flush()
-                    os.fsync(file.fileno())
-            except BaseException:
-                # without its text it would hold the folder for ever
-                path.unlink(missing_ok=True)
-                raise
-            return
-        text, refused = _read(path)
-        if refused:
-            raise _refusal(path, None, own, refused)
-        if text is None:
-            continue  # given back in this moment
-        holder = _holder_in(text)
-        if holder is None or not _is_gone(holder, own):
-            raise _refusal(path, holder, own)
-        if _put_away(path, text):
-            remark(f"{path}: taken over from {holder}, which is no more")
-    raise _refusal(path, None, own)
+            json.dump(asdict(own), file, indent=1)
+            file.flush()
+            os.fsync(file.fileno())
+        except BaseException:
+            # a lock without its text would hold the folder for ever
+            path.unlink(missing_ok=True)
+            raise
 
 
 def _put_away(path: Path, text: str) -> bool:
     """Remove the lock of a process that is gone; of several that try, one does."""
-    aside = path.with_name(f".{path.name}.{uuid.uuid4().hex}")
+    aside = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
     try:
         path.rename(aside)
     except FileNotFoundError:
         return False
-    if _text_of(aside) == text:
-        aside.unlink()
-        return True
-    # another was quicker, and this is its lock
-    with suppress(FileExistsError):
-        os.link(aside, path)
-    aside.unlink()
-    return False
+    # it is gone where one that was quicker has swept the folder
+    is_his = _text_of(aside) in (text, None)
+    if not is_his:
+        # another was quicker, and this is its lock
+        with suppress(FileExistsError):
+            os.link(aside, path)
+    aside.unlink(missing_ok=True)
+    return is_his
 
 
 def _refusal(

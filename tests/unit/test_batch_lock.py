@@ -165,10 +165,10 @@ def test_a_text_that_is_no_lock_is_left_to_a_person(text, tmp_path):
 
 
 def test_a_folder_that_cannot_be_written_to_is_told(tmp_path, monkeypatch):
-    def refuse(*arguments):
+    def refuse(*arguments, **options):
         raise OSError(30, "Read-only file system")
 
-    monkeypatch.setattr(module.os, "open", refuse)
+    monkeypatch.setattr(Path, "open", refuse)
     with (
         pytest.raises(ArchiveError, match=r"run\.lock cannot be written; found Read-only file sys"),
         run_lock(tmp_path, remark=pytest.fail),
@@ -210,7 +210,7 @@ def test_work_goes_on_under_its_own_lock_alone(tmp_path):
         lock.path.unlink()
 
 
-@pytest.mark.parametrize("step", ["fsync", "fdopen"])
+@pytest.mark.parametrize("step", ["fsync", "link"])
 def test_a_lock_that_could_not_be_written_holds_nothing(step, tmp_path, monkeypatch):
     def refuse(*arguments, **options):
         raise OSError(28, "No space left on device")
@@ -226,6 +226,33 @@ def test_a_lock_that_could_not_be_written_holds_nothing(step, tmp_path, monkeypa
     assert list(tmp_path.iterdir()) == []
     with run_lock(folder, remark=pytest.fail) as lock:
         lock.confirm()
+
+
+@pytest.mark.parametrize("ends", ["fsync", "link"])
+def test_a_process_that_ends_while_it_takes_the_lock_leaves_none_without_text(ends, tmp_path):
+    """As if it were killed: nothing is cleaned up behind it."""
+    code = DIES.replace("from pathlib", f"os.{ends} = lambda *any: os._exit(9)\nfrom pathlib")
+    process = started(code, tmp_path)
+    process.communicate()
+    assert process.returncode == 9
+    assert not (tmp_path / LOCK_NAME).exists()
+    with run_lock(tmp_path, remark=pytest.fail):
+        assert [path.name for path in tmp_path.iterdir()] == [LOCK_NAME]
+
+
+def test_where_there_are_no_links_the_lock_is_made_in_its_place(tmp_path, monkeypatch):
+    def refuse(*arguments):
+        raise OSError(errno.EPERM, "Operation not permitted")
+
+    monkeypatch.setattr(module.os, "link", refuse)
+    with run_lock(tmp_path, remark=pytest.fail) as lock:
+        lock.confirm()
+        with (
+            pytest.raises(ArchiveError, match="another run holds"),
+            run_lock(tmp_path, remark=pytest.fail),
+        ):
+            pass
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_that_no_disk_can_have_is_told(tmp_path):
