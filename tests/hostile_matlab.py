@@ -206,6 +206,43 @@ def sparse(path):
     return _with(path, _element(14, body))
 
 
+def _numbers_of_no_type(name):
+    """A matrix whose numbers are of type 55156; scipy takes it for a place in a table of 40."""
+    return _matrix(name, [1.0]).replace(struct.pack("<II", 9, 8), struct.pack("<II", 55156, 8))
+
+
+def numbers_of_no_type(path):
+    return _with(path, _numbers_of_no_type(b"F"))
+
+
+def numbers_of_no_type_in_a_cell(path):
+    body = _element(6, struct.pack("<II", 1, 0)) + _element(5, struct.pack("<ii", 1, 1))
+    return _with(path, _element(14, body + _element(1, b"F") + _numbers_of_no_type(b"")))
+
+
+def numbers_of_no_type_in_a_handle_in_a_cell(path):
+    handle = _element(6, struct.pack("<II", 16, 0)) + _element(5, struct.pack("<ii", 1, 1))
+    handle = _element(14, handle + _element(1, b"") + _numbers_of_no_type(b""))
+    body = _element(6, struct.pack("<II", 1, 0)) + _element(5, struct.pack("<ii", 1, 1))
+    return _with(path, _element(14, body + _element(1, b"F") + handle))
+
+
+def imaginary_numbers_of_no_type_in_a_cell(path):
+    inner = _element(6, struct.pack("<II", 6 | 0x0800, 0)) + _element(5, struct.pack("<ii", 1, 1))
+    inner += _element(1, b"") + _element(9, struct.pack("<d", 1.0))
+    inner = _element(14, inner + _element(55156, struct.pack("<d", 1.0)))
+    body = _element(6, struct.pack("<II", 1, 0)) + _element(5, struct.pack("<ii", 1, 1))
+    return _with(path, _element(14, body + _element(1, b"F") + inner))
+
+
+def sparse_of_no_type_in_a_cell(path):
+    inner = _element(6, struct.pack("<II", 5, 1)) + _element(5, struct.pack("<ii", 1, 1))
+    inner += _element(1, b"") + _element(55156, struct.pack("<i", 0))
+    inner += _element(5, struct.pack("<i", 0)) + _element(9, struct.pack("<d", 1.0))
+    body = _element(6, struct.pack("<II", 1, 0)) + _element(5, struct.pack("<ii", 1, 1))
+    return _with(path, _element(14, body + _element(1, b"F") + _element(14, inner)))
+
+
 def variables_without_end(path, count=5_000):
     return _with(
         path,
@@ -357,7 +394,9 @@ MATLAB = {
         matrix_of_no_length, name_without_end, complex_numbers, nested_cells,
         cells_nested_a_hundred_thousand_times, cells_that_claim_to_be_many,
         struct_that_claims_to_be_large, struct_of_structs, text_for_numbers, function_handle,
-        opaque_object, java_object, sparse, variables_without_end, same_variable_twice, v4,
+        opaque_object, java_object, sparse, numbers_of_no_type, numbers_of_no_type_in_a_cell,
+        numbers_of_no_type_in_a_handle_in_a_cell, imaginary_numbers_of_no_type_in_a_cell,
+        sparse_of_no_type_in_a_cell, variables_without_end, same_variable_twice, v4,
         v4_of_two_thousand_million_rows, v4_that_overflows, v4_of_rows_below_zero,
         v4_of_rows_that_lead_back, v4_of_a_name_without_end, v4_sparse, v73,
         v73_of_a_million_million, v73_of_two_thousand_million_characters,

@@ -8,6 +8,7 @@ library would make them up, any number of them.
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -250,6 +251,7 @@ def read_texts(
     length = 0
     if dataset.dtype.kind in "OSUT":
         watch.check_columns(dataset.size)
+        _check_lengths(path, dataset)
         # one by one: each of them may be the same long text
         for part in row_parts(dataset.shape[axis], 1):
             for value in _values(path, dataset, (slice(None),) * axis + (part,), 1, watch).ravel():
@@ -261,6 +263,30 @@ def read_texts(
                 texts.append(text)
         return tuple(texts)
     raise _no_text(path, dataset)
+
+
+def _check_lengths(path: Path, dataset: h5py.Dataset) -> None:
+    """`LogError` where a text states more bytes than the file has.
+
+    The library takes that memory before it looks for the text.  Lengths stand before the places of
+    the texts, where these stand in a row; those in chunks are left to the library.
+    """
+    begin = dataset.id.get_offset()
+    kind = h5py.check_string_dtype(dataset.dtype)
+    if begin is None or kind is None or kind.length is not None:
+        return
+    width = 4 + dataset.file.id.get_create_plist().get_sizes()[0] + 4
+    with path.open("rb") as file:
+        n_bytes = file.seek(0, os.SEEK_END)
+        file.seek(begin)
+        row = np.frombuffer(file.read(width * dataset.size), dtype=np.uint8)
+    stated = row[: row.size // width * width].reshape(-1, width)[:, :4].copy().view("<u4")
+    if stated.size and stated.max() > n_bytes:
+        raise LogError(
+            path, f"'{dataset.name}' is damaged",
+            found=f"a text of {stated.max():,} bytes in a file of {n_bytes:,}",
+            needed="texts that stand in the file",
+        )  # fmt: skip
 
 
 def _no_text(path: Path, dataset: h5py.Dataset) -> LogError:

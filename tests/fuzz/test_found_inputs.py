@@ -35,6 +35,10 @@ INPUTS = [
         "another log",
         "flagged",
     ),
+    # SIGSEGV: the type of numbers is taken for a place in a table, by scipy
+    ("matlab-numbers-of-no-type.mat", "matlab", "A.mat", "another log", "refused"),
+    # 750 MB for a name of that length, which is not in the file
+    ("hdf5-matrix-name-of-750-MB.h5", "hdf5-matrix", "A.h5", "another log", "refused"),
     # the sign of a time channel was ignored
     ("delimited-time-with-a-sign.toml", "delimited", "campaign.toml", "fault", "refused"),
     # 2 m were added to a tension
