@@ -9,6 +9,7 @@ import io
 import json
 import math
 import re
+import tempfile
 import tomllib
 import zipfile
 from dataclasses import dataclass
@@ -189,19 +190,19 @@ def _json(data, layout):
 
 
 def _spreadsheet(data, layout):
-    main = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
+    # the elements are those, whatever their namespace is called
     archive = zipfile.ZipFile(io.BytesIO(data))
     sheet = ElementTree.fromstring(archive.read("xl/worksheets/sheet1.xml"))  # noqa: S314  # refused before
     places, number_of_row = {}, 0
-    for row in sheet.iter(f"{main}row"):
+    for row in sheet.iterfind(".//{*}row"):
         # what does not say where it stands follows the one before
         number_of_row = int(row.get("r", number_of_row + 1))
         cells = places.setdefault(number_of_row, {})
         at = -1
-        for cell in row.iter(f"{main}c"):
+        for cell in row.iterfind(".//{*}c"):
             place = re.fullmatch(r"([A-Z])(\d+)", cell.get("r", ""))
             at = at + 1 if place is None else ord(place[1]) - 65
-            parts = [*cell.iter(f"{main}v"), *cell.iter(f"{main}t")]
+            parts = [*cell.iterfind(".//{*}v"), *cell.iterfind(".//{*}t")]
             cells[at] = "".join(parts[-1].itertext()) if parts else ""
     rows = [
         [places.get(r, {}).get(c, "") for c in range(max(places.get(r, {}), default=0) + 1)]
@@ -217,7 +218,11 @@ def _spreadsheet(data, layout):
 
 
 def _hdf5(data, layout):
-    file = h5py.File(io.BytesIO(data))
+    # from a name: of a file object the library asks for what it passes over on a disk
+    with tempfile.NamedTemporaryFile(suffix=".h5") as named:
+        named.write(data)
+        named.flush()
+        file = h5py.File(named.name, locking=False)
     group = file[layout["group"]] if layout.get("group") else file
     if "matrix" not in layout:
         return lambda key: np.asarray(group[key][()], dtype=float).ravel()
@@ -290,7 +295,7 @@ def read_again(files, test="A"):
 
     Raises `UnreadableError`, or whatever the libraries raise, where it says nothing or two things.
     """
-    campaign = tomllib.loads(files["campaign.toml"].decode())
+    campaign = tomllib.loads(files["campaign.toml"].decode("utf-8-sig"))
     section = dict(campaign.get("defaults", {}))
     above = campaign.get("tests", {})
     if name := above if isinstance(above, str) else campaign["campaign"].get("tests"):
