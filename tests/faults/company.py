@@ -114,9 +114,11 @@ class Company:
         self.seen[f"worker: {len(killed)} killed, status {ended.status}"] += 1
         now = contents(self._place)
         wrong = faults(state, now)
-        if ended.status != 0 or "Traceback" in ended.said:
+        # a worker that is killed before it is one is refused: perhaps none can be started here
+        is_refused = ended.status == 1 and "worker processes cannot be started" in ended.said
+        if ended.status != 0 and not is_refused:
             wrong.append(f"status {ended.status}: {ended.said}")
-        elif now != state.after:
+        elif ended.status == 0 and now != state.after:
             wrong.append("other products than those of one process")
         wrong += self.mender.faults(state, self._place, now)
         return [f"{name}, worker killed after {moment:.3f} s: {one}" for one in wrong]
