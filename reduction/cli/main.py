@@ -6,7 +6,8 @@ packages are imported inside the commands, so that ``--help`` answers at once.
 
 from __future__ import annotations
 
-from typing import Annotated
+import sys
+from typing import Annotated, Any
 
 import typer
 
@@ -14,6 +15,7 @@ from reduction import __version__
 from reduction.cli.budgetcommand import budget
 from reduction.cli.campaigncommands import check, init, report, run, schema, sniff
 from reduction.cli.cataloguecommand import catalogue
+from reduction.cli.commandoutput import INTERRUPTED
 from reduction.cli.curvecommands import assembly, composite
 from reduction.cli.experimentcommands import experiment, surface
 from reduction.cli.explorecommand import explore
@@ -25,7 +27,20 @@ from reduction.cli.verifycommand import verify
 
 __all__ = ["app"]
 
-app = typer.Typer(
+
+class _Application(typer.Typer):
+    """The command, which ends in words also where it is interrupted before it has begun."""
+
+    def __call__(self, *words: Any, **options: Any) -> Any:
+        """Run it."""
+        try:
+            return super().__call__(*words, **options)
+        except KeyboardInterrupt:
+            typer.echo("interrupted", err=True)
+            sys.exit(INTERRUPTED)
+
+
+app = _Application(
     cls=Commands,
     name="reduction",
     help="Reduces cyclic tension tests of compliant mooring elements.",
