@@ -30,11 +30,16 @@ def test_every_control_is_reached_by_the_key_and_seen_when_it_is(shown):
         if name is None:
             left += 1
             continue
-        reached.add(name)
+        reached.add(_unmarked(name))
         assert is_there, name
         assert style != "none" and width >= 2, name
     assert len(wanted) > 40
-    assert set(wanted) <= reached
+    assert set(map(_unmarked, wanted)) <= reached
+
+
+def _unmarked(control):
+    """Without the mark of where a reader is, which follows the page as it moves."""
+    return control.replace(' aria-current="true"', "")
 
 
 def test_no_control_of_a_figure_sends_it_anywhere(shown):
