@@ -39,6 +39,17 @@ def test_nothing_is_wider_than_the_sheet_and_all_is_there(paper, small, visit):
     assert shown.errors == []
 
 
+def test_figures_that_are_put_away_while_they_are_drawn_are_put_away(small, visit):
+    shown = visit(small.page)
+    page = shown.page
+    page.evaluate(
+        "for (const moment of ['beforeprint', 'afterprint']) dispatchEvent(new Event(moment))"
+    )
+    page.locator("details.chapter .main-svg").first.wait_for(state="detached")
+    page.evaluate("new Promise(done => setTimeout(done, 500))")
+    assert shown.errors == []
+
+
 def test_a_column_headed_by_a_long_name_is_not_cut_off(small, visit):
     shown = visit(small.page)
     page = shown.page

@@ -4,6 +4,7 @@
 const plots = [...document.querySelectorAll(".plot")];
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const drawn = new Set();
+const drawing = new WeakMap(); // the promise of what was drawn last
 const stale = new Set(); // drawn, but not as they ought to look now
 const inSight = new Set();
 let printing = false;
@@ -180,18 +181,19 @@ const draw = (plot) => {
   const { data, layout } = figureOf(plot, width, printing ? ON_PAPER : onScreen(), isDark);
   plot.style.minHeight = `${layout.height}px`;
   if (printing) Object.assign(layout, { width, autosize: false });
-  const isNew = !drawn.has(plot);
-  drawn.add(plot);
-  Plotly.react(plot, data, layout, {
+  drawing.set(plot, Plotly.react(plot, data, layout, {
     responsive: true, displaylogo: false, modeBarButtonsToRemove: ["toImage", "lasso2d", "select2d"],
     showSendToCloud: false, plotlyServerURL: "", // plotly has a button that sends a figure to its maker
-  });
-  if (isNew) plot.on("plotly_click", (clicked) => chooseAt(plot, clicked.points[0]));
+  }));
+  drawn.add(plot);
+  plot.removeAllListeners("plotly_click");
+  plot.on("plotly_click", (clicked) => chooseAt(plot, clicked.points[0]));
 };
 
+// plotly goes on drawing after it has answered, and fails where the figure is gone by then
 const forget = (plot) => {
-  Plotly.purge(plot);
   drawn.delete(plot);
+  drawing.get(plot).then(() => drawn.has(plot) || Plotly.purge(plot));
 };
 
 const near = new IntersectionObserver((seen) => {
