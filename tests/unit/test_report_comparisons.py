@@ -95,13 +95,13 @@ NOT_JUDGED = {
 @pytest.mark.parametrize(
     ("named", "outcome"),
     [
-        (agreeing(), "agrees"), (differing(), "differs"),
-        (judged_as(agreeing(), **LITTLE), "says little"),
-        (judged_as(agreeing(), **NOT_JUDGED), "not judged"),
+        (agreeing, "agrees"), (differing, "differs"),
+        (lambda: judged_as(agreeing(), **LITTLE), "says little"),
+        (lambda: judged_as(agreeing(), **NOT_JUDGED), "not judged"),
     ],
 )  # fmt: skip
 def test_a_verdict_is_a_word_in_the_table_of_all(named, outcome):
-    table = verdict_table([view(named)])
+    table = verdict_table([view(named())])
     assert column(table, "verdict") == [outcome]
 
 
@@ -454,17 +454,18 @@ def test_us_units_reach_figures_and_tables():
     assert "bias [lbf]" in curve_table(us).columns
 
 
-@pytest.mark.parametrize("named", [agreeing(), differing(), trading()])
+@pytest.mark.parametrize("named", [agreeing, differing, trading])
 def test_plotly_takes_every_figure_and_nothing_is_unlabelled(named):
-    for figure in all_figures(view(named, synthetic="yes")):
+    one = named()
+    for figure in all_figures(view(one, synthetic="yes")):
         go.Figure(json.loads(figure.json()))
         assert figure.synthetic
         assert figure.layout["title"]["subtitle"]["text"] == "SYNTHETIC DATA"
         assert "[" in figure.layout["xaxis"]["title"]["text"]
         assert "[" in figure.layout["yaxis"]["title"]["text"]
-    for table in all_tables(view(named, synthetic="yes")):
+    for table in all_tables(view(one, synthetic="yes")):
         assert table.caption.endswith("SYNTHETIC DATA.")
-    for table in all_tables(view(named)):
+    for table in all_tables(view(one)):
         assert "SYNTHETIC" not in table.caption
 
 

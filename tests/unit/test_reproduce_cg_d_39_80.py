@@ -5,36 +5,36 @@ from collections import Counter
 from dataclasses import replace
 
 import pytest
+from reproduced import whole
 
 from reduction.errors import DataError
 from reduction.published.cell import number_of
 from reduction.published.read import cells_of, errata_of
 from reduction.reproduce.cg_cells import Pages, number, rounding
-from reduction.reproduce.cg_d_39_80 import item_of, items, items_of
+from reduction.reproduce.cg_d_39_80 import item_of, items_of
 from reduction.reproduce.item import agree, beside, judge, not_testable
 
 REPORT = "CG-D-39-80"
 CELLS = cells_of(REPORT)
-ITEMS = items()
 
 
 def verdicts(chosen):
-    return dict(Counter(item.verdict for item in ITEMS if chosen(item.cell)))
+    return dict(Counter(item.verdict for item in whole()[REPORT] if chosen(item.cell)))
 
 
 def item_at(table, row, column):
-    (found,) = [item for item in ITEMS if item.cell.key == (table, row, column)]
+    (found,) = [item for item in whole()[REPORT] if item.cell.key == (table, row, column)]
     return found
 
 
 def test_every_cell_has_one_verdict_and_none_is_unexplained():
-    assert [item.cell for item in ITEMS] == list(CELLS)
-    assert not [item.cell.key for item in ITEMS if item.verdict == "unexplained"]
-    assert all(item.how for item in ITEMS)
+    assert [item.cell for item in whole()[REPORT]] == list(CELLS)
+    assert not [item.cell.key for item in whole()[REPORT] if item.verdict == "unexplained"]
+    assert all(item.how for item in whole()[REPORT])
 
 
 def test_every_erratum_is_met():
-    named = {item.cell.erratum for item in ITEMS}
+    named = {item.cell.erratum for item in whole()[REPORT]}
     assert {erratum.id for erratum in errata_of(REPORT)} <= named
 
 
@@ -129,7 +129,7 @@ def test_a_wrong_digit_of_a_reproduced_number_is_noticed():
     """Every reproduced number in turn, its first digit one higher."""
     pages = Pages(CELLS)
     missed = []
-    for item in ITEMS:
+    for item in whole()[REPORT]:
         value = number_of(item.cell.printed)
         if item.verdict != "reproduced" or not value or item.recomputed != item.recomputed:
             continue
@@ -154,7 +154,7 @@ NEXT_WORD = {
 def test_a_wrong_number_in_words_is_noticed():
     pages = Pages(CELLS)
     changed = []
-    for item in ITEMS:
+    for item in whole()[REPORT]:
         words = [NEXT_WORD.get(word, word) for word in item.cell.printed.split()]
         if item.verdict != "reproduced" or " ".join(words) == item.cell.printed:
             continue

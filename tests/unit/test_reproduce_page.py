@@ -3,15 +3,16 @@
 import re
 from collections import Counter
 from dataclasses import replace
+from functools import cache
 from html.parser import HTMLParser
 
 import pytest
+from reproduced import whole
 
 from reduction.published.cell import printed_step
 from reduction.published.read import REPORTS, cells_of, errata_of
 from reduction.reproduce.item import Item
 from reduction.reproduce.page import TITLES, number_beside, render_reproduction
-from reduction.reproduce.reports import reproduce
 
 VOID = {"meta", "input", "link", "br", "wbr"}
 
@@ -36,48 +37,53 @@ class Read(HTMLParser):
         self.text += data if self.open[-1:] not in (["script"], ["style"]) else ""
 
 
-WHOLE = reproduce()
-HTML = render_reproduction(WHOLE)
-PAGE = Read(HTML)
+@cache
+def html():
+    return render_reproduction(whole())
+
+
+@cache
+def page():
+    return Read(html())
 
 
 def test_tags_close_and_ids_are_unique():
-    assert PAGE.open == []
-    ids = [attrs["id"] for _, attrs in PAGE.tags if "id" in attrs]
+    assert page().open == []
+    ids = [attrs["id"] for _, attrs in page().tags if "id" in attrs]
     assert [one for one, n in Counter(ids).items() if n > 1] == []
 
 
 def test_every_cell_stands_on_the_page_with_its_verdict():
-    shown = Counter(attrs["data-verdict"] for tag, attrs in PAGE.tags if "data-verdict" in attrs)
-    assert shown == Counter(item.verdict for items in WHOLE.values() for item in items)
+    shown = Counter(attrs["data-verdict"] for tag, attrs in page().tags if "data-verdict" in attrs)
+    assert shown == Counter(item.verdict for items in whole().values() for item in items)
 
 
 def test_links_lead_to_an_id_of_the_page():
-    ids = {attrs["id"] for _, attrs in PAGE.tags if "id" in attrs}
-    links = [attrs["href"] for tag, attrs in PAGE.tags if tag == "a"]
+    ids = {attrs["id"] for _, attrs in page().tags if "id" in attrs}
+    links = [attrs["href"] for tag, attrs in page().tags if tag == "a"]
     assert all(link.startswith("#") and link[1:] in ids for link in links)
     assert {one.id for report in REPORTS for one in errata_of(report)} <= ids
 
 
 def test_nothing_is_fetched():
-    assert not [tag for tag, attrs in PAGE.tags if "src" in attrs or tag in ("link", "iframe")]
-    assert "default-src 'none'" in HTML
-    assert not re.search(r"url\(|@import|https?://", HTML)
+    assert not [tag for tag, attrs in page().tags if "src" in attrs or tag in ("link", "iframe")]
+    assert "default-src 'none'" in html()
+    assert not re.search(r"url\(|@import|https?://", html())
 
 
 def test_the_filter_knows_reports_and_verdicts():
-    options = re.findall(r"<option[^>]*>([^<]*)</option>", HTML)
+    options = re.findall(r"<option[^>]*>([^<]*)</option>", html())
     assert options == ["all", *REPORTS]
-    ticks = [a["value"] for tag, a in PAGE.tags if tag == "input" and a.get("name") == "verdict"]
+    ticks = [a["value"] for tag, a in page().tags if tag == "input" and a.get("name") == "verdict"]
     assert ticks == ["reproduced", "erratum", "open", "not_testable", "unexplained"]
     # without a script there is no filter, and everything is shown
-    (form,) = (attrs for tag, attrs in PAGE.tags if tag == "form")
+    (form,) = (attrs for tag, attrs in page().tags if tag == "form")
     assert "hidden" in form
 
 
 def test_each_report_has_its_title():
     assert TITLES.keys() == set(REPORTS)
-    assert all(title in PAGE.text for title in TITLES.values())
+    assert all(title in page().text for title in TITLES.values())
 
 
 def test_a_tolerance_wider_than_half_the_last_digit_is_told():
@@ -85,16 +91,16 @@ def test_a_tolerance_wider_than_half_the_last_digit_is_told():
     wide = sum(
         item.verdict == "reproduced"
         and item.tolerance > 0.501 * printed_step(item.cell.printed) > 0
-        for items in WHOLE.values()
+        for items in whole().values()
         for item in items
     )
-    assert PAGE.text.count("Held within ") == wide and "Held within 8.9." in PAGE.text
+    assert page().text.count("Held within ") == wide and "Held within 8.9." in page().text
 
 
 def test_parts_of_a_report_are_no_tables_and_long_names_may_break():
-    assert "CG-D-39-80, App B" in PAGE.text and "CG-D-39-80, Table A-2" in PAGE.text
-    assert "Table App" not in PAGE.text
-    assert "<td>apparent_<wbr>spring_<wbr>constant B1</td>" in HTML
+    assert "CG-D-39-80, App B" in page().text and "CG-D-39-80, Table A-2" in page().text
+    assert "Table App" not in page().text
+    assert "<td>apparent_<wbr>spring_<wbr>constant B1</td>" in html()
 
 
 def test_words_of_a_cell_are_no_markup_and_an_unexplained_cell_stands_out():

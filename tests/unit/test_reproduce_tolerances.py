@@ -6,30 +6,32 @@ with its reason.
 """
 
 import math
+from functools import cache
 
 import pytest
+from reproduced import whole
 
 from reduction.published.cell import number_of, printed_step
 from reduction.published.read import REPORTS, cells_of
-from reduction.reproduce.reports import reproduce
 
 HIDDEN = 0.1
-NUMBERS = {
-    report: [
-        item
-        for item in items
-        if item.verdict == "reproduced"
-        and math.isfinite(item.tolerance)
-        and number_of(item.cell.printed)
-    ]
-    for report, items in reproduce().items()
-}
 # a mean and a deviation of two digits, in a difference of two means that nearly cancel or are few
 F_OF_TABLE_A_4 = {".83", "42.75", ".33", ".003"}
 # said with about or approximately, of one digit that is not zero
 ONE_DIGIT = {"about 1,000", "about 20", "200"}
 # known to one interval of weights
 ONE_INTERVAL = {("sec 4.8", "static test, where it agrees with T-2", "strain")}
+
+
+@cache
+def numbers(report):
+    return [
+        item
+        for item in whole()[report]
+        if item.verdict == "reproduced"
+        and math.isfinite(item.tolerance)
+        and number_of(item.cell.printed)
+    ]
 
 
 def digits(text):
@@ -41,7 +43,7 @@ def wide(report):
     """Numbers that a change of 10 % leaves reproduced, and not because they have one digit."""
     return [
         item
-        for item in NUMBERS[report]
+        for item in numbers(report)
         if item.tolerance >= HIDDEN * abs(number_of(item.cell.printed))
         and item.tolerance > 0.501 * printed_step(item.cell.printed)
     ]
@@ -51,7 +53,7 @@ def wide(report):
 def test_half_a_digit_hides_a_tenth_of_one_digit_only(report):
     hidden = [
         item
-        for item in NUMBERS[report]
+        for item in numbers(report)
         if item.tolerance >= HIDDEN * abs(number_of(item.cell.printed)) and item not in wide(report)
     ]
     assert all(digits(item.cell.printed) <= 5 for item in hidden)
@@ -76,7 +78,7 @@ def test_f_of_a_fit_is_hidden_where_r2_is_within_half_a_per_cent_of_one():
         for cell in cells_of("CG-D-39-80")
         if cell.column.endswith(" r2")
     }
-    f = [item for item in NUMBERS["CG-D-39-80"] if item.cell.column.endswith("F-stat")]
+    f = [item for item in numbers("CG-D-39-80") if item.cell.column.endswith("F-stat")]
     near = {item.cell.key for item in f if r2[item.cell.table, item.cell.row] == 0.995}
     hidden = {item.cell.key for item in wide("CG-D-39-80") if item in f}
     assert hidden == near and len(near) == 2
@@ -86,6 +88,6 @@ def test_f_of_a_fit_is_hidden_where_r2_is_within_half_a_per_cent_of_one():
 
 
 def test_no_tolerance_is_less_than_half_the_last_digit():
-    for items in NUMBERS.values():
-        for item in items:
+    for report in REPORTS:
+        for item in numbers(report):
             assert item.tolerance >= 0.5 * printed_step(item.cell.printed)
