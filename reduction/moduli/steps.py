@@ -30,6 +30,7 @@ from reduction.moduli.stepscan import (
     Candidate,
     neighbour_noise,
     noise_memory,
+    power_beyond_parabola,
     ramp_of,
     strongest_response,
     without_background,
@@ -60,16 +61,16 @@ def _refine(values: Floats, candidate: Candidate, sigma: float) -> tuple[Step, b
     onset, extent = (grid.ravel() for grid in np.meshgrid(onsets, extents, indexing="ij"))
     inside = onset + extent <= n_local - 2
     onset, extent = onset[inside], extent[inside]
-    ramps = without_parabola(ramp_of(n_local, onset=onset, extent=extent))
-    power = np.sum(ramps * ramps, axis=1)
-    product = ramps @ local
+    ramps = ramp_of(n_local, onset=onset, extent=extent)
+    power = power_beyond_parabola(ramps)
+    product = ramps @ local  # which holds no parabola, so that theirs does not count
     gain, sizes = product**2 / power, product / power
     best = int(np.argmax(gain))
     variance = max(sigma**2, (float(local @ local) - float(gain[best])) / max(1, n_local - 6))
     near = gain >= gain[best] - variance * float(chi2.isf(0.05, 2))
 
-    kinks = without_parabola(np.maximum(0.0, np.arange(n_local) - onsets[:, None]))
-    kink_gain = float(np.max((kinks @ local) ** 2 / np.sum(kinks * kinks, axis=1)))
+    kinks = np.maximum(0.0, np.arange(n_local) - onsets[:, None])
+    kink_gain = float(np.max((kinks @ local) ** 2 / power_beyond_parabola(kinks)))
     is_step = float(gain[best]) - kink_gain > variance * 10 and extent[best] < widest
     step = Step(
         onset=int(onset[best]) + first,

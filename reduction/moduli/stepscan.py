@@ -11,6 +11,7 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -105,6 +106,15 @@ def without_parabola(rows: Floats) -> Floats:
     return level
 
 
+def power_beyond_parabola(rows: Floats) -> Floats:
+    """Sum of squares of rows less the parabola that fits each best."""
+    share = np.einsum("...i,ij->...j", rows, _parabola(rows.shape[-1]))
+    power: Floats = np.einsum("...i,...i->...", rows, rows) - np.einsum(
+        "...j,...j->...", share, share
+    )
+    return power
+
+
 def without_background(values: Floats, ramps: Floats | None = None) -> Floats:
     """Series less what creep and softening look like over the whole of it.
 
@@ -153,10 +163,12 @@ def _windows(n_samples: int) -> list[tuple[int, int]]:
     ]
 
 
+@cache
 def _kernel(window: int, extent: int) -> Floats:
     """Weights that give the size of a step in the middle of a window, blind to a parabola."""
     ramp = without_parabola(ramp_of(2 * window + extent, onset=window, extent=extent))
     kernel: Floats = ramp / np.sum(ramp * ramp)
+    kernel.flags.writeable = False
     return kernel
 
 
