@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import difflib
 import errno
 import hashlib
@@ -9,7 +10,7 @@ import shutil
 import stat
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -40,16 +41,19 @@ class Written:
 
 @dataclass(frozen=True)
 class CampaignText:
-    """A campaign.toml as it stood when it was read."""
+    """A campaign.toml as it stood when it was read; a byte-order mark before its text is kept."""
 
     path: Path
     text: str
+    mark: bytes = b""
 
     @classmethod
     def read(cls, path: Path) -> CampaignText:
         """Read it; `SettingsError` where that is not possible."""
         try:
-            return cls(path, path.read_bytes().decode("utf-8"))
+            whole = path.read_bytes()
+            mark = codecs.BOM_UTF8 if whole.startswith(codecs.BOM_UTF8) else b""
+            return cls(path, whole.removeprefix(mark).decode("utf-8"), mark)
         except (OSError, UnicodeDecodeError) as error:
             raise SettingsError(
                 f"{path}: the campaign cannot be read",
@@ -62,10 +66,14 @@ class CampaignText:
         """As TOML gives it."""
         return tomllib.loads(self.text)
 
+    def as_bytes(self) -> bytes:
+        """Return what the file holds."""
+        return self.mark + self.text.encode("utf-8")
+
     @cached_property
     def digest(self) -> str:
         """SHA-256 of the file."""
-        return digest_of(self.text)
+        return hashlib.sha256(self.as_bytes()).hexdigest()
 
     @cached_property
     def in_table(self) -> dict[str, set[str]]:
@@ -144,7 +152,7 @@ class CampaignText:
         if isinstance(table, str):
             # beside [tests.ID] the table of tests is named in [campaign]
             paths = {("tests",): None, ("campaign", "tests"): table, **paths}
-        return CampaignText(self.path, edited(self.text, paths))
+        return replace(self, text=edited(self.text, paths))
 
     def _change(self, test: str, key: str, text: str, control: str) -> dict[Keys, Value | None]:
         group, _, rest = key.partition(".")
@@ -212,7 +220,7 @@ class CampaignText:
                 # to be renamed over needs no leave of the file itself
                 raise PermissionError(errno.EACCES, "it is read-only")
             with whole_file(target) as part:
-                part.write_bytes(other.text.encode("utf-8"))
+                part.write_bytes(other.as_bytes())
                 shutil.copymode(target, part)
         except ArchiveError:
             raise
@@ -233,11 +241,6 @@ def _texts(value: object) -> Iterator[str]:
             yield from _texts(one)
     elif isinstance(value, str) and len(value) < _LONGEST_NAME:
         yield value
-
-
-def digest_of(text: str) -> str:
-    """SHA-256 of a text in UTF-8."""
-    return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
 
 def _as_text(value: object) -> str:

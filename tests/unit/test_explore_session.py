@@ -230,6 +230,16 @@ def test_a_link_stays_a_link_and_a_mode_stays(place):
     assert real.stat().st_mode & 0o777 == 0o640
 
 
+def test_a_byte_order_mark_is_read_over_and_stays(place):
+    path = place / "raw" / "campaign.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    session = session_of(place)
+    session.save(session.changed("T-1", {"cycles.trim_threshold": "0.9"}))
+    assert path.read_bytes().startswith(b"\xef\xbb\xbf[")
+    assert "trim_threshold" in path.read_text("utf-8")
+    assert not session.is_changed_on_disk
+
+
 def test_a_file_that_cannot_be_read_is_said(tmp_path):
     with pytest.raises(SettingsError, match="the campaign cannot be read; found No such file"):
         CampaignText.read(tmp_path / "campaign.toml")
