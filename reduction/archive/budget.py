@@ -77,7 +77,7 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
     name = next((one for pattern in _NAMES if (one := pattern.format(quantity)) in known), None)
     if name is None:
         raise _no_budget(archive, quantity, known)
-    variable = archive[name]
+    variable = archive.variables[name]
     dims = [str(dim) for dim in variable.dims]
     strange = sorted(set(at) - set(dims) - {place_name(dim) for dim in dims})
     if strange:
@@ -127,7 +127,7 @@ def all_budgets(archive: xr.Dataset, quantity: str) -> list[Budget]:
     """
     if quantity not in quantities_with_budget(archive):
         return []
-    variable = archive[quantity]
+    variable = archive.variables[quantity]
     dims = [str(dim) for dim in variable.dims]
     return [
         _budget_at(archive, quantity, dict(zip(dims, map(int, place), strict=True)))
@@ -139,11 +139,11 @@ def _budget_at(
     archive: xr.Dataset, name: str, place: Mapping[str, int], strain: float | None = None
 ) -> Budget:
     """Budget of one number; with a strain it is read between bins, as a look-up reads it."""
-    variable = archive[name]
-    contribution = archive[f"{name}{_CONTRIBUTION}"]
+    variable = archive.variables[name]
+    contribution = archive.variables[f"{name}{_CONTRIBUTION}"]
     freedom = np.broadcast_to(random_freedom(archive, name), variable.shape)
 
-    def read(values: xr.DataArray) -> Floats:
+    def read(values: xr.Variable) -> Floats:
         return read_at(archive, values, place, strain)
 
     components = components_of(archive, place.get("experiment"))
@@ -153,13 +153,13 @@ def _budget_at(
         for one, value in zip(components, rows, strict=False)
         if one.source and value != 0
     }
-    few = read(xr.DataArray(1 / freedom, dims=variable.dims))
+    few = read(xr.Variable(variable.dims, 1 / freedom))
     return budget_of(
         name,
         str(variable.attrs.get("units", "")),
         float(read(variable)),
         found,
-        random=float(read(archive[f"{name}{_RANDOM}"])),
+        random=float(read(archive.variables[f"{name}{_RANDOM}"])),
         degrees_of_freedom=float(np.divide(1, few, out=np.array(np.inf), where=few > 0)),
         place=_labels(archive, place, strain),
         words={dim: words_of(archive, dim, index, place, strain) for dim, index in place.items()},
@@ -180,7 +180,7 @@ def _labels(archive: xr.Dataset, place: Mapping[str, int], on_axis: float | None
 def _why_there_is_none(archive: xr.Dataset, place: Mapping[str, int]) -> str:
     """What the archive itself says of a number that is missing, or not known; else nothing."""
     said = [
-        str(archive[name].values[place[dim]])
+        str(archive.variables[name].values[place[dim]])
         for dim, name in _REASONS.items()
         if dim in place and name in archive
     ]

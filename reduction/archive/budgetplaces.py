@@ -228,7 +228,7 @@ def _nearest(archive: xr.Dataset, dim: str, value: float) -> int:
 
 
 def read_at(
-    archive: xr.Dataset, values: xr.DataArray, place: Mapping[str, int], on_axis: float | None
+    archive: xr.Dataset, values: xr.Variable, place: Mapping[str, int], on_axis: float | None
 ) -> Floats:
     """Values at a place, shape (n_components,) or (); between points where one is given.
 
@@ -236,7 +236,7 @@ def read_at(
     ----------
     archive : xarray.Dataset
         With the points of the axis.
-    values : xarray.DataArray
+    values : xarray.Variable
         With the dimensions of the place, and one before them at most.
     place : mapping of str to int
         Index along each dimension.
@@ -266,7 +266,7 @@ def read_at(
     return np.array(flat).reshape(curves.shape[:-1])
 
 
-def where_known(archive: xr.Dataset, variable: xr.DataArray, place: Mapping[str, int]) -> str:
+def where_known(archive: xr.Dataset, variable: xr.Variable, place: Mapping[str, int]) -> str:
     """Places along the last dimension that have a number, the others as asked for."""
     dim = str(variable.dims[-1])
     row = variable.isel({one: at for one, at in place.items() if one != dim})

@@ -77,8 +77,8 @@ def lines_of_open_archive(archive: xr.Dataset, path: Path) -> list[LineSource]:
         If an archive beside it cannot be read.
     """
     if "experiment" in archive.sizes:
-        names = archive["experiment"].values.astype(str).tolist()
-        kinds = archive["experiment_kind"].values.astype(str).tolist()
+        names = archive.variables["experiment"].values.astype(str).tolist()
+        kinds = archive.variables["experiment_kind"].values.astype(str).tolist()
         known = _specimens(path, {one for name in names for one in specimens_of(archive, name)})
         return [
             line_source_of_experiment(archive, name, specimens=known)
@@ -87,7 +87,7 @@ def lines_of_open_archive(archive: xr.Dataset, path: Path) -> list[LineSource]:
         ]
     if not any(name in archive for name in CURVES):
         return []
-    names = archive["specimen"].values.astype(str).tolist()
+    names = archive.variables["specimen"].values.astype(str).tolist()
     return [line_source_of_test(archive, name) for name in names]
 
 

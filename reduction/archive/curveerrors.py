@@ -67,7 +67,7 @@ def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tupl
         if rows is None or modulus not in archive:
             continue
         tension, of_error = archive[curve].values[place], rows.values[:, place]
-        slope = archive[modulus].values[place] * float(archive["area"].values[place])
+        slope = archive[modulus].values[place] * float(archive.variables["area"].values[place])
         there = np.isfinite(of_error).all(axis=0) & np.isfinite(tension) & (slope != 0)
         there &= np.isfinite(slope)
         if there.any():
@@ -137,4 +137,4 @@ def _number(archive: xr.Dataset, name: str, place: int) -> float:
     """A number of one specimen, or of all; NaN where it is not there."""
     if name not in archive:
         return float("nan")
-    return float(np.broadcast_to(archive[name].values, archive.sizes["specimen"])[place])
+    return float(np.broadcast_to(archive.variables[name].values, archive.sizes["specimen"])[place])

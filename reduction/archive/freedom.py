@@ -141,7 +141,7 @@ def random_freedom(archive: xr.Dataset, name: str) -> Floats:
         return np.asarray(np.inf)
     fitted = 2.0 if name.endswith(_LINES) else 1.0
     if name.startswith(_LAST) and "dynamic_cycles" in archive:
-        last = np.asarray(archive["dynamic_cycles"].values, dtype=np.float64)
+        last = np.asarray(archive.variables["dynamic_cycles"].values, dtype=np.float64)
         return np.maximum(last - fitted, 1.0)
     if name in _OF_NEIGHBOURS:
         n_cycles = max(archive.sizes.get("cycle", 0), 2)
@@ -193,7 +193,7 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
     >>> print(effective_freedom(archive, "area"))
     [2.]
     """
-    variable = archive[name]
+    variable = archive.variables[name]
     spread = stored(archive, f"{name}{_RANDOM}")
     if spread is None:
         spread = stored(archive, f"{name}_standard_uncertainty")
@@ -206,8 +206,8 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
     of_rows = np.asarray(np.inf)
     if known is not None:
         # where the archive has several experiments each has its own errors
-        kept = known.where(known > 0, np.inf).broadcast_like(rows)
-        of_rows = kept.transpose(COMPONENT, *variable.dims).values
+        of_each = xr.Variable(known.dims, np.where(known.values > 0, known.values, np.inf))
+        of_rows = (of_each * xr.ones_like(rows)).transpose(COMPONENT, *variable.dims).values
     return effective_degrees_of_freedom(
         spread.values,
         own,

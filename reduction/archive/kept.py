@@ -134,12 +134,12 @@ def stored_cycles(dataset: xr.Dataset) -> Integers:
     """
     if "cycle" not in dataset:
         return np.empty(0, dtype=np.int64)
-    numbers: Integers = dataset["cycle"].values
+    numbers: Integers = dataset.variables["cycle"].values
     if "sample_index" not in dataset:
         return numbers
-    index = dataset["sample_index"].values
-    begin = np.searchsorted(index, dataset["cycle_first_sample"].values, side="left")
-    end = np.searchsorted(index, dataset["cycle_last_sample"].values, side="right")
+    index = dataset.variables["sample_index"].values
+    begin = np.searchsorted(index, dataset.variables["cycle_first_sample"].values, side="left")
+    end = np.searchsorted(index, dataset.variables["cycle_last_sample"].values, side="right")
     return numbers[end - begin > 2]
 
 

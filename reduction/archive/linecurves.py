@@ -53,11 +53,11 @@ def curves_of_specimen(dataset: xr.Dataset, place: int) -> tuple[LineCurve, ...]
 
 
 def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
-    strain = dataset["strain_bin"].values
+    strain = dataset.variables["strain_bin"].values
     curves = []
     branches: tuple[Branch, Branch] = ("ascending", "descending")
     for index, branch in enumerate(branches):
-        value = dataset[name].values[place, index]
+        value = dataset.variables[name].values[place, index]
         seen = np.isfinite(value)
         if seen.sum() < 2:
             continue
@@ -91,8 +91,10 @@ def _uncertainty(dataset: xr.Dataset, name: str, place: tuple[int, ...], seen: B
     """
     if f"{name}_standard_uncertainty" not in dataset:
         return {}
-    spread = np.asarray(dataset[f"{name}_standard_uncertainty"].values[place], dtype=np.float64)
-    freedom = np.broadcast_to(random_freedom(dataset, name), dataset[name].shape)[place]
+    spread = np.asarray(
+        dataset.variables[f"{name}_standard_uncertainty"].values[place], dtype=np.float64
+    )
+    freedom = np.broadcast_to(random_freedom(dataset, name), dataset.variables[name].shape)[place]
     found: _Parts = {
         "standard_uncertainty": spread[seen],
         "degrees_of_freedom": np.array(freedom[seen]),
@@ -113,7 +115,7 @@ def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
     """K_0 and strain of a slow pull, by its cubic, over its range of use."""
     if "pull_strain_coefficient" not in dataset:
         return []
-    coefficient = np.array(dataset["pull_strain_coefficient"].values[place])
+    coefficient = np.array(dataset.variables["pull_strain_coefficient"].values[place])
     if not np.isfinite(coefficient).all():
         return []
     everywhere = np.ones(dataset.sizes["tension_grid"], dtype=bool)
@@ -121,11 +123,11 @@ def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
         LineCurve(
             quantity=name,
             variable=variable,
-            low=float(dataset["pull_tension_low"].values[place]),
-            high=float(dataset["pull_tension_high"].values[place]),
+            low=float(dataset.variables["pull_tension_low"].values[place]),
+            high=float(dataset.variables["pull_tension_high"].values[place]),
             coefficient=coefficient,
             is_inverse_slope=name != "strain",
-            at=np.array(dataset["tension_grid"].values),
+            at=np.array(dataset.variables["tension_grid"].values),
             **_uncertainty(dataset, stored, (place,), everywhere),
             spread_of="the curve of this one pull",
         )

@@ -73,10 +73,10 @@ def line_source_of_experiment(
     names = surface_names(dataset, experiment)
     if not names:
         raise ArchiveError(f"experiment '{experiment}' has no surface", needed="a Box-Behnken one")
-    row = dataset["experiment"].values.astype(str).tolist().index(experiment)
+    row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
     fitted = surfaces_of(dataset, experiment)
     factors = fitted.factor_names
-    units = dataset["factor_unit"].values[row].astype(str)[: len(factors)]
+    units = dataset.variables["factor_unit"].values[row].astype(str)[: len(factors)]
     strength = _one_strength(dataset, row)
     scale = np.array(
         [
@@ -106,15 +106,17 @@ def line_source_of_experiment(
 
 def specimens_of(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
     """Names of the specimens whose runs an experiment is of."""
-    row = dataset["experiment"].values.astype(str).tolist().index(experiment)
-    return tuple(sorted({str(name) for name in dataset["run_specimen"].values[row] if str(name)}))
+    row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
+    return tuple(
+        sorted({str(name) for name in dataset.variables["run_specimen"].values[row] if str(name)})
+    )
 
 
 def facts_of_specimens(dataset: xr.Dataset) -> dict[str, Facts]:
     """What the archive of a reduced test states of each of its specimens, by name."""
     if "specimen" not in dataset:
         return {}
-    names = dataset["specimen"].values.astype(str).tolist()
+    names = dataset.variables["specimen"].values.astype(str).tolist()
     return {name: _facts(dataset, place) for place, name in enumerate(names)}
 
 
@@ -123,7 +125,7 @@ def _facts(dataset: xr.Dataset, place: int) -> dict[str, Any]:
         name: str(dataset[stored].values[place]) if stored in dataset else ""
         for name, stored in _TEXTS.items()
     } | {
-        name: float(dataset[name].values[place]) if name in dataset else float("nan")
+        name: float(dataset.variables[name].values[place]) if name in dataset else float("nan")
         for name in _NUMBERS
     }
 
@@ -203,7 +205,7 @@ def _one_strength(dataset: xr.Dataset, row: int) -> float:
     """Break strength of the runs; NaN where it is not known, or they differ."""
     if "run_rated_break_strength" not in dataset:
         return float("nan")
-    found = dataset["run_rated_break_strength"].values[row]
+    found = dataset.variables["run_rated_break_strength"].values[row]
     known = np.unique(found[np.isfinite(found)])
     return float(known[0]) if known.size == 1 else float("nan")
 
@@ -245,7 +247,11 @@ def line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
     ArchiveError
         If the archive has no such specimen, or no curve.
     """
-    known = [] if "specimen" not in dataset else dataset["specimen"].values.astype(str).tolist()
+    known = (
+        []
+        if "specimen" not in dataset
+        else dataset.variables["specimen"].values.astype(str).tolist()
+    )
     if specimen not in known:
         raise ArchiveError(
             "the archive has no such specimen", found=specimen, needed=", ".join(known) or "none"

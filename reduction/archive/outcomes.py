@@ -130,7 +130,7 @@ def outcomes_of_dataset(dataset: xr.Dataset) -> tuple[Outcome, ...]:
 
     def column(name: str, missing: object) -> list[Any]:
         # tolist gives numbers of Python, which print and compare as those that were read
-        return dataset[name].values.tolist() if name in dataset else [missing] * size
+        return dataset.variables[name].values.tolist() if name in dataset else [missing] * size
 
     quantity = [_QUANTITIES[code] for code in column("outcome_quantity", 0)]
     by_quantity = {name: column(name, np.nan) for name in _QUANTITIES}

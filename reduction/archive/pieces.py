@@ -26,7 +26,7 @@ def specimens_of(dataset: xr.Dataset) -> tuple[str, ...]:
     """Names of the specimens of an archive of a test; none of another archive."""
     if "specimen" not in dataset:
         return ()
-    return tuple(dataset["specimen"].values.astype(str).tolist())
+    return tuple(dataset.variables["specimen"].values.astype(str).tolist())
 
 
 def pieces_of_test(
@@ -57,8 +57,8 @@ def pieces_of_test(
     if "branch_tension" in dataset:
         random, shared = parts_of(dataset, "branch_tension", place, of="tension")
         pieces += pieces_of_branches(
-            dataset["strain_bin"].values,
-            dataset["branch_tension"].values[place],
+            dataset.variables["strain_bin"].values,
+            dataset.variables["branch_tension"].values[place],
             random,
             name=name,
             branch=branch,
@@ -67,17 +67,17 @@ def pieces_of_test(
     if branch == "descending":
         return pieces
     if "quasi_static_strain" in dataset and "tension_grid" in dataset:
-        strain = dataset["quasi_static_strain"].values[place]
+        strain = dataset.variables["quasi_static_strain"].values[place]
         if np.count_nonzero(np.isfinite(strain)) > 1:
             # the first rise of a slow pull is the pull
             random, shared = parts_of(dataset, "quasi_static_strain", place, of="strain")
-            grid = dataset["tension_grid"].values
+            grid = dataset.variables["tension_grid"].values
             return (*pieces, piece_of_pull(strain, grid, random, name=name, shared=shared))
     if "branch_tension_first_loading" in dataset:
         random, shared = parts_of(dataset, "branch_tension_first_loading", place, of="tension")
         pieces += pieces_of_branches(
-            dataset["first_loading_strain_bin"].values,
-            dataset["branch_tension_first_loading"].values[place],
+            dataset.variables["first_loading_strain_bin"].values,
+            dataset.variables["branch_tension_first_loading"].values[place],
             random,
             name=name,
             branch="ascending",

@@ -74,7 +74,7 @@ def step_of_archive(
     ArchiveError
         If the archive has no such specimen.
     """
-    names = dataset["specimen"].values.astype(str).tolist()
+    names = dataset.variables["specimen"].values.astype(str).tolist()
     if specimen not in names:
         raise ArchiveError(f"the archive has no specimen '{specimen}'", found=", ".join(names))
     settings = json.loads(str(dataset.attrs["settings"]))
@@ -135,11 +135,11 @@ class _Reader:
         rows = np.zeros(len(self.component))
         for one, amount in shared_contributions(self.dataset, name, *at).items():
             rows[self.component.index(one)] = amount
-        value = float(self.dataset[name].values[at])
+        value = float(self.dataset.variables[name].values[at])
         return StepNumber(value, float(spread), rows, degrees_of_freedom)
 
     def value(self, name: str, *place: int) -> float:
-        return float(self.dataset[name].values[place or (self.row,)])
+        return float(self.dataset.variables[name].values[place or (self.row,)])
 
     def field_at(
         self, strain: Floats, tension: Floats
@@ -175,8 +175,8 @@ def _first_rise(read: _Reader) -> FirstRise | None:
     name = "branch_tension_first_loading"
     if name not in dataset:
         return None
-    tension = dataset[name].values[row, 0]
-    grid = dataset["first_loading_strain_bin"].values
+    tension = dataset.variables[name].values[row, 0]
+    grid = dataset.variables["first_loading_strain_bin"].values
     known = np.isfinite(tension) & (grid <= _first_peak(dataset, row))
     if np.count_nonzero(known) < 2:
         return None
@@ -195,10 +195,10 @@ def _first_peak(dataset: xr.Dataset, row: int) -> float:
     """Greatest strain until the first cycle is over: what lies beyond is of later cycles."""
     if "cycle_last_sample" not in dataset:
         return float("inf")
-    stop = int(dataset["cycle_last_sample"].values[0]) + 1
+    stop = int(dataset.variables["cycle_last_sample"].values[0]) + 1
     if "sample_index" in dataset:
-        stop = int(np.searchsorted(dataset["sample_index"].values, stop))
-    return float(np.nanmax(dataset["strain"].values[row, :stop]))
+        stop = int(np.searchsorted(dataset.variables["sample_index"].values, stop))
+    return float(np.nanmax(dataset.variables["strain"].values[row, :stop]))
 
 
 def _bedding(read: _Reader) -> BeddingCycles | None:
@@ -213,7 +213,7 @@ def _bedding(read: _Reader) -> BeddingCycles | None:
         foot_strain_contribution=read.points(np.array([foot]), np.array([valley]))[0][:, 0],
         valley_tension=valley,
         first_peak_tension=read.value("peak_tension", read.row, 0),
-        peak_tension=float(np.nanmax(read.dataset["peak_tension"].values[read.row])),
+        peak_tension=float(np.nanmax(read.dataset.variables["peak_tension"].values[read.row])),
     )
 
 
@@ -234,12 +234,12 @@ def _pairs(read: _Reader, specimen: str) -> tuple[PairOfHolds, ...]:
         return ()
     return tuple(
         _pair(read, int(row))
-        for row in np.flatnonzero(read.dataset["held_pair_specimen"].values == specimen)
+        for row in np.flatnonzero(read.dataset.variables["held_pair_specimen"].values == specimen)
     )
 
 
 def _pair(read: _Reader, row: int) -> PairOfHolds:
-    reason = str(read.dataset["static_refusal"].values[row])
+    reason = str(read.dataset.variables["static_refusal"].values[row])
     at = read.value("static_reference_time", row)
     elapsed = _known(read.dataset, "static_elapsed_time", row)
     if elapsed.size and not elapsed[0] <= at <= elapsed[-1]:
@@ -264,28 +264,31 @@ def _held(read: _Reader, name: str, row: int) -> StepNumber:
 
 
 def _known(dataset: xr.Dataset, name: str, row: int) -> Floats:
-    values: Floats = dataset[name].values[row] if name in dataset else np.empty(0)
+    values: Floats = dataset.variables[name].values[row] if name in dataset else np.empty(0)
     return values[np.isfinite(values)]
 
 
 def _holds(read: _Reader, specimen: str) -> tuple[HeldTension, ...]:
     """Holds of a step at which the machine kept the tension."""
     dataset = read.dataset
-    step = str(dataset["programme_step"].values) if "programme_step" in dataset else ""
+    step = str(dataset.variables["programme_step"].values) if "programme_step" in dataset else ""
     if step not in _HELD or "hold_specimen" not in dataset:
         return ()
-    is_own = dataset["hold_specimen"].values == specimen
-    tensions = dataset["hold_initial_tension"].values + dataset["hold_final_tension"].values
-    start = dataset["hold_start_time"].values
-    ends = start + dataset["hold_duration"].values
-    centre = dataset["hold_ramp_centre_time"].values
+    is_own = dataset.variables["hold_specimen"].values == specimen
+    tensions = (
+        dataset.variables["hold_initial_tension"].values
+        + dataset.variables["hold_final_tension"].values
+    )
+    start = dataset.variables["hold_start_time"].values
+    ends = start + dataset.variables["hold_duration"].values
+    centre = dataset.variables["hold_ramp_centre_time"].values
     begins = np.where(np.isfinite(centre), centre, start)
     return tuple(
         HeldTension(
             float(tensions[row]) / 2,
             float(ends[row] - begins[row]),
             read.number("creep_rate_per_decade", int(row)),
-            str(dataset["hold_refusal"].values[row]),
+            str(dataset.variables["hold_refusal"].values[row]),
         )
-        for row in np.flatnonzero(is_own & (dataset["hold_kind"].values == "creep"))
+        for row in np.flatnonzero(is_own & (dataset.variables["hold_kind"].values == "creep"))
     )

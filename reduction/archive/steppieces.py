@@ -51,16 +51,16 @@ def pieces_of_weights(
 
 
 def _steps(dataset: xr.Dataset, random: Floats) -> StepwiseResult:
-    flags = dataset["step_flag"].values
+    flags = dataset.variables["step_flag"].values
 
     def number(name: str) -> float:
-        return float(dataset[name].values)
+        return float(dataset.variables[name].values)
 
     def series(name: str) -> Any:
-        return np.array(dataset[name].values)
+        return np.array(dataset.variables[name].values)
 
     return StepwiseResult(
-        clock=tuple(dataset["clock"].values.astype(str).tolist()),
+        clock=tuple(dataset.variables["clock"].values.astype(str).tolist()),
         time=series("time"),
         tension=series("tension"),
         length=series("gauge_length"),

@@ -33,14 +33,14 @@ def strain_model_of(dataset: xr.Dataset, place: int) -> StrainModel | None:
         return None
 
     def number(name: str) -> float:
-        return float(dataset[name].values[place]) if name in dataset else float("nan")
+        return float(dataset.variables[name].values[place]) if name in dataset else float("nan")
 
     known = {name: number(stored) for name, stored in COEFFICIENTS.items()}
     return StrainModel(
-        specimen=str(dataset["specimen"].values[place]),
-        method=cast("StrainMethod", str(dataset["strain_method"].values[place])),
+        specimen=str(dataset.variables["specimen"].values[place]),
+        method=cast("StrainMethod", str(dataset.variables["strain_method"].values[place])),
         coefficients={name: value for name, value in known.items() if np.isfinite(value)},
-        marks_from=str(dataset["strain_marks_from"].values[place]),
+        marks_from=str(dataset.variables["strain_marks_from"].values[place]),
         position_low=number("strain_position_low"),
         position_high=number("strain_position_high"),
         tension_low=number("strain_tension_low"),

@@ -57,7 +57,8 @@ def surface_names(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
     return tuple(
         name
         for name in SURFACE_NAMES
-        if f"{name}_transform" in dataset and str(dataset[f"{name}_transform"].values[row])
+        if f"{name}_transform" in dataset
+        and str(dataset.variables[f"{name}_transform"].values[row])
     )
 
 
@@ -98,7 +99,11 @@ def surfaces_of(
 
 
 def _row_of(dataset: xr.Dataset, experiment: str) -> int:
-    known = [] if "experiment" not in dataset else dataset["experiment"].values.astype(str).tolist()
+    known = (
+        []
+        if "experiment" not in dataset
+        else dataset.variables["experiment"].values.astype(str).tolist()
+    )
     if experiment not in known:
         raise ArchiveError(
             "the archive has no such experiment",
@@ -288,8 +293,10 @@ class _Reader:
         """Give the notes of the surfaces."""
         if "note" not in self.dataset:
             return ()
-        columns = [self.dataset[f"note{part}"].values for part in ("_experiment", "_stage", "")]
-        name = str(self.dataset["experiment"].values[self.row])
+        columns = [
+            self.dataset.variables[f"note{part}"].values for part in ("_experiment", "_stage", "")
+        ]
+        name = str(self.dataset.variables["experiment"].values[self.row])
         return tuple(
             str(text)
             for experiment, stage, text in zip(*columns, strict=True)

@@ -149,11 +149,11 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
         shared, notes = curve_errors_of(archive, index)
         comparison = compare_record(
             hose,
-            archive["strain"].values[index],
-            archive["tension"].values[index],
+            archive.variables["strain"].values[index],
+            archive.variables["tension"].values[index],
             loading=plan.loading or loading_of(kind),
             cycle_number=_numbers(archive) if "cycle_number" in archive else None,
-            branch=archive["branch"].values if "branch" in archive else None,
+            branch=archive.variables["branch"].values if "branch" in archive else None,
             # a pull has no cycles to break in
             break_in_cycles=_break_in(archive) if "cycle_number" in archive else 0,
             shared=shared,
@@ -168,7 +168,7 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
 
 def _numbers(archive: xr.Dataset) -> Integers:
     """Cycle of each sample, 0 of one at the end of a cycle whose others are stored no longer."""
-    number: Integers = archive["cycle_number"].values
+    number: Integers = archive.variables["cycle_number"].values
     if "sample_index" not in archive:
         return number
     return np.where(np.isin(number, stored_cycles(archive)), number, 0)
@@ -184,7 +184,9 @@ def _of_part(archive: xr.Dataset) -> tuple[str, ...]:
 
 
 def _require_hose(path: Path, archive: xr.Dataset, index: int) -> None:
-    kind = str(archive["specimen_kind"].values[index]) if "specimen_kind" in archive else ""
+    kind = (
+        str(archive.variables["specimen_kind"].values[index]) if "specimen_kind" in archive else ""
+    )
     if kind not in ("", "stretch hose"):
         raise DataError(
             f"{path} is of no stretch hose", found=kind,
@@ -193,7 +195,7 @@ def _require_hose(path: Path, archive: xr.Dataset, index: int) -> None:
 
 
 def _specimen(path: Path, archive: xr.Dataset, wanted: str) -> tuple[str, int]:
-    names = [str(name) for name in archive["specimen"].values]
+    names = [str(name) for name in archive.variables["specimen"].values]
     if not wanted and len(names) == 1:
         return names[0], 0
     if wanted not in names:

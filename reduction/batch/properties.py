@@ -211,7 +211,11 @@ def _read(
             component[found.step.name] = found.component
             if not says_what_is_shared(archive):
                 silent.append(found.step.name)
-            kind = str(archive["programme_step"].values) if "programme_step" in archive else ""
+            kind = (
+                str(archive.variables["programme_step"].values)
+                if "programme_step" in archive
+                else ""
+            )
             is_programme |= kind in CHANGES_LENGTH
         sources.append(hash_source(path, path.name))
     return _Found(

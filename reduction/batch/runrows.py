@@ -42,7 +42,7 @@ def rows_of_run(
         if path is None:
             return [about | missing | {"specimen": name} for name in specimens]
         with open_archive(path) as archive:
-            given = [str(name) for name in archive["specimen"].values]
+            given = [str(name) for name in archive.variables["specimen"].values]
             return [
                 about | row_of_archive(plan, archive, given.index(name), name) for name in specimens
             ]
@@ -83,8 +83,8 @@ def row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specim
     row["keeps_shared"] = says_what_is_shared(archive)
     begin = int(settings["reduction"]["cycles"]["break_in_cycles"])
     if "peak_tension" in archive:
-        peak = archive["peak_tension"].values[place, begin:]
-        valley = archive["valley_tension"].values[place, begin:]
+        peak = archive.variables["peak_tension"].values[place, begin:]
+        valley = archive.variables["valley_tension"].values[place, begin:]
         row["peak"], row["least"] = float(np.nanmax(peak)), float(np.nanmin(valley))
         remarks += _slack(valley <= MEASURED_SLACK * peak)
     strength = stored(archive, "rated_break_strength")
@@ -105,7 +105,7 @@ def _refusal(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: st
     if code == 0:
         return []
     reason, pull = REASONS[code], plan.quasi_static.get(specimen)
-    notes = archive["note"].values.tolist() if "note" in archive else []
+    notes = archive.variables["note"].values.tolist() if "note" in archive else []
     if code == _NO_REST and pull is None:
         reason = "no slow pull is named for the specimen"
     elif code == _NO_REST and any(f"specimen {place + 1} has no slow pull" in one for one in notes):

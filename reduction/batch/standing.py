@@ -110,7 +110,10 @@ def standing_product(
                 return None
             notes: tuple[tuple[str, str], ...] = ()
             if "note" in archive:
-                stages, texts = archive["note_stage"].values, archive["note"].values
+                stages, texts = (
+                    archive.variables["note_stage"].values,
+                    archive.variables["note"].values,
+                )
                 notes = tuple(
                     (str(stage), str(text)) for stage, text in zip(stages, texts, strict=True)
                 )

@@ -152,20 +152,23 @@ def _place(archive: xr.Dataset, dim: str, name: str | None) -> int:
 
 
 def _number(archive: xr.Dataset, name: str, place: int) -> float:
-    return float(archive[name].values[place]) if name in archive else math.nan
+    return float(archive.variables[name].values[place]) if name in archive else math.nan
 
 
 def _of_hose(archive: xr.Dataset, name: str | None) -> dict[str, Any]:
     place = _place(archive, "hose", name)
-    strain, tension = archive["strain"].values[place], archive["tension"].values[place]
-    state = archive["hose_state"].values[place]
-    flags = str(archive["hose_state"].attrs["flag_meanings"]).split()
-    broken = int(archive["hose_state"].attrs["flag_masks"][flags.index("broken")])
+    strain, tension = (
+        archive.variables["strain"].values[place],
+        archive.variables["tension"].values[place],
+    )
+    state = archive.variables["hose_state"].values[place]
+    flags = str(archive.variables["hose_state"].attrs["flag_meanings"]).split()
+    broken = int(archive.variables["hose_state"].attrs["flag_masks"][flags.index("broken")])
     known = np.isfinite(strain) & np.isfinite(tension) & ((state & broken) == 0)
     strain, tension = strain[known], tension[known]
     spread = stored(archive, "tension_standard_uncertainty")
     return {
-        "name": str(archive["hose"].values[place]),
+        "name": str(archive.variables["hose"].values[place]),
         "spread": None if spread is None else CurveSpread(spread.values[place][known]),
         **_rising(strain, tension),
         "curve": "predicted from construction, up to the break of the cords",
@@ -183,12 +186,12 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
             needed="a test with cycles",
         )
     place = _place(archive, "specimen", name)
-    branches = [str(value) for value in archive["branch_name"].values]
-    by_branch = archive["branch_tension"].values[place]
+    branches = [str(value) for value in archive.variables["branch_name"].values]
+    by_branch = archive.variables["branch_tension"].values[place]
     rows = [branches.index(one) for one in (_BRANCHES if curve == "mean" else (curve,))]
     # where a branch is not known there is no mean: half a loop is no curve
     tension = by_branch[rows].mean(axis=0)
-    strain = archive["strain_bin"].values
+    strain = archive.variables["strain_bin"].values
     known = np.isfinite(tension)
     if known.sum() < 2:
         raise DataError(
@@ -200,7 +203,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         "ascending": f"ascending branch, mean over {cycles}",
         "descending": f"descending branch, mean over {cycles}",
     }[curve]
-    specimen = str(archive["specimen"].values[place])
+    specimen = str(archive.variables["specimen"].values[place])
     notes = [
         f"{key.removeprefix('specimen_')}: {archive[key].values[place]}"
         for key in ("specimen_material", "specimen_condition")
@@ -228,7 +231,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         "linear_density": _number(archive, "linear_density", place),
         "wet_linear_density": _number(archive, "wet_linear_density", place),
         "material": (
-            str(archive["specimen_material"].values[place])
+            str(archive.variables["specimen_material"].values[place])
             if "specimen_material" in archive
             else ""
         ),

@@ -141,11 +141,11 @@ class ComparisonView(RowView):
         """Whether the curve tells the fitted numbers apart; None where none was to be fitted."""
         if "is_identified" not in self.data:
             return None
-        return _IDENTIFIED.get(int(self.data["is_identified"].values[self.index]))
+        return _IDENTIFIED.get(int(self.data.variables["is_identified"].values[self.index]))
 
     def of_curve(self, name: str, curve: str) -> Floats:
         """Values of a variable for one curve of the test: a number, or along the strains."""
-        names = self.data["curve"].values.astype(str).tolist()
+        names = self.data.variables["curve"].values.astype(str).tolist()
         return np.asarray(self.array(name)[names.index(curve)])
 
     def judged_scalar(self, name: str) -> float:
@@ -161,7 +161,7 @@ class ComparisonView(RowView):
         """Curves of the test that are there."""
         return tuple(
             name
-            for name in self.data["curve"].values.astype(str).tolist()
+            for name in self.data.variables["curve"].values.astype(str).tolist()
             if np.isfinite(self.of_curve("measured_tension", name)).any()
         )
 
@@ -177,7 +177,7 @@ class ComparisonView(RowView):
         if rows is None:
             return []
         own = np.nan_to_num(rows.values[:, self.index]).reshape(rows.shape[0], -1)
-        names = self.data["uncertainty_source"].values.astype(str)
+        names = self.data.variables["uncertainty_source"].values.astype(str)
         return in_order(set(names[(own != 0).any(axis=1)].tolist()))
 
     @property
@@ -194,7 +194,7 @@ class ComparisonView(RowView):
     @cached_property
     def events(self) -> tuple[MetEvent, ...]:
         """What happens to the cords, in the order of strain."""
-        names = self.data["hose_event"].values.astype(str)
+        names = self.data.variables["hose_event"].values.astype(str)
         fields = [name for name in MetEvent.__dataclass_fields__ if name != "name"]
         table = [self.array_like(f"event_{name}", np.zeros(names.size)) for name in fields]
         return tuple(
@@ -208,7 +208,8 @@ class ComparisonView(RowView):
         if "parameter_name" not in self.data:
             return ()
         names, units = (
-            self.data[f"parameter_{one}"].values[self.index].astype(str) for one in ("name", "unit")
+            self.data.variables[f"parameter_{one}"].values[self.index].astype(str)
+            for one in ("name", "unit")
         )
         fields = (
             "start", "value", "value_standard_uncertainty", "low", "high", "lower_bound",

@@ -112,14 +112,14 @@ class ExperimentView(RowView):
         """Values of a text variable in their shape; of no length where there is none."""
         if name not in self.data:
             return np.full((0, 0), "")
-        return np.asarray(self.data[name].values[self.index], dtype=np.str_)
+        return np.asarray(self.data.variables[name].values[self.index], dtype=np.str_)
 
     def own_rows(self, name: str) -> list[dict[str, str]]:
         """Rows of the notes or of the cautions that are of this experiment."""
         if name not in self.data:
             return []
         columns = [one for one in map(str, self.data.variables) if one.startswith(name)]
-        values = {one: self.data[one].values.astype(str) for one in columns}
+        values = {one: self.data.variables[one].values.astype(str) for one in columns}
         own = np.flatnonzero(values[f"{name}_experiment"] == self.name)
         return [{one: str(values[one][place]) for one in columns} for place in own]
 

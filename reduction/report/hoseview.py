@@ -84,8 +84,8 @@ class HoseView(RowView):
         """Values of a text variable of this hose, without those of longer hoses."""
         if name not in self.data:
             return ()
-        size = self.sizes.get(str(self.data[name].dims[-1]))
-        return tuple(str(text) for text in self.data[name].values[self.index][:size])
+        size = self.sizes.get(str(self.data.variables[name].dims[-1]))
+        return tuple(str(text) for text in self.data.variables[name].values[self.index][:size])
 
     @cached_property
     def sources(self) -> tuple[str, ...]:
@@ -94,13 +94,13 @@ class HoseView(RowView):
             return ()
         return tuple(
             name
-            for name in self.data["uncertainty_source"].values.astype(str)
+            for name in self.data.variables["uncertainty_source"].values.astype(str)
             if np.isfinite(self.array(f"{name}_standard_uncertainty")).any()
         )
 
     def contribution(self, source: str) -> Floats:
         """Change of tension for one standard uncertainty of a source, at each strain. [N]."""
-        names = self.data["uncertainty_source"].values.astype(str).tolist()
+        names = self.data.variables["uncertainty_source"].values.astype(str).tolist()
         return np.asarray(self.array("tension_contribution")[names.index(source)])
 
     @cached_property
@@ -111,7 +111,7 @@ class HoseView(RowView):
         table = [self.array_like(f"event_{name}", strain) for name in quantities]
         found = {
             name: OneEvent(name, *(float(row[place]) for row in table))
-            for place, name in enumerate(self.data["hose_event"].values.astype(str))
+            for place, name in enumerate(self.data.variables["hose_event"].values.astype(str))
         }
         if not self.is_slack_at_first:
             found.pop("deepest_slack")

@@ -60,11 +60,11 @@ class RopeView:
 
     def array(self, name: str) -> Floats:
         """Values of a variable, one a row."""
-        return np.asarray(self.data[name].values, dtype=np.float64)
+        return np.asarray(self.data.variables[name].values, dtype=np.float64)
 
     def texts(self, name: str) -> list[str]:
         """Texts of a variable, one a row."""
-        return [str(value) for value in self.data[name].values]
+        return [str(value) for value in self.data.variables[name].values]
 
     def rows_of(self, name: str) -> list[int]:
         """Rows of one property that have a number."""

@@ -56,7 +56,7 @@ class RowView:
         found = {}
         for dim, name in self.ENDS_AT.items():
             if name in self.data:
-                values = self.data[name].values[self.index]
+                values = self.data.variables[name].values[self.index]
                 is_own = np.isfinite(values) if values.dtype.kind == "f" else values.astype(object)
                 found[dim] = int(np.count_nonzero(is_own.astype(bool)))
         return found
@@ -81,13 +81,15 @@ class RowView:
 
     def text(self, name: str) -> str:
         """Value of a text variable without further dimensions; "" where there is none."""
-        return str(self.data[name].values[self.index]) if name in self.data else ""
+        return str(self.data.variables[name].values[self.index]) if name in self.data else ""
 
     def notes_of(self, owner: str, name: str, *, stage: str) -> dict[str, Severity]:
         """Notes whose ``owner`` is the name, with how serious each is at the stage."""
         if "note" not in self.data:
             return {}
         pairs = zip(
-            self.data[owner].values.astype(str), self.data["note"].values.astype(str), strict=True
+            self.data[owner].values.astype(str),
+            self.data.variables["note"].values.astype(str),
+            strict=True,
         )
         return {str(note): severity_of(stage, note) for own, note in pairs if own == name}

@@ -171,7 +171,7 @@ class TestView:
 
     def flag_meanings(self, name: str) -> dict[str, int]:
         """Meaning to mask or value of a flag variable, as the archive declares them."""
-        attributes = self.data[name].attrs
+        attributes = self.data.variables[name].attrs
         numbers = attributes.get("flag_masks", attributes.get("flag_values", ()))
         words = str(attributes.get("flag_meanings", "")).split()
         return {word: int(number) for word, number in zip(words, np.ravel(numbers), strict=True)}
@@ -184,8 +184,8 @@ class TestView:
         data = self.data.drop_dims("sample", errors="ignore")
         single = [
             name
-            for name, variable in data.data_vars.items()
-            if "cycle" in variable.dims and name not in _REACHED
+            for name in data.data_vars
+            if "cycle" in data.variables[name].dims and name not in _REACHED
         ]
         return replace(self, data=data.drop_vars(single).load())
 

@@ -42,12 +42,15 @@ def with_chords(dataset: xr.Dataset) -> xr.Dataset:
 
 def with_fit_of_parameter(dataset: xr.Dataset) -> xr.Dataset:
     """Repeat what is said of a fit beside each of its parameters."""
-    fit = dataset["elastomer_parameter_fit"].values - 1
+    fit = dataset.variables["elastomer_parameter_fit"].values - 1
     of_fit = [
         name for name in dataset.variables if dataset.variables[name].dims == ("elastomer_fit",)
     ]
     return dataset.assign(
-        {name: ("elastomer_parameter", np.asarray(dataset[name].values)[fit]) for name in of_fit}
+        {
+            name: ("elastomer_parameter", np.asarray(dataset.variables[name].values)[fit])
+            for name in of_fit
+        }
     )
 
 

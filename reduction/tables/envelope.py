@@ -58,20 +58,22 @@ def curves_of(archive: xr.Dataset) -> Iterator[Curve]:
     """Give the curves of an archive; none where the test has no cycles."""
     if "tangent_modulus" not in archive:
         return
-    edges = archive["strain_bin_bounds"].values
+    edges = archive.variables["strain_bin_bounds"].values
     rows = stored(archive, "tangent_modulus_uncertainty_contribution")
     component = () if rows is None else tuple(components_of(archive))
-    for row, specimen in enumerate(archive["specimen"].values):
-        for column, branch in enumerate(archive["branch_name"].values):
+    for row, specimen in enumerate(archive.variables["specimen"].values):
+        for column, branch in enumerate(archive.variables["branch_name"].values):
             yield Curve(
                 test=archive.attrs["test"],
                 specimen=str(specimen),
                 branch=str(branch),
                 synthetic=archive.attrs.get("synthetic", "no"),
-                strain=archive["strain_bin"].values,
+                strain=archive.variables["strain_bin"].values,
                 width=float(np.max(edges[:, 1] - edges[:, 0])),
-                modulus=archive["tangent_modulus"].values[row, column],
-                uncertainty=archive["tangent_modulus_standard_uncertainty"].values[row, column],
+                modulus=archive.variables["tangent_modulus"].values[row, column],
+                uncertainty=archive.variables["tangent_modulus_standard_uncertainty"].values[
+                    row, column
+                ],
                 shared=Contributions(component)
                 if rows is None
                 else Contributions(component, {"tangent_modulus": rows.values[:, row, column]}),

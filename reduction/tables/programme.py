@@ -67,14 +67,16 @@ def _one_a_specimen(dataset: xr.Dataset) -> xr.Dataset:
     """Give a step one static stiffness and one creep: of its last pair, its longest hold."""
     if "programme_step" not in dataset:
         return dataset
-    names = dataset["specimen"].values.tolist()
+    names = dataset.variables["specimen"].values.tolist()
     if "static_stiffness" in dataset:
-        given = np.isfinite(dataset["static_stiffness"].values).astype(np.float64)
-        last = _chosen(dataset["held_pair_specimen"].values.tolist(), names, given)
+        given = np.isfinite(dataset.variables["static_stiffness"].values).astype(np.float64)
+        last = _chosen(dataset.variables["held_pair_specimen"].values.tolist(), names, given)
         dataset = _along_specimen(dataset, _STATIC, "held_pair", last)
     if "hold_specimen" in dataset:
         longest = _chosen(
-            dataset["hold_specimen"].values.tolist(), names, dataset["hold_duration"].values
+            dataset.variables["hold_specimen"].values.tolist(),
+            names,
+            dataset.variables["hold_duration"].values,
         )
         dataset = _along_specimen(dataset, _CREEP, "hold", longest)
     return dataset
@@ -97,9 +99,9 @@ def _along_specimen(
     every = [f"{name}{suffix}" for name in names for suffix in ("", "_standard_uncertainty")]
     return dataset.assign(
         {
-            name: ("specimen", np.where(rows >= 0, dataset[name].values[rows], np.nan))
+            name: ("specimen", np.where(rows >= 0, dataset.variables[name].values[rows], np.nan))
             for name in every
-            if name in dataset and dataset[name].dims == (dim,)
+            if name in dataset and dataset.variables[name].dims == (dim,)
         }
     )
 

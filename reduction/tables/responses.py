@@ -56,7 +56,7 @@ def by_response(archive: xr.Dataset) -> xr.Dataset:
                 stacked[f"response{own}"] = variable
     dataset = archive.assign(stacked)
     if "term_unit_engineering" in archive:
-        of_term = archive["term_unit_engineering"].values
+        of_term = archive.variables["term_unit_engineering"].values
         # the unit of a term stands there as what is multiplied, not as what is divided by
         full = [
             [[combined_unit(unit, [str(own)], [-1]) for own in row] for unit in units]
@@ -64,16 +64,21 @@ def by_response(archive: xr.Dataset) -> xr.Dataset:
         ]
         dims = ("experiment", "response", "term")
         dataset["coefficient_engineering_unit"] = (dims, np.array(full, dtype=np.str_))
-    dataset["run_is_there"] = (("experiment", "run"), _marked(archive["run_name"].values != ""))
+    dataset["run_is_there"] = (
+        ("experiment", "run"),
+        _marked(archive.variables["run_name"].values != ""),
+    )
     dataset["run_plan"] = (
         ("experiment", "run", "factor"),
-        archive["run_plan"].values[:, :, : archive.sizes["factor"]],
+        archive.variables["run_plan"].values[:, :, : archive.sizes["factor"]],
     )
     if "response_effect" in dataset:
-        is_column = archive["plan_column_name"].values[:, None, :] != ""
-        known = np.isfinite(dataset["response_effect"].values)
+        is_column = archive.variables["plan_column_name"].values[:, None, :] != ""
+        known = np.isfinite(dataset.variables["response_effect"].values)
         if "response_effect_refusal" in dataset:
-            known |= (dataset["response_effect_refusal"].values != "")[:, :, None] & is_column
+            known |= (dataset.variables["response_effect_refusal"].values != "")[
+                :, :, None
+            ] & is_column
         dims = ("experiment", "response", "plan_column")
         dataset["effect_is_there"] = (dims, _marked(known))
     return dataset

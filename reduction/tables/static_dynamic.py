@@ -64,15 +64,19 @@ def slopes_of(archive: xr.Dataset) -> Iterator[Slope]:
     if "interval_modulus" not in archive:
         return
     branches = {value: name for name, value in BRANCH_VALUES.items()}
-    for index in map(int, np.flatnonzero(np.isfinite(archive["interval_modulus"].values))):
+    for index in map(
+        int, np.flatnonzero(np.isfinite(archive.variables["interval_modulus"].values))
+    ):
         yield Slope(
             test=archive.attrs["test"],
-            specimen=str(archive["specimen"].values[0]),
-            branch=branches[int(archive["interval_branch"].values[index])],
+            specimen=str(archive.variables["specimen"].values[0]),
+            branch=branches[int(archive.variables["interval_branch"].values[index])],
             synthetic=archive.attrs.get("synthetic", "no"),
-            strain=float(archive["interval_strain"].values[index]),
-            modulus=float(archive["interval_modulus"].values[index]),
-            uncertainty=float(archive["interval_modulus_standard_uncertainty"].values[index]),
+            strain=float(archive.variables["interval_strain"].values[index]),
+            modulus=float(archive.variables["interval_modulus"].values[index]),
+            uncertainty=float(
+                archive.variables["interval_modulus_standard_uncertainty"].values[index]
+            ),
             shared=shared_contributions(archive, "interval_modulus", index),
         )
 
