@@ -1,11 +1,10 @@
 """No number of a synthetic campaign's tables lacks its uncertainty, or columns.csv says why."""
 
 import csv
-from pathlib import Path
 
 import pytest
+from commandruns import run_once, shared_by_processes
 
-RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
 _WORDLESS = ("", "label", "is an uncertainty")
 
 
@@ -23,12 +22,8 @@ def is_number(text):
 
 
 @pytest.fixture(scope="module")
-def rope(tmp_path_factory, process):
-    folder = tmp_path_factory.mktemp("rope")
-    process(
-        "run", RAW / "campaign.toml", "--processed", folder / "p", "--reports", folder / "r"
-    )  # fmt: skip
-    return folder / "p" / "nylon-synthetic" / "tables"
+def rope(tmp_path_factory):
+    return run_once("nylon-synthetic", shared_by_processes(tmp_path_factory)).processed / "tables"
 
 
 @pytest.fixture(params=["tethers", "ropes"])

@@ -1,8 +1,8 @@
 import shutil
-from pathlib import Path
 
 import numpy as np
 import pytest
+from commandruns import run_once, shared_by_processes
 from scipy import stats
 
 from reduction.archive.linecurves import CURVES
@@ -13,25 +13,16 @@ from reduction.archive.linesource import (
 )
 from reduction.archive.open import open_archive
 from reduction.archive.surface_read import surfaces_of
-from reduction.batch.run import run_campaign
-from reduction.campaign.load import load_campaign
 from reduction.cli.lookupsource import lines_of
 from reduction.errors import ArchiveError, DataError
 from reduction.lookup.line import look_up
 from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.designs import box_behnken
 
-RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
-
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("line")
-    run = run_campaign(
-        load_campaign(RAW / "campaign.toml"), processed=folder / "p", reports=folder / "r",
-        clock=lambda: 0.0,
-    )  # fmt: skip
-    return run.processed
+    return run_once("nylon-synthetic", shared_by_processes(tmp_path_factory)).processed
 
 
 @pytest.fixture(scope="module")
