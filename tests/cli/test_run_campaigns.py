@@ -163,12 +163,12 @@ def test_every_product_follows_cf(synthetic, static):
     assert done.returncode == 0, done.stdout[-4000:]
 
 
-def test_a_check_lists_strain_models_where_there_are_some(command):
-    stepwise = command("check", ROOT / "raw" / "buoy-technology-1997" / "campaign.toml")
+def test_a_check_lists_strain_models_where_there_are_some(process):
+    stepwise = process("check", ROOT / "raw" / "buoy-technology-1997" / "campaign.toml")
     assert (stepwise.returncode, "static" in stepwise.stdout) == (0, True)
     assert "strain method" not in stepwise.stdout
     assert "rate [Hz]" not in stepwise.stdout
-    cyclic = command("check", ROOT / "raw" / "tmt-synthetic" / "campaign.toml", "--test", "T-1")
+    cyclic = process("check", ROOT / "raw" / "tmt-synthetic" / "campaign.toml", "--test", "T-1")
     assert "strain method" in cyclic.stdout
     assert "rate [Hz]" in cyclic.stdout
     assert "tension-driven" in cyclic.stdout
