@@ -63,7 +63,7 @@ def _refine(values: Floats, candidate: Candidate, sigma: float) -> tuple[Step, b
     onset, extent = onset[inside], extent[inside]
     ramps = ramp_of(n_local, onset=onset, extent=extent)
     power = power_beyond_parabola(ramps)
-    product = ramps @ local  # which holds no parabola, so that theirs does not count
+    product = ramps @ local  # the parabola of a ramp adds nothing: none is left in `local`
     gain, sizes = product**2 / power, product / power
     best = int(np.argmax(gain))
     variance = max(sigma**2, (float(local @ local) - float(gain[best])) / max(1, n_local - 6))

@@ -76,9 +76,8 @@ def by_response(archive: xr.Dataset) -> xr.Dataset:
         is_column = archive.variables["plan_column_name"].values[:, None, :] != ""
         known = np.isfinite(dataset.variables["response_effect"].values)
         if "response_effect_refusal" in dataset:
-            known |= (dataset.variables["response_effect_refusal"].values != "")[
-                :, :, None
-            ] & is_column
+            is_refused = dataset.variables["response_effect_refusal"].values != ""
+            known |= is_refused[:, :, None] & is_column
         dims = ("experiment", "response", "plan_column")
         dataset["effect_is_there"] = (dims, _marked(known))
     return dataset
