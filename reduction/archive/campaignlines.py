@@ -17,7 +17,7 @@ from reduction.archive.linesource import (
     line_source_of_test,
     specimens_of,
 )
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.products import archives_of_tests
 from reduction.lookup.product import LineSource
 
@@ -52,7 +52,7 @@ def lines_of_archive(path: Path) -> list[LineSource]:
     ArchiveError
         If the archive cannot be read.
     """
-    with open_archive(path) as archive:
+    with reading(path) as archive:
         return lines_of_open_archive(archive, path)
 
 
@@ -127,6 +127,6 @@ def _specimens(path: Path, names: set[str]) -> dict[str, Facts]:
     for one in archives_of_tests(path.parent):
         if names <= known.keys():
             break
-        with open_archive(one) as archive:
+        with reading(one) as archive:
             known |= facts_of_specimens(archive)
     return known

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -11,12 +12,12 @@ from typing import Literal
 import netCDF4
 import xarray as xr
 
-from reduction.archive.seal import check_seal
+from reduction.archive.seal import check_seal, has_seal
 from reduction.archive.sound import check_form, check_stored
 from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError, SettingsError
 
-__all__ = ["Chunks", "open_archive"]
+__all__ = ["Chunks", "failing_reads", "open_archive", "reading"]
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
 """Values of a chunk, or by dimension, as `xarray.open_dataset` takes them."""
@@ -24,6 +25,79 @@ Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
 _CACHE = 1 << 20
 """Bytes of each variable that the library keeps as they are read: two chunks of an archive. Its own
 64 MB hold all that was ever read of a test, beside what is made of it."""
+
+
+_OF_LIBRARY = re.compile(r"(\[Errno -\d+\] )?NetCDF: ")
+_OF_DISK = re.compile(r"HDF error|HDF5 attribute")
+_AGAIN = "Check the disk; take a copy that is whole, or reduce the campaign again."
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[xr.Dataset]:
+    """Open an archive for a block in which its values are read, and close it.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        A file that `write_archive` wrote.
+
+    Yields
+    ------
+    dataset : xarray.Dataset
+        As `open_archive` gives it.
+
+    Raises
+    ------
+    ArchiveError
+        As `open_archive`, and if the library fails while something is read in the block.
+    """
+    with failing_reads(str(path)), open_archive(path) as dataset:
+        yield dataset
+
+
+@contextmanager
+def failing_reads(what: str) -> Iterator[None]:
+    """Turn errors of the netCDF library in a block into those of an archive.
+
+    Parameters
+    ----------
+    what : str
+        The file, or files, that are read in the block, for the message.
+
+    Raises
+    ------
+    ArchiveError
+        If the library fails; other errors are passed on as they are.
+
+    Notes
+    -----
+    Values are read when they are asked for, so that a disk may fail long after a file was opened.
+    The library raises `RuntimeError`, `AttributeError` or `OSError` then, and names no file.
+
+    Examples
+    --------
+    >>> with failing_reads("processed/nylon/T-1.nc"):
+    ...     raise RuntimeError("NetCDF: HDF error")
+    Traceback (most recent call last):
+    reduction.errors.ArchiveError: processed/nylon/T-1.nc cannot be read; found NetCDF: HDF
+    error. Check the disk; take a copy that is whole, or reduce the campaign again.
+    """
+    try:
+        yield
+    except (AttributeError, OSError, RuntimeError) as error:
+        if not _OF_LIBRARY.match(str(error)):
+            raise
+        raise _unreadable(what, error) from error
+
+
+def _unreadable(what: str, error: Exception) -> ArchiveError:
+    return ArchiveError(
+        f"{what} cannot be read", found=_OF_LIBRARY.sub("NetCDF: ", _words(error)), hint=_AGAIN
+    )
+
+
+def _words(error: Exception) -> str:
+    return (str(error) or type(error).__name__).splitlines()[0]
 
 
 def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
@@ -68,14 +142,17 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
             needed="a name in the character set of this process",
             hint="Set PYTHONUTF8=1, or take a locale of UTF-8, or rename the folder.",
         ) from error
-    except (OSError, RuntimeError, ValueError, TypeError) as error:  # a scale that is text
+    except (AttributeError, OSError, RuntimeError, ValueError, TypeError) as error:
+        # a TypeError of a scale that is text
         if isinstance(error, OSError) and (error.errno or 0) > 0:  # those of the library are below
             raise ArchiveError(
                 f"{path} cannot be read", found=error.strerror or str(error)
             ) from error
+        if _OF_DISK.search(str(error)) and has_seal(path):
+            raise _unreadable(str(path), error) from error
         raise ArchiveError(
             f"{path} is not a netCDF file",
-            found=str(error).splitlines()[0],
+            found=_words(error),
             needed="an archive of a reduced test",
         ) from error
     found = dataset.attrs.get("schema_version")

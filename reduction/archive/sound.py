@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -23,6 +25,7 @@ _TEXTS = (
     "raw_metadata", "settings", "history", "command", "software_version", "synthetic",
 )  # fmt: skip
 _OF_PARTS = {"experiment", "outcome", "comparison_point", "hose", "property"}
+_ERROR_NUMBER = re.compile(r"\berrno = ([1-9]\d{0,3})\b")
 _HINT = "Take the archive as a run wrote it, or reduce the campaign again."
 
 
@@ -37,7 +40,8 @@ def check_stored(path: Path) -> None:
     Raises
     ------
     ArchiveError
-        If it has links, groups, virtual variables, external storage, or shapes beyond its size.
+        If it has links, groups, virtual variables, external storage, or shapes beyond its size,
+        or the disk refuses.
 
     Notes
     -----
@@ -45,15 +49,27 @@ def check_stored(path: Path) -> None:
     """
     try:
         file = h5py.File(path, "r", locking=False)
-    except OSError:
+    except OSError as error:
+        _refuse_disk(path, error)
         return
     with file:
         try:
             fault = next(_faults_stored(file.id, path.stat().st_size), None)
         except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
+            _refuse_disk(path, error)
             fault = f"what cannot be read: {str(error).splitlines()[0][:200]}"
     if fault is not None:
         raise _no_archive(path, fault)
+
+
+def _refuse_disk(path: Path, error: Exception) -> None:
+    """Where the system refused, say what it said; the library puts it into its own words."""
+    if found := _ERROR_NUMBER.search(str(error)):
+        raise ArchiveError(
+            f"{path} cannot be read",
+            found=os.strerror(int(found[1])),
+            hint="Check the disk, and take a copy that is whole.",
+        ) from error
 
 
 def _faults_stored(root: h5py.h5g.GroupID, size: int) -> Iterator[str]:

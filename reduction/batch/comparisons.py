@@ -15,7 +15,7 @@ from reduction import __version__
 from reduction.archive.comparisons import NamedComparison, comparisons_to_dataset
 from reduction.archive.curveerrors import curve_errors_of
 from reduction.archive.kept import stored_cycles
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.whole import take_away
 from reduction.archive.write import write_archive
 from reduction.batch.part import PartStatus
@@ -135,7 +135,7 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
     FitError
         If the calibration does not come to an end.
     """
-    with open_archive(path) as archive:
+    with reading(path) as archive:
         missing = [name for name in ("strain", "tension", "specimen") if name not in archive]
         if missing:
             raise DataError(

@@ -71,7 +71,7 @@ def write_experiments(
     Raises
     ------
     ArchiveError
-        If the archive cannot be written.
+        If the archive cannot be written, or that of a run cannot be read.
     """
     if not campaign.experiments:
         return []

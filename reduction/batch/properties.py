@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from reduction import __version__
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.properties import properties_to_dataset
 from reduction.archive.rope_steps import CHANGES_LENGTH, step_of_archive
 from reduction.archive.statederrors import says_what_is_shared
@@ -205,7 +205,7 @@ def _read(
             continue
         path = folder / f"{test}.nc"
         # a test that neither failed nor waits has an archive of this run or as good as one
-        with open_archive(path) as archive:
+        with reading(path) as archive:
             found = step_of_archive(archive, specimen, *known[test])
             steps.append(found.step)
             component[found.step.name] = found.component

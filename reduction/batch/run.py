@@ -201,7 +201,7 @@ def _keep_pages(ours: Sequence[Path], name: str, why: str) -> None:
         if path.name == name:
             raise ArchiveError(
                 f"{path} cannot be read, and the report is left as it was",
-                found=why,
+                found=why.removesuffix("."),
                 hint="Check the disk, and run again.",
             )
 

@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.shared import shared_contributions
 from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.stored import stored
 from reduction.campaign.plan import Campaign, ExperimentPlan
-from reduction.errors import ArchiveError
 from reduction.line.product import REASONS
 from reduction.record import Bools
 from reduction.surface.cautions import MEASURED_SLACK
@@ -37,17 +36,15 @@ def rows_of_run(
     log = run.partition(".")[0]
     specimens = campaign.tests[log].specimens
     about = {"run": run, "coded": coded, "order": _order(campaign, plan, run)}
-    missing = {"remark": "its test failed" if path is None else "its test gave no product"}
-    try:
-        if path is None:
-            return [about | missing | {"specimen": name} for name in specimens]
-        with open_archive(path) as archive:
-            given = [str(name) for name in archive.variables["specimen"].values]
-            return [
-                about | row_of_archive(plan, archive, given.index(name), name) for name in specimens
-            ]
-    except ArchiveError:
-        return [about | missing | {"specimen": name} for name in specimens]
+    if path is None or not path.exists():
+        missing = "its test failed" if path is None else "its test gave no product"
+        return [about | {"remark": missing, "specimen": name} for name in specimens]
+    # one that is there and cannot be read is no run that is missing: surfaces would be other ones
+    with reading(path) as archive:
+        given = [str(name) for name in archive.variables["specimen"].values]
+        return [
+            about | row_of_archive(plan, archive, given.index(name), name) for name in specimens
+        ]
 
 
 def _order(campaign: Campaign, plan: ExperimentPlan, run: str) -> float:

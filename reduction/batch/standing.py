@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from reduction import __version__
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.seal import has_seal
 from reduction.batch.survey import Survey
 
@@ -96,7 +96,7 @@ def standing_product(
     try:
         if not path.exists() or not has_seal(path):
             return None  # not there, or changed by another program since
-        with open_archive(path) as archive:
+        with reading(path) as archive:
             sums = "\n".join(source.sha256 for source in survey.sources)
             before = str(archive.attrs.get("settings"))
             if archive.attrs.get("software_version") != __version__:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.batch.basis import Basis
 from reduction.batch.standing import standing_product
 from reduction.batch.survey import Survey
@@ -58,7 +58,7 @@ def waiting_runs(
 
 def _same_pull(path: Path, settings: str) -> bool:
     try:
-        with open_archive(path) as archive:
+        with reading(path) as archive:
             before = json.loads(str(archive.attrs.get("settings")))
         return bool(before.get("quasi_static") == json.loads(settings).get("quasi_static"))
     except (ArchiveError, AttributeError, ValueError):

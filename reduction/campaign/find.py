@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path
 
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.products import archives_of_tests
 from reduction.campaign.textfiles import read_small_text
 from reduction.errors import ArchiveError, SettingsError
@@ -25,7 +25,7 @@ def id_of_products(processed: Path) -> str:
     """
     archives = archives_of_tests(processed) if processed.is_dir() else []
     if archives:
-        with open_archive(archives[0]) as archive:
+        with reading(archives[0]) as archive:
             return str(archive.attrs.get("campaign", ""))
     folders = sorted(processed.iterdir()) if processed.is_dir() else []
     inside = [one.name for one in folders if archives_of_tests(one)]

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.products import OF_CAMPAIGN
 from reduction.catalogue.columns import LEFT_OUT, NUMBERS, TEXTS, column_type
 from reduction.catalogue.entry import WHOLE, ArchiveEntry, Block
@@ -44,7 +44,7 @@ def identity_of(path: Path) -> str:
     ArchiveError
         If the file cannot be read.
     """
-    with open_archive(path) as archive:
+    with reading(path) as archive:
         return _identity(archive.attrs)
 
 
@@ -88,7 +88,7 @@ def read_entry(path: Path, name: str) -> ArchiveEntry:
         fault = f"{name} is a folder that is no archive, or one that this user may not look into"
         return ArchiveEntry("", dict(known), fault=fault)
     try:
-        with open_archive(path) as archive:
+        with reading(path) as archive:
             return _entry(archive, known)
     except ArchiveError as error:
         return ArchiveEntry("", dict(known), fault=shown_path(str(error)))

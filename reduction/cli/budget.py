@@ -11,7 +11,7 @@ from rich.markup import escape
 
 from reduction.archive.budget import budget_from_archive, quantities_with_budget
 from reduction.archive.budgetplaces import parse_place, place_name
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.stored import stored
 from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.lookupsource import name_of_quantity
@@ -30,7 +30,7 @@ _OVER_TENSION = {"strain": "quasi_static_strain"}
 
 def list_budgets(path: Path, *, output: CommandOutput) -> None:
     """Print what PRODUCT keeps a budget of."""
-    with open_archive(path) as archive:
+    with reading(path) as archive:
         names = {name: list(archive[name].dims) for name in quantities_with_budget(archive)}
     if names:
         table = table_of("quantity", "--at", texts=2)
@@ -49,7 +49,7 @@ def list_budgets(path: Path, *, output: CommandOutput) -> None:
 
 def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: CommandOutput) -> None:
     """Print the budget of one number, largest source first."""
-    with open_archive(path) as archive:
+    with reading(path) as archive:
         budget = budget_from_archive(archive, _name_in(archive, quantity), _places(places))
         synthetic = archive.attrs.get("synthetic", "no") == "yes"
         drawn = _drawn_uncertainty(archive, budget)

@@ -9,7 +9,7 @@ from typing import cast
 
 import xarray as xr
 
-from reduction.archive.open import open_archive
+from reduction.archive.open import failing_reads, open_archive
 from reduction.archive.pieces import source_of_tests, specimens_of
 from reduction.archive.products import archives_of_tests
 from reduction.errors import SettingsError
@@ -84,7 +84,7 @@ def piece_source(
         return _published(sources, specimen, branch)
     paths = [path for one in sources for path in _archives(one)]
     named = {Path(one) for one in sources}
-    with ExitStack() as opened:
+    with failing_reads(" or ".join(map(str, paths))), ExitStack() as opened:
         datasets = [opened.enter_context(open_archive(path)) for path in paths]
         name = _specimen(datasets, sources, specimen)
         for path, one in zip(paths, datasets, strict=True):

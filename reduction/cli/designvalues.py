@@ -52,7 +52,7 @@ def refresh_design_page(
         if archive.parent.name == made:
             raise ArchiveError(
                 f"{archive} cannot be read, and the page of design values is left as it was",
-                found=why,
+                found=why.removesuffix("."),
                 hint="Check the disk, and run again.",
             )
         left_out[archive] = why

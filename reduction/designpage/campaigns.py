@@ -13,7 +13,7 @@ from reduction.archive.campaignlines import (
     lines_of_open_archive,
     names_apart,
 )
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.designpage.exportdata import curves_of_archive, refusal_of_surfaces
 from reduction.designpage.linedata import json_text, line_data
 from reduction.errors import ReductionError
@@ -175,7 +175,7 @@ def _stamp(path: Path) -> str:
 
 
 def _lines(path: Path) -> list[dict[str, Any]]:
-    with open_archive(path) as archive:
+    with reading(path) as archive:
 
         def of(line: LineSource) -> dict[str, Any]:
             is_test = "experiment" not in archive.sizes

@@ -16,7 +16,7 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.pieceparts import parts_of
 from reduction.archive.stored import stored
 from reduction.digits import plain_number
@@ -73,7 +73,7 @@ def line_from_archive(
     DataError
         If there is no curve, or it falls by more than noise.
     """
-    with open_archive(path) as archive:
+    with reading(path) as archive:
         return line_from_open_archive(archive, path.stem, curve=curve, specimen=specimen, **stated)
 
 

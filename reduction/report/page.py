@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from reduction.archive.laboratory import read_details
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.products import archives_of_tests
 from reduction.archive.whole import take_away
 from reduction.archive.write import write_whole
@@ -120,7 +120,7 @@ def write_report(
     starts: dict[str, float] = {}
     for index, path in enumerate(paths):
         try:
-            with open_archive(path) as data:
+            with reading(path) as data:
                 name = data.attrs["test"]
                 known = by_test.get(name) or (Status(name, OF_NO_TEST) if has_statuses else None)
                 view = TestView(f"test-{index}", data, units, known)

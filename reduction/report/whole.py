@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import xarray as xr
 
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.errors import ArchiveError
 from reduction.report.comparisonsection import (
     comparison_findings,
@@ -201,7 +201,7 @@ def _read(
     if not path.is_file():
         return ()
     try:
-        with open_archive(path) as data:
+        with reading(path) as data:
             return tuple(read(data))
     except ArchiveError as error:
         unreadable[path.name] = str(error).replace(str(path), path.name)

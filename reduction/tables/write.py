@@ -10,7 +10,7 @@ from typing import Any
 
 import xarray as xr
 
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.variable import label
 from reduction.archive.whole import take_away
@@ -130,14 +130,14 @@ def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path]) -> set[
     kept, says = set[str](), set[bool]()
     places: dict[Path, _Place] = {}
     for path in archives:
-        with open_archive(path) as archive:
+        with reading(path) as archive:
             kept |= quantities_kept(archive)
             says.add(says_what_is_shared(archive))
             places[path] = _place(archive.attrs)
     curves: list[Curve] = []
     slopes: list[Slope] = []
     for path in sorted(archives, key=places.__getitem__):
-        with open_archive(path) as whole:
+        with reading(path) as whole:
             archive = as_silent(whole, kept)
             for table in TABLES:
                 _add(files[table.name], archive, table)
@@ -151,7 +151,7 @@ def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path]) -> set[
 def _add_experiments(files: Mapping[str, TableFile], surfaces: Path | None) -> None:
     if surfaces is None:
         return
-    with open_archive(surfaces) as archive:
+    with reading(surfaces) as archive:
         dataset = by_response(archive)
         for table in EXPERIMENT_TABLES:
             _add(files[table.name], dataset, table)
@@ -162,7 +162,7 @@ def _add_as_it_is(
 ) -> None:
     if path is None:
         return
-    with open_archive(path) as archive:
+    with reading(path) as archive:
         for table in tables:
             _add(files[table.name], archive, table)
 
@@ -170,7 +170,7 @@ def _add_as_it_is(
 def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None) -> None:
     if outcomes is None:
         return
-    with open_archive(outcomes) as archive:
+    with reading(outcomes) as archive:
         for name, rows in outcome_table_rows(archive).items():
             files[name].add_rows(rows)
 

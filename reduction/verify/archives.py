@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from reduction.archive.check import check_archive
-from reduction.archive.open import open_archive
+from reduction.archive.open import reading
 from reduction.archive.seal import has_seal
 from reduction.errors import ArchiveError
 from reduction.provenance import Source
@@ -54,7 +54,7 @@ def look_at(path: Path) -> Looked:
     name = path.name
     try:
         is_sealed = has_seal(path)
-        with open_archive(path) as archive:
+        with reading(path) as archive:
             attributes = {str(key): str(value) for key, value in archive.attrs.items()}
         faults = check_archive(path)
     except ArchiveError as error:

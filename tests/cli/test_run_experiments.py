@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 from reduction.archive.open import open_archive
+from reduction.batch import runrows
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
+from reduction.errors import ArchiveError
 from reduction.surface.levels import FactorLevels
 
 RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
@@ -172,3 +174,20 @@ def test_runs_of_which_a_factor_never_moves_end_as_data_that_cannot_carry_a_surf
     assert said["one"].exit_status == 4
     assert "temperature never moves" in said["one"].message
     assert done.exit_status == 4
+
+
+def test_a_run_whose_archive_cannot_be_read_is_not_one_that_is_missing(folder, monkeypatch):
+    """Surfaces over the other runs would be other surfaces."""
+    (surfaces,) = folder.glob("p/*/surfaces.nc")
+    before = surfaces.read_bytes()
+    opened = runrows.reading
+
+    def refused(path):
+        if path.name == "R02.nc":
+            raise ArchiveError(f"{path} cannot be read", found="Input/output error")
+        return opened(path)
+
+    monkeypatch.setattr(runrows, "reading", refused)
+    with pytest.raises(ArchiveError, match=r"R02\.nc cannot be read; found Input/output error"):
+        run(folder)
+    assert surfaces.read_bytes() == before

@@ -87,14 +87,14 @@ def changed_at_the_end(monkeypatch, change):
 def test_an_archive_that_the_report_cannot_read_leaves_the_page_as_it_was(
     older, command, monkeypatch
 ):
-    opened = page_module.open_archive
+    opened = page_module.reading
 
     def refused(path):
         if path.name == "A.nc":
             raise ArchiveError(f"{path} is damaged")
         return opened(path)
 
-    monkeypatch.setattr(page_module, "open_archive", refused)
+    monkeypatch.setattr(page_module, "reading", refused)
     page = older / "reports" / "short" / "index.html"
     before = page.read_bytes()
     done = run(command, older)
@@ -113,14 +113,14 @@ def test_an_archive_that_the_report_cannot_read_leaves_the_page_as_it_was(
 def test_an_archive_that_was_just_made_and_cannot_be_read_leaves_the_design_values_as_they_were(
     older, command, monkeypatch
 ):
-    opened = campaigns_module.open_archive
+    opened = campaigns_module.reading
 
     def refused(path):
         if path.name == "A.nc":
             raise ArchiveError(f"{path} is damaged")
         return opened(path)
 
-    monkeypatch.setattr(campaigns_module, "open_archive", refused)
+    monkeypatch.setattr(campaigns_module, "reading", refused)
     page = older / "reports" / "design-values.html"
     before = page.read_bytes()
     done = run(command, older)

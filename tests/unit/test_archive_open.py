@@ -4,11 +4,14 @@ import errno
 import os
 import sys
 
+import h5py
 import netCDF4
 import pytest
 
 from reduction.archive import open as module
-from reduction.archive.open import open_archive
+from reduction.archive import sound
+from reduction.archive.open import failing_reads, open_archive, reading
+from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError
 
 
@@ -57,6 +60,70 @@ def test_an_archive_that_the_system_refuses_is_told_so(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "check_seal", refused)
     with pytest.raises(ArchiveError, match="T-1.nc cannot be read; found Input/output error"):
         open_archive(path)
+
+
+@pytest.fixture
+def rotten(tmp_path):
+    """An archive that opens, and no part of whose ``tension`` can be unpacked."""
+    path = tmp_path / "T-1.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        file.schema_version = SCHEMA_VERSION
+        file.createDimension("specimen", 1)
+        file.createDimension("sample", 5000)
+        made = file.createVariable("tension", "f8", ("specimen", "sample"), compression="zlib")
+        made[:] = range(5000)
+    with h5py.File(path) as file:
+        chunk = file["tension"].id.get_chunk_info(0)
+    with path.open("r+b") as file:
+        file.seek(chunk.byte_offset)
+        file.write(b"\xff" * chunk.size)
+    return path
+
+
+def test_an_error_of_the_library_while_values_are_read_names_the_file(rotten):
+    with reading(rotten) as archive:
+        assert archive["tension"].shape == (1, 5000)
+    with (
+        pytest.raises(ArchiveError, match=r"\.nc cannot be read; found NetCDF: .*Check the disk"),
+        reading(rotten) as archive,
+    ):
+        archive["tension"].load()
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        AttributeError("NetCDF: Can't open HDF5 attribute"),
+        OSError(-101, "NetCDF: HDF error", "T-1.nc"),
+        RuntimeError("NetCDF: HDF error"),
+    ],
+)
+def test_the_library_fails_in_three_ways(error):
+    with (
+        pytest.raises(ArchiveError, match=r"T-1\.nc cannot be read; found NetCDF: \w"),
+        failing_reads("T-1.nc"),
+    ):
+        raise error
+
+
+@pytest.mark.parametrize("error", [AttributeError("'NoneType'"), OSError(5, "x"), RuntimeError()])
+def test_errors_that_are_not_of_the_library_are_passed_on(error):
+    with pytest.raises(type(error)) as raised, failing_reads("T-1.nc"):
+        raise error
+    assert raised.value is error
+
+
+def test_a_disk_that_refuses_the_library_is_no_fault_of_the_form(rich_test, write, monkeypatch):
+    def refused(*_):
+        # what h5py 3.16 says
+        raise OSError(
+            "Link iteration failed (file read failed: time = Sun Nov 22 13:45:19 2026\n, filename ="
+            " 'A.nc', file descriptor = 9, errno = 5, error message = 'Input/output error')"
+        )
+
+    monkeypatch.setattr(sound, "_faults_stored", refused)
+    with pytest.raises(ArchiveError, match=r"\.nc cannot be read; found Input/output error\."):
+        open_archive(write(rich_test))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files are bytes on Linux alone")

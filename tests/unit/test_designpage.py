@@ -54,13 +54,13 @@ def processed(products, tmp_path):
 def opened(monkeypatch):
     """Names of the archives that are opened."""
     names = []
-    own = read.open_archive
+    own = read.reading
 
     def kept(path):
         names.append(path.name)
         return own(path)
 
-    monkeypatch.setattr(read, "open_archive", kept)
+    monkeypatch.setattr(read, "reading", kept)
     return names
 
 
