@@ -9,6 +9,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from reduction.archive.inmemory import Opener
 from reduction.archive.linecurves import CURVES
 from reduction.archive.linesource import (
     Facts,
@@ -56,7 +57,9 @@ def lines_of_archive(path: Path) -> list[LineSource]:
         return lines_of_open_archive(archive, path)
 
 
-def lines_of_open_archive(archive: xr.Dataset, path: Path) -> list[LineSource]:
+def lines_of_open_archive(
+    archive: xr.Dataset, path: Path, opener: Opener = reading
+) -> list[LineSource]:
     """Every line of one archive that is open, as `lines_of_archive`.
 
     Parameters
@@ -65,6 +68,8 @@ def lines_of_open_archive(archive: xr.Dataset, path: Path) -> list[LineSource]:
         As `reduction.archive.open.open_archive` gives it.
     path : pathlib.Path
         Where it is: of an experiment the tests beside it say what its specimens are.
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
@@ -79,7 +84,8 @@ def lines_of_open_archive(archive: xr.Dataset, path: Path) -> list[LineSource]:
     if "experiment" in archive.sizes:
         names = archive.variables["experiment"].values.astype(str).tolist()
         kinds = archive.variables["experiment_kind"].values.astype(str).tolist()
-        known = _specimens(path, {one for name in names for one in specimens_of(archive, name)})
+        wanted = {one for name in names for one in specimens_of(archive, name)}
+        known = _specimens(path, wanted, opener)
         return [
             line_source_of_experiment(archive, name, specimens=known)
             for name, kind in zip(names, kinds, strict=True)
@@ -121,12 +127,12 @@ def names_apart(named: Sequence[tuple[str, str]]) -> list[str]:
     return [f"{test} {name}" if count[name] > 1 else name for test, name in named]
 
 
-def _specimens(path: Path, names: set[str]) -> dict[str, Facts]:
+def _specimens(path: Path, names: set[str], opener: Opener) -> dict[str, Facts]:
     """What the archives of tests beside an archive of experiments state of its specimens."""
     known: dict[str, Facts] = {}
     for one in archives_of_tests(path.parent):
         if names <= known.keys():
             break
-        with reading(one) as archive:
+        with opener(one) as archive:
             known |= facts_of_specimens(archive)
     return known

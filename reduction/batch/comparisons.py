@@ -14,6 +14,7 @@ import xarray as xr
 from reduction import __version__
 from reduction.archive.comparisons import NamedComparison, comparisons_to_dataset
 from reduction.archive.curveerrors import curve_errors_of
+from reduction.archive.inmemory import Opener
 from reduction.archive.kept import stored_cycles
 from reduction.archive.open import reading
 from reduction.archive.whole import take_away
@@ -38,6 +39,7 @@ def write_comparisons(
     failed: Collection[str],
     waiting: Mapping[str, str],
     command: str,
+    opener: Opener = reading,
 ) -> list[PartStatus]:
     """Compare what a campaign asks for, from the archives of its tests, and write one archive.
 
@@ -53,6 +55,8 @@ def write_comparisons(
         Tests that were not asked for and have to be reduced first, with the reason.
     command : str
         For the product's ``command`` attribute, without paths.
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
@@ -80,7 +84,7 @@ def write_comparisons(
         try:
             if plan.measured in failed:
                 raise DataError(f"test '{plan.measured}' failed: there is no curve of it")
-            named = compare_archive(path, campaign.hoses[plan.predicted], plan)
+            named = compare_archive(path, campaign.hoses[plan.predicted], plan, opener)
         except ReductionError as error:
             text = f"comparison '{plan.name}': {error}"
             statuses.append(PartStatus(plan.name, "failed", error.exit_status, text))
@@ -109,7 +113,9 @@ def write_comparisons(
     return statuses
 
 
-def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedComparison:
+def compare_archive(
+    path: Path, hose: HosePlan, plan: ComparisonPlan, opener: Opener = reading
+) -> NamedComparison:
     """Hold the archive of a test against a hose.
 
     Parameters
@@ -120,6 +126,8 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
         The prediction.
     plan : ComparisonPlan
         Which specimen, how it was pulled, what to fit; an empty specimen stands for the only one.
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
@@ -135,7 +143,7 @@ def compare_archive(path: Path, hose: HosePlan, plan: ComparisonPlan) -> NamedCo
     FitError
         If the calibration does not come to an end.
     """
-    with reading(path) as archive:
+    with opener(path) as archive:
         missing = [name for name in ("strain", "tension", "specimen") if name not in archive]
         if missing:
             raise DataError(

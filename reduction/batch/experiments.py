@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from reduction import __version__
+from reduction.archive.inmemory import Opener
+from reduction.archive.open import reading
 from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.archive.write import write_archive
 from reduction.batch.part import PartStatus
@@ -45,6 +47,7 @@ def write_experiments(
     waiting: Mapping[str, str],
     raw_sha256: Mapping[str, str],
     command: str,
+    opener: Opener = reading,
 ) -> list[PartStatus]:
     """Fit the experiments of a campaign of which no run waits, and write them as one archive.
 
@@ -62,6 +65,8 @@ def write_experiments(
         Hashes of the raw files by run.
     command : str
         For the product's ``command`` attribute.
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
@@ -103,7 +108,7 @@ def write_experiments(
     if not ready:
         return list(statuses.values())
     results, sources = fit_experiments(
-        replace(campaign, experiments=ready), archive_of, raw_sha256=raw_sha256
+        replace(campaign, experiments=ready), archive_of, raw_sha256=raw_sha256, opener=opener
     )
     dataset = surfaces_to_dataset(
         results,
@@ -162,6 +167,7 @@ def fit_experiments(
     archive_of: Callable[[str], Path | None],
     *,
     raw_sha256: Mapping[str, str],
+    opener: Opener = reading,
 ) -> tuple[list[ExperimentResult], tuple[Source, ...]]:
     """Fit every experiment of a campaign.
 
@@ -173,6 +179,8 @@ def fit_experiments(
         Path of a run's archive by the run's id, which need not exist; None for a run that failed.
     raw_sha256 : mapping of str to str
         Hashes of the raw files by run.
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
@@ -186,7 +194,7 @@ def fit_experiments(
         rows = [
             row
             for run, coded in plan.runs.items()
-            for row in rows_of_run(campaign, plan, run, coded, archive_of(run))
+            for row in rows_of_run(campaign, plan, run, coded, archive_of(run), opener)
         ]
         for run in plan.runs:
             path = archive_of(run)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from reduction import __version__
+from reduction.archive.inmemory import Opener
 from reduction.archive.open import reading
 from reduction.archive.properties import properties_to_dataset
 from reduction.archive.rope_steps import CHANGES_LENGTH, step_of_archive
@@ -79,6 +80,7 @@ def write_change_in_length(
     failed: Collection[str],
     waiting: Mapping[str, str],
     command: str,
+    opener: Opener = reading,
 ) -> Path | None:
     """Write the change-in-length properties of the ropes of a campaign.
 
@@ -98,6 +100,8 @@ def write_change_in_length(
         Tests whose archives are not what they would be now, and why.
     command : str
         For the product's ``command`` attribute, without paths.
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
@@ -123,7 +127,7 @@ def write_change_in_length(
             for entry in own
             if entry.plan.id not in failed and entry.plan.id not in waiting
         }
-        given = _read(folder, own, name, known, failed=failed, waiting=waiting)
+        given = _read(folder, own, name, known, failed=failed, waiting=waiting, opener=opener)
         if not given.is_programme:
             continue
         found[name] = change_in_length(
@@ -195,6 +199,7 @@ def _read(
     *,
     failed: Collection[str],
     waiting: Mapping[str, str],
+    opener: Opener,
 ) -> _Found:
     steps, sources, missing, is_programme = [], [], [], False
     component, silent = {}, []
@@ -205,7 +210,7 @@ def _read(
             continue
         path = folder / f"{test}.nc"
         # a test that neither failed nor waits has an archive of this run or as good as one
-        with reading(path) as archive:
+        with opener(path) as archive:
             found = step_of_archive(archive, specimen, *known[test])
             steps.append(found.step)
             component[found.step.name] = found.component

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+from reduction.archive.inmemory import ArchivesInMemory, Opener
 from reduction.archive.laboratory import keep_details
 from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.write import write_whole
@@ -75,6 +76,7 @@ def run_campaign(
     values_page: str = "",
     executor: Executor | None = None,
     progress: Progress | None = None,
+    opener: Opener | None = None,
 ) -> CampaignResult:
     """Reduce a campaign: archives, tables, status, report.
 
@@ -104,6 +106,9 @@ def run_campaign(
         product depends on it.
     progress : Progress, optional
         Told how far it is.
+    opener : Opener, optional
+        How archives are opened once they are made; by this run alone, and kept in memory while it
+        lasts, where left out.
 
     Returns
     -------
@@ -125,6 +130,7 @@ def run_campaign(
             campaign, processed / campaign.id, reports, lock, clock=clock, tests=tests,
             force=force, command=command, units=units, values_page=values_page,
             executor=executor or Serial(), progress=progress,
+            opener=opener or ArchivesInMemory().reading,
         )  # fmt: skip
 
 
@@ -142,6 +148,7 @@ def _run(
     values_page: str,
     executor: Executor,
     progress: Progress,
+    opener: Opener,
 ) -> CampaignResult:
     executor.begun = progress.begun
     wanted = find_wanted(campaign, executor=executor, lock=lock, progress=progress)
@@ -158,7 +165,14 @@ def _run(
     failed |= set(wanted.failed)
     asked = {survey.plan.id for survey in chosen}
     parts = _write_parts(
-        campaign, folder, surveys, asked=asked, failed=failed, basis=basis, command=command
+        campaign,
+        folder,
+        surveys,
+        asked=asked,
+        failed=failed,
+        basis=basis,
+        command=command,
+        opener=opener,
     )
     progress.stage("tables", 0)
     ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
@@ -170,7 +184,7 @@ def _run(
     keep_details(folder, campaign.report)
     products = products_asked(campaign, folder, has_lengths=parts.has_lengths)
     if archives or products:
-        tables = write_tables(archives, folder / "tables", **products)
+        tables = write_tables(archives, folder / "tables", opener=opener, **products)
     stray = sorted(path.name for path in archives_of_tests(folder) if path not in ours)
     stray += [
         f"{name}.nc"
@@ -181,7 +195,7 @@ def _run(
         progress.stage("report", 0)
         report = write_report(
             folder, reports / campaign.id, units=units, values_page=values_page, stray=stray,
-            unreadable=partial(_keep_pages, [*ours, *products.values()]),
+            unreadable=partial(_keep_pages, [*ours, *products.values()]), opener=opener,
         )  # fmt: skip
     return CampaignResult(
         tests=tuple(statuses),
@@ -224,6 +238,7 @@ def _write_parts(
     failed: set[str],
     basis: Callable[[Survey], Basis],
     command: str,
+    opener: Opener,
 ) -> _Parts:
     """Write the archives of the whole campaign, from those of its tests that are up to date."""
     runs = {run for plan in campaign.experiments.values() for run in plan.runs}
@@ -242,15 +257,16 @@ def _write_parts(
             if entry.plan.id in runs
         },
         command=command,
+        opener=opener,
     )
     write_outcomes(campaign, folder, command=command)
     lengths = write_change_in_length(
         campaign, folder, surveys, models=lambda survey: basis(survey).models,
-        failed=failed, waiting=waiting, command=command,
+        failed=failed, waiting=waiting, command=command, opener=opener,
     )  # fmt: skip
     hoses = write_predictions(campaign, folder, command=command)
     comparisons = write_comparisons(
-        campaign, folder, failed=failed, waiting=waiting, command=command
+        campaign, folder, failed=failed, waiting=waiting, command=command, opener=opener
     )
     return _Parts(tuple(experiments), tuple(hoses), tuple(comparisons), lengths is not None)
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from reduction.archive.inmemory import Opener
 from reduction.archive.open import reading
 from reduction.archive.shared import shared_contributions
 from reduction.archive.statederrors import says_what_is_shared
@@ -30,7 +31,12 @@ Row = dict[str, Any]
 
 
 def rows_of_run(
-    campaign: Campaign, plan: ExperimentPlan, run: str, coded: tuple[float, ...], path: Path | None
+    campaign: Campaign,
+    plan: ExperimentPlan,
+    run: str,
+    coded: tuple[float, ...],
+    path: Path | None,
+    opener: Opener = reading,
 ) -> list[Row]:
     """One row a specimen of a run; a run without an archive has one that says so."""
     log = run.partition(".")[0]
@@ -40,7 +46,7 @@ def rows_of_run(
         missing = "its test failed" if path is None else "its test gave no product"
         return [about | {"remark": missing, "specimen": name} for name in specimens]
     # one that is there and cannot be read is no run that is missing: surfaces would be other ones
-    with reading(path) as archive:
+    with opener(path) as archive:
         given = [str(name) for name in archive.variables["specimen"].values]
         return [
             about | row_of_archive(plan, archive, given.index(name), name) for name in specimens

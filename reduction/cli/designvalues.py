@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from reduction.archive.inmemory import Opener
+from reduction.archive.open import reading
 from reduction.cli.commandoutput import CommandOutput
 from reduction.designpage.page import PAGE_NAME, write_design_page
 from reduction.errors import ArchiveError
@@ -17,7 +19,12 @@ def address_of_design_page(processed: Path, reports: Path, output: CommandOutput
 
 
 def refresh_design_page(
-    processed: Path, reports: Path, output: CommandOutput, *, made: str = ""
+    processed: Path,
+    reports: Path,
+    output: CommandOutput,
+    *,
+    made: str = "",
+    opener: Opener = reading,
 ) -> str | None:
     """Write the design-value page of a folder of products again, and say where it is.
 
@@ -32,6 +39,8 @@ def refresh_design_page(
     made : str
         Campaign that was just reduced: where an archive of it cannot be read the page is left as
         it was. One of others is left out, which is said here and on the page.
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
@@ -57,7 +66,7 @@ def refresh_design_page(
             )
         left_out[archive] = why
 
-    path = str(write_design_page(processed, reports, unreadable=unreadable))
+    path = str(write_design_page(processed, reports, unreadable=unreadable, opener=opener))
     for archive, why in left_out.items():
         output.error(f"{archive} is not on the page of design values: {why}")
     output.say(f"design values: {path}")

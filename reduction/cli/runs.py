@@ -14,6 +14,7 @@ from typing import Any, cast
 from rich.markup import escape
 from rich.table import Table
 
+from reduction.archive.inmemory import ArchivesInMemory
 from reduction.batch.check import check_campaign as check_tests
 from reduction.batch.part import PartStatus
 from reduction.batch.planned import experiments_found
@@ -196,6 +197,7 @@ def run_campaign(
     output: CommandOutput,
 ) -> None:
     """Reduce a campaign and say what became of each test."""
+    archives = ArchivesInMemory()
     with (
         product_folders(campaign, processed, reports, allow_remote=allow_remote, output=output) as (
             campaign,
@@ -222,6 +224,7 @@ def run_campaign(
             values_page=address_of_design_page(processed_here, reports_here, output),
             executor=executor,
             progress=progress,
+            opener=archives.reading,
         )
         # here, where it is still a file of this machine
         client = None if result.report is None else _client_report(result.report)
@@ -258,7 +261,7 @@ def run_campaign(
         output.say(f"report:   {result.report}")
     _say_client_report(client, output)
     document["design_values"] = refresh_design_page(
-        processed_here, reports_here, output, made=campaign.id
+        processed_here, reports_here, output, made=campaign.id, opener=archives.reading
     )
     output.answer(document)
     _report_failures(output, result.tests, result.parts)

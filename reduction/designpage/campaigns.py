@@ -13,6 +13,7 @@ from reduction.archive.campaignlines import (
     lines_of_open_archive,
     names_apart,
 )
+from reduction.archive.inmemory import Opener
 from reduction.archive.open import reading
 from reduction.designpage.exportdata import curves_of_archive, refusal_of_surfaces
 from reduction.designpage.linedata import json_text, line_data
@@ -69,7 +70,11 @@ def state_of(processed: Path) -> str:
 
 
 def read_campaigns(
-    processed: Path, known: Mapping[str, Mapping[str, Any]] | None = None, *, room: int
+    processed: Path,
+    known: Mapping[str, Mapping[str, Any]] | None = None,
+    *,
+    room: int,
+    opener: Opener = reading,
 ) -> list[CampaignLines]:
     """Lines of every campaign below a folder, as far as a page has room.
 
@@ -83,13 +88,18 @@ def read_campaigns(
     room : int
         For all of them. Surfaces come first, which are of all tests of an experiment, then tests,
         those of the campaign that was written last before others. [bytes]
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
     campaigns : list of CampaignLines
         By name; an archive that cannot be read is among the faults of its own.
     """
-    found = [_Reading(folder, (known or {}).get(folder.name, {})) for folder in _folders(processed)]
+    found = [
+        _Reading(folder, (known or {}).get(folder.name, {}), opener)
+        for folder in _folders(processed)
+    ]
     newest = sorted(found, key=lambda one: -one.changed)
     for is_surfaces in (True, False):
         for one in newest:
@@ -106,12 +116,12 @@ def read_campaigns(
 class _Reading:
     """A campaign while its archives are read."""
 
-    def __init__(self, folder: Path, known: Mapping[str, Any]) -> None:
+    def __init__(self, folder: Path, known: Mapping[str, Any], opener: Opener) -> None:
         self.paths = archives_of_lines(folder)
         self._stamps = {path: _stamp(path) for path in self.paths}
         self.changed = max(int(stamp.split()[0]) for stamp in self._stamps.values())
         self._digests: dict[Path, str] = {}
-        self._name, self._known = folder.name, known
+        self._name, self._known, self._opener = folder.name, known, opener
         self._files: dict[Path, dict[str, Any]] = {}
         self._faults: dict[str, str] = {}
         self._left: set[Path] = set()
@@ -126,7 +136,7 @@ class _Reading:
             self._files[path] = dict(before)
         else:
             try:
-                self._files[path] = {"state": state, "lines": _lines(path)}
+                self._files[path] = {"state": state, "lines": _lines(path, self._opener)}
             except _FAULTS as error:
                 text = str(error) if isinstance(error, ReductionError) else repr(error)
                 self._faults[path.name] = text.replace(str(path), path.name)
@@ -174,8 +184,8 @@ def _stamp(path: Path) -> str:
     return f"{found.st_mtime_ns} {found.st_size} {found.st_ino}"
 
 
-def _lines(path: Path) -> list[dict[str, Any]]:
-    with reading(path) as archive:
+def _lines(path: Path, opener: Opener) -> list[dict[str, Any]]:
+    with opener(path) as archive:
 
         def of(line: LineSource) -> dict[str, Any]:
             is_test = "experiment" not in archive.sizes
@@ -186,4 +196,4 @@ def _lines(path: Path) -> list[dict[str, Any]]:
             )
             return line_data(line) | {"export": made}
 
-        return [of(line) for line in lines_of_open_archive(archive, path)]
+        return [of(line) for line in lines_of_open_archive(archive, path, opener)]

@@ -13,6 +13,8 @@ from urllib.parse import quote
 from jinja2 import Environment, StrictUndefined
 
 from reduction import __version__
+from reduction.archive.inmemory import Opener
+from reduction.archive.open import reading
 from reduction.archive.write import write_whole
 from reduction.designpage.campaigns import CampaignLines, read_campaigns, state_of
 from reduction.designpage.exportdata import EXPORT_CONSTANTS, curves_of_published
@@ -59,7 +61,11 @@ _GIVEN: dict[Dimension, tuple[str, ...]] = {
 
 
 def write_design_page(
-    processed: Path, reports: Path, *, unreadable: Callable[[Path, str], None] | None = None
+    processed: Path,
+    reports: Path,
+    *,
+    unreadable: Callable[[Path, str], None] | None = None,
+    opener: Opener = reading,
 ) -> Path:
     """Write the page of a folder of products, or write it again.
 
@@ -72,6 +78,8 @@ def write_design_page(
     unreadable : callable, optional
         Told each archive that cannot be read, and why, before the page is written, which says
         it too.
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
@@ -87,7 +95,7 @@ def write_design_page(
     known = _files_on(path)
     for _ in range(_TIMES):
         state = state_of(processed)
-        campaigns = read_campaigns(processed, known, room=MOST_BYTES)
+        campaigns = read_campaigns(processed, known, room=MOST_BYTES, opener=opener)
         if unreadable is not None:
             for one in campaigns:
                 for name, why in one.faults.items():

@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from reduction.archive.inmemory import Opener
 from reduction.archive.laboratory import read_details
 from reduction.archive.open import reading
 from reduction.archive.products import archives_of_tests
@@ -70,6 +71,7 @@ def write_report(
     values_page: str = "",
     stray: Collection[str] = (),
     unreadable: Callable[[str, str], None] | None = None,
+    opener: Opener = reading,
 ) -> Path:
     """Write the page of a campaign.
 
@@ -88,6 +90,8 @@ def write_report(
     unreadable : callable, optional
         Told the name of each archive that cannot be read, and why, before the page is written,
         which says it too.
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
@@ -120,7 +124,7 @@ def write_report(
     starts: dict[str, float] = {}
     for index, path in enumerate(paths):
         try:
-            with reading(path) as data:
+            with opener(path) as data:
                 name = data.attrs["test"]
                 known = by_test.get(name) or (Status(name, OF_NO_TEST) if has_statuses else None)
                 view = TestView(f"test-{index}", data, units, known)
@@ -135,7 +139,7 @@ def write_report(
             not_shown[path.name] = str(error).replace(str(path), path.name)
     by_id = {view.id: view for view in tests}
     tests.sort(key=lambda view: _place(view, by_id, starts))
-    whole = read_whole(processed, by_id, units, not_shown, stray)
+    whole = read_whole(processed, by_id, units, not_shown, stray, opener)
     if unreadable is not None:
         for name, why in not_shown.items():
             unreadable(name, why)

@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import xarray as xr
 
+from reduction.archive.inmemory import Opener
 from reduction.archive.open import reading
 from reduction.errors import ArchiveError
 from reduction.report.comparisonsection import (
@@ -147,6 +148,7 @@ def read_whole(
     units: UnitSystem,
     unreadable: dict[str, str],
     stray: Collection[str] = (),
+    opener: Opener = reading,
 ) -> WholeCampaign:
     """Read what there is; a file that cannot be read is told in ``unreadable``.
 
@@ -162,7 +164,20 @@ def read_whole(
         File name to message; added to.
     stray : collection of str
         Names of archives that nothing in the campaign stands for now.
+    opener : Opener
+        How archives are opened.
     """
+
+    def read(name: str, views: Callable[[xr.Dataset], list[_Read]]) -> tuple[_Read, ...]:
+        path = processed / f"{name}.nc"
+        if not path.is_file():
+            return ()
+        try:
+            with opener(path) as data:
+                return tuple(views(data))
+        except ArchiveError as error:
+            unreadable[path.name] = str(error).replace(str(path), path.name)
+            return ()
 
     def outcomes(data: xr.Dataset) -> list[tuple[OutcomeView, Section]]:
         view = view_outcomes(data, units)
@@ -186,23 +201,10 @@ def read_whole(
         return [(view, make_rope_section(view)) for view in view_ropes(data, tests, units)]
 
     return WholeCampaign(
-        outcomes=_read(processed / "outcomes.nc", outcomes, unreadable),
-        experiments=_read(processed / "surfaces.nc", experiments, unreadable),
-        hoses=_read(processed / "predictions.nc", hoses, unreadable),
-        compared=_read(processed / "comparisons.nc", compared, unreadable),
-        ropes=_read(processed / "change_in_length.nc", ropes, unreadable),
+        outcomes=read("outcomes", outcomes),
+        experiments=read("surfaces", experiments),
+        hoses=read("predictions", hoses),
+        compared=read("comparisons", compared),
+        ropes=read("change_in_length", ropes),
         stray=tuple(f"{name}.nc" for name in _SHOWN if f"{name}.nc" in stray),
     )
-
-
-def _read(
-    path: Path, read: Callable[[xr.Dataset], list[_Read]], unreadable: dict[str, str]
-) -> tuple[_Read, ...]:
-    if not path.is_file():
-        return ()
-    try:
-        with reading(path) as data:
-            return tuple(read(data))
-    except ArchiveError as error:
-        unreadable[path.name] = str(error).replace(str(path), path.name)
-        return ()

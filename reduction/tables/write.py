@@ -10,6 +10,7 @@ from typing import Any
 
 import xarray as xr
 
+from reduction.archive.inmemory import Opener
 from reduction.archive.open import reading
 from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.variable import label
@@ -56,6 +57,7 @@ def write_tables(
     predictions: Path | None = None,
     comparisons: Path | None = None,
     change_in_length: Path | None = None,
+    opener: Opener = reading,
 ) -> list[Path]:
     """Write every table that the archives fill, and columns.csv, which explains them.
 
@@ -76,6 +78,8 @@ def write_tables(
         Archive of the campaign's comparisons, where it has any.
     change_in_length : pathlib.Path, optional
         Archive of the properties of the campaign's ropes, where it has any.
+    opener : Opener
+        How archives are opened.
 
     Returns
     -------
@@ -98,12 +102,12 @@ def write_tables(
             name: TableFile(folder / f"{name}.csv", listed, whole)
             for name, listed in columns.items()
         }
-        silent = _add_tests(files, archives)
-        _add_experiments(files, surfaces)
-        _add_outcomes(files, outcomes)
-        _add_as_it_is(files, predictions, PREDICTION_TABLES)
-        _add_as_it_is(files, comparisons, COMPARISON_TABLES)
-        _add_as_it_is(files, change_in_length, PROPERTY_TABLES)
+        silent = _add_tests(files, archives, opener)
+        _add_experiments(files, surfaces, opener)
+        _add_outcomes(files, outcomes, opener)
+        _add_as_it_is(files, predictions, PREDICTION_TABLES, opener)
+        _add_as_it_is(files, comparisons, COMPARISON_TABLES, opener)
+        _add_as_it_is(files, change_in_length, PROPERTY_TABLES, opener)
         filled = [name for name in columns if files[name].is_filled] + ["columns"]
         files["columns"].add_rows(
             [
@@ -125,19 +129,21 @@ def _place(attributes: dict[str, Any]) -> _Place:
     return float(attributes.get("test_order", "inf")), digits
 
 
-def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path]) -> set[str]:
+def _add_tests(
+    files: Mapping[str, TableFile], archives: Sequence[Path], opener: Opener
+) -> set[str]:
     """Write the rows of tests; what some have no uncertainty of for being silent."""
     kept, says = set[str](), set[bool]()
     places: dict[Path, _Place] = {}
     for path in archives:
-        with reading(path) as archive:
+        with opener(path) as archive:
             kept |= quantities_kept(archive)
             says.add(says_what_is_shared(archive))
             places[path] = _place(archive.attrs)
     curves: list[Curve] = []
     slopes: list[Slope] = []
     for path in sorted(archives, key=places.__getitem__):
-        with reading(path) as whole:
+        with opener(path) as whole:
             archive = as_silent(whole, kept)
             for table in TABLES:
                 _add(files[table.name], archive, table)
@@ -148,29 +154,29 @@ def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path]) -> set[
     return kept if False in says else set()
 
 
-def _add_experiments(files: Mapping[str, TableFile], surfaces: Path | None) -> None:
+def _add_experiments(files: Mapping[str, TableFile], surfaces: Path | None, opener: Opener) -> None:
     if surfaces is None:
         return
-    with reading(surfaces) as archive:
+    with opener(surfaces) as archive:
         dataset = by_response(archive)
         for table in EXPERIMENT_TABLES:
             _add(files[table.name], dataset, table)
 
 
 def _add_as_it_is(
-    files: Mapping[str, TableFile], path: Path | None, tables: Sequence[Table]
+    files: Mapping[str, TableFile], path: Path | None, tables: Sequence[Table], opener: Opener
 ) -> None:
     if path is None:
         return
-    with reading(path) as archive:
+    with opener(path) as archive:
         for table in tables:
             _add(files[table.name], archive, table)
 
 
-def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None) -> None:
+def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None, opener: Opener) -> None:
     if outcomes is None:
         return
-    with reading(outcomes) as archive:
+    with opener(outcomes) as archive:
         for name, rows in outcome_table_rows(archive).items():
             files[name].add_rows(rows)
 

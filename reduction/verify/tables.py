@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from reduction.archive.inmemory import ArchivesInMemory
 from reduction.errors import ArchiveError
 from reduction.tables.write import write_tables
 from reduction.verify.finding import Finding
@@ -39,7 +40,9 @@ def check_tables(
     """
     with TemporaryDirectory(prefix="reduction-verify-") as place:
         try:
-            made = write_tables(archives, Path(place), **products)
+            made = write_tables(
+                archives, Path(place), opener=ArchivesInMemory().reading, **products
+            )
         except ArchiveError as error:
             return 0, [Finding("tables", "not_compared", "they cannot be made again", str(error))]
         compared = (_compared(path, folder / "tables" / path.name) for path in made)

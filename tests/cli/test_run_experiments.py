@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from reduction.archive import inmemory
 from reduction.archive.open import open_archive
-from reduction.batch import runrows
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 from reduction.errors import ArchiveError
@@ -180,14 +180,14 @@ def test_a_run_whose_archive_cannot_be_read_is_not_one_that_is_missing(folder, m
     """Surfaces over the other runs would be other surfaces."""
     (surfaces,) = folder.glob("p/*/surfaces.nc")
     before = surfaces.read_bytes()
-    opened = runrows.reading
+    opened = inmemory.reading
 
     def refused(path):
         if path.name == "R02.nc":
             raise ArchiveError(f"{path} cannot be read", found="Input/output error")
         return opened(path)
 
-    monkeypatch.setattr(runrows, "reading", refused)
+    monkeypatch.setattr(inmemory, "reading", refused)
     with pytest.raises(ArchiveError, match=r"R02\.nc cannot be read; found Input/output error"):
         run(folder)
     assert surfaces.read_bytes() == before

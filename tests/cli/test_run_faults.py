@@ -12,13 +12,15 @@ from commandruns import ROOT
 from shortcampaign import write_short
 
 from reduction.archive import products as products_module
+from reduction.archive.open import reading
 from reduction.batch import reduce as reduce_module
+from reduction.batch import run as run_module
 from reduction.batch.lock import LOCK_NAME
 from reduction.batch.survey import as_reduction_error, survey_log
 from reduction.campaign.load import load_campaign
+from reduction.cli import designvalues as values_module
 from reduction.designpage import campaigns as campaigns_module
 from reduction.errors import ArchiveError
-from reduction.report import page as page_module
 
 
 @pytest.fixture(scope="module")
@@ -84,17 +86,27 @@ def changed_at_the_end(monkeypatch, change):
     monkeypatch.setattr(reduce_module, "dataset_of", made)
 
 
-def test_an_archive_that_the_report_cannot_read_leaves_the_page_as_it_was(
-    older, command, monkeypatch
-):
-    opened = page_module.reading
+def without_a(step):
+    """A step of a run that cannot read the archive of test A."""
 
     def refused(path):
         if path.name == "A.nc":
             raise ArchiveError(f"{path} is damaged")
-        return opened(path)
+        return reading(path)
 
-    monkeypatch.setattr(page_module, "reading", refused)
+    return lambda *given, **options: step(*given, **options | {"opener": refused})
+
+
+def spoil(path):
+    with path.open("rb+") as file:
+        file.seek(5000)
+        file.write(b"damage")
+
+
+def test_an_archive_that_the_report_cannot_read_leaves_the_page_as_it_was(
+    older, command, monkeypatch
+):
+    monkeypatch.setattr(run_module, "write_report", without_a(run_module.write_report))
     page = older / "reports" / "short" / "index.html"
     before = page.read_bytes()
     done = run(command, older)
@@ -104,6 +116,7 @@ def test_an_archive_that_the_report_cannot_read_leaves_the_page_as_it_was(
     )
     assert said in done.stderr
     assert page.read_bytes() == before
+    spoil(older / "processed" / "short" / "A.nc")
     done = command("report", "processed/short", "--quiet", cwd=older)
     assert done.returncode == 6, "asked for by itself, the page names what it lacks"
     assert "processed/short/A.nc is not in the report: A.nc is damaged" in done.stderr
@@ -113,14 +126,9 @@ def test_an_archive_that_the_report_cannot_read_leaves_the_page_as_it_was(
 def test_an_archive_that_was_just_made_and_cannot_be_read_leaves_the_design_values_as_they_were(
     older, command, monkeypatch
 ):
-    opened = campaigns_module.reading
-
-    def refused(path):
-        if path.name == "A.nc":
-            raise ArchiveError(f"{path} is damaged")
-        return opened(path)
-
-    monkeypatch.setattr(campaigns_module, "reading", refused)
+    monkeypatch.setattr(
+        values_module, "write_design_page", without_a(values_module.write_design_page)
+    )
     page = older / "reports" / "design-values.html"
     before = page.read_bytes()
     done = run(command, older)
@@ -134,9 +142,7 @@ def test_a_damaged_archive_is_no_part_of_the_design_values_and_it_is_said(older,
     other = older / "processed" / "other"
     shutil.copytree(older / "processed" / "short", other)
     for folder in (other, older / "processed" / "short"):
-        with (folder / "B.nc").open("rb+") as file:
-            file.seek(5000)
-            file.write(b"damage")
+        spoil(folder / "B.nc")
     done = command("report", "processed/short", "--quiet", cwd=older)
     assert done.returncode == 6
     said = [line for line in done.stderr.splitlines() if "is not on the page of design" in line]

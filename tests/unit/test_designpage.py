@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from functools import partial
 from importlib.resources import files
 from urllib.parse import unquote
 
@@ -11,6 +12,7 @@ import pytest
 from manytests import write_many
 
 from reduction.archive.campaignlines import lines_of_archive
+from reduction.archive.open import reading
 from reduction.batch import run as batch_run
 from reduction.campaign.load import load_campaign
 from reduction.cli.commandoutput import CommandOutput
@@ -51,17 +53,18 @@ def processed(products, tmp_path):
 
 
 @pytest.fixture
-def opened(monkeypatch):
-    """Names of the archives that are opened."""
-    names = []
-    own = read.reading
+def opened():
+    """Names of the archives that are opened by a page that is made with `write`."""
+    return []
 
-    def kept(path):
-        names.append(path.name)
-        return own(path)
 
-    monkeypatch.setattr(read, "reading", kept)
-    return names
+@pytest.fixture
+def write(opened):
+    def opener(path):
+        opened.append(path.name)
+        return reading(path)
+
+    return partial(made.write_design_page, opener=opener)
 
 
 def test_numbers_keep_every_bit(products):
@@ -92,14 +95,14 @@ def test_lines_are_named_as_in_a_look_up_of_the_folder(processed, tmp_path):
     assert path.stat().st_size < 3_000_000
 
 
-def test_only_archives_that_changed_are_read_again(processed, tmp_path, opened):
-    first = made.write_design_page(processed, tmp_path).read_bytes()
+def test_only_archives_that_changed_are_read_again(processed, tmp_path, opened, write):
+    first = write(processed, tmp_path).read_bytes()
     assert opened == ["T01.nc", "T02.a.nc", "T02.b.nc"]
     opened.clear()
-    assert made.write_design_page(processed, tmp_path).read_bytes() == first
+    assert write(processed, tmp_path).read_bytes() == first
     assert opened == []
     shutil.copy(processed / "many" / "T01.nc", processed / "many" / "T02.a.nc")
-    made.write_design_page(processed, tmp_path)
+    write(processed, tmp_path)
     assert opened == ["T02.a.nc"]
 
 
@@ -108,9 +111,9 @@ def test_only_archives_that_changed_are_read_again(processed, tmp_path, opened):
              '<script type="application/json" id="data">{"format": 0, "version": "0"}</script>'],
     ids=["empty", "no data", "other data", "other format"],
 )  # fmt: skip
-def test_a_page_that_is_not_ours_is_replaced(processed, tmp_path, opened, text):
+def test_a_page_that_is_not_ours_is_replaced(processed, tmp_path, opened, write, text):
     (tmp_path / made.PAGE_NAME).write_text(text)
-    made.write_design_page(processed, tmp_path)
+    write(processed, tmp_path)
     assert len(opened) == 3
 
 
@@ -159,7 +162,7 @@ def test_a_run_that_ends_meanwhile_is_on_the_page(processed, tmp_path, monkeypat
     assert [one["name"] for one in found["campaigns"]] == ["many", "other"]
 
 
-def test_what_has_no_room_is_told_and_not_read(processed, tmp_path, monkeypatch, opened):
+def test_what_has_no_room_is_told_and_not_read(processed, tmp_path, monkeypatch, opened, write):
     shutil.copytree(processed / "many", processed / "newer")
     for path in (processed / "newer").glob("*.nc"):
         path.touch()
@@ -167,7 +170,7 @@ def test_what_has_no_room_is_told_and_not_read(processed, tmp_path, monkeypatch,
     sizes = [len(json_text(one)) for one in before[1].files.values()]
     opened.clear()
     monkeypatch.setattr(made, "MOST_BYTES", sizes[0] + sizes[1] + 100)
-    found = data_of(made.write_design_page(processed, tmp_path))
+    found = data_of(write(processed, tmp_path))
     kept = {one["name"]: one["names"] for one in found["campaigns"]}
     assert kept == {"newer": ["T01 one", "T02.a one"], "many": []}
     assert found["left_out"] == [["many", 3], ["newer", 1]]

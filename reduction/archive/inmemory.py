@@ -1,0 +1,90 @@
+"""Archives that several steps of a run read: from the disk once, and then from memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+
+import xarray as xr
+
+from reduction.archive.open import reading
+
+__all__ = ["ArchivesInMemory", "Opener"]
+
+Opener = Callable[[Path], AbstractContextManager[xr.Dataset]]
+"""How a step opens an archive for a block: `reduction.archive.open.reading` or that of several."""
+
+_MOST = 64  # archives, each of which takes 1.5 MB beside its values
+_LARGEST = 4_000_000  # bytes of values, unpacked
+_Stamp = tuple[int, int, int]
+
+
+class ArchivesInMemory:
+    """Opens archives; those that are small are read whole, and given again without the disk.
+
+    What is kept is what was kept first, so that one pass after the other over more archives than
+    there is room for finds some of them each time.
+
+    Parameters
+    ----------
+    most : int
+        Archives that are kept at once; others are opened each time.
+
+    Notes
+    -----
+    To open an archive takes longer than to read all of a small one, since the library looks at
+    each of its 350 variables; a run opens each five times.
+    """
+
+    def __init__(self, most: int = _MOST) -> None:
+        self._most = most
+        self._kept: dict[Path, tuple[_Stamp, xr.Dataset]] = {}
+
+    @contextmanager
+    def reading(self, path: Path) -> Iterator[xr.Dataset]:
+        """Give an archive for a block, as `reduction.archive.open.reading` does.
+
+        Parameters
+        ----------
+        path : pathlib.Path
+            A file that `write_archive` wrote; it is read anew where it is another one by now.
+
+        Yields
+        ------
+        dataset : xarray.Dataset
+            A copy in which variables may be added; values may not be changed.
+
+        Raises
+        ------
+        ArchiveError
+            As `reduction.archive.open.reading`.
+        """
+        stamp, kept = self._kept.get(path, (None, None))
+        if kept is not None and stamp == _stamp(path):
+            yield kept.copy()
+            return
+        self._kept.pop(path, None)
+        with reading(path) as archive:
+            if len(self._kept) < self._most and archive.nbytes <= _LARGEST:
+                # as it was when it was opened, so that one replaced meanwhile is read anew
+                stamp = _stamp(path)
+                archive.load()
+                if stamp is not None:
+                    self._kept[path] = (stamp, _unchangeable(archive))
+            yield archive.copy()
+
+
+def _unchangeable(archive: xr.Dataset) -> xr.Dataset:
+    """A step that would change a value for the steps after it fails."""
+    for variable in archive.variables.values():
+        variable.values.flags.writeable = False
+    return archive
+
+
+def _stamp(path: Path) -> _Stamp | None:
+    try:
+        found = path.stat()
+    except OSError:  # which opening it tells
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
