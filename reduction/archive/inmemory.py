@@ -16,7 +16,8 @@ Opener = Callable[[Path], AbstractContextManager[xr.Dataset]]
 """How a step opens an archive for a block: `reduction.archive.open.reading` or that of several."""
 
 _MOST = 64  # archives, each of which takes 1.5 MB beside its values
-_LARGEST = 4_000_000  # bytes of values, unpacked
+_LARGEST = 8_000_000  # bytes of values of one, unpacked
+_ROOM = 64_000_000  # and of all
 _Stamp = tuple[int, int, int]
 
 
@@ -66,13 +67,17 @@ class ArchivesInMemory:
             return
         self._kept.pop(path, None)
         with reading(path) as archive:
-            if len(self._kept) < self._most and archive.nbytes <= _LARGEST:
+            if self._has_room(archive.nbytes):
                 # as it was when it was opened, so that one replaced meanwhile is read anew
                 stamp = _stamp(path)
                 archive.load()
                 if stamp is not None:
                     self._kept[path] = (stamp, _unchangeable(archive))
             yield archive.copy()
+
+    def _has_room(self, n_bytes: int) -> bool:
+        held = sum(archive.nbytes for _, archive in self._kept.values())
+        return len(self._kept) < self._most and n_bytes <= min(_LARGEST, _ROOM - held)
 
 
 def _unchangeable(archive: xr.Dataset) -> xr.Dataset:

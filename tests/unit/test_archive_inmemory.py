@@ -77,8 +77,9 @@ def test_as_many_are_kept_as_there_is_room_for(rich_test, bare_test, write, open
     assert opened == ["first.nc", second.name, second.name]
 
 
-def test_what_is_large_is_not_read_whole(rich_test, write, opened, monkeypatch):
-    monkeypatch.setattr(module, "_LARGEST", 100)
+@pytest.mark.parametrize("limit", ["_LARGEST", "_ROOM"])
+def test_what_is_large_is_not_read_whole(limit, rich_test, write, opened, monkeypatch):
+    monkeypatch.setattr(module, limit, 100)
     path, archives = write(rich_test), ArchivesInMemory()
     for _ in range(2):
         with archives.reading(path) as archive:
