@@ -15,6 +15,7 @@ import xarray as xr
 
 from reduction.archive.check import schema_of_file
 from reduction.errors import ArchiveError
+from reduction.globalheap import endless_heap
 
 __all__ = ["check_form", "check_stored"]
 
@@ -40,8 +41,8 @@ def check_stored(path: Path) -> None:
     Raises
     ------
     ArchiveError
-        If it has links, groups, virtual variables, external storage, or shapes beyond its size,
-        or the disk refuses.
+        If it has links, groups, virtual variables, external storage, shapes beyond its size or
+        texts that the library would look for without end, or the disk refuses.
 
     Notes
     -----
@@ -54,7 +55,9 @@ def check_stored(path: Path) -> None:
         return
     with file:
         try:
-            fault = next(_faults_stored(file.id, path.stat().st_size), None)
+            with path.open("rb") as plain:
+                fault = endless_heap(plain, file.id.get_create_plist().get_sizes()[1])
+            fault = fault or next(_faults_stored(file.id, path.stat().st_size), None)
         except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
             _refuse_disk(path, error)
             fault = f"what cannot be read: {str(error).splitlines()[0][:200]}"
@@ -64,10 +67,12 @@ def check_stored(path: Path) -> None:
 
 def _refuse_disk(path: Path, error: Exception) -> None:
     """Where the system refused, say what it said; the library puts it into its own words."""
-    if found := _ERROR_NUMBER.search(str(error)):
+    told = _ERROR_NUMBER.search(str(error))
+    number = int(told[1]) if told else getattr(error, "errno", None)
+    if number:
         raise ArchiveError(
             f"{path} cannot be read",
-            found=os.strerror(int(found[1])),
+            found=os.strerror(number),
             hint="Check the disk, and take a copy that is whole.",
         ) from error
 

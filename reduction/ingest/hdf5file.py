@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.errors import LogError
+from reduction.globalheap import endless_heap
 from reduction.ingest.limits import Watch
 from reduction.ingest.table import row_parts
 
@@ -53,6 +54,10 @@ def open_hdf5(path: Path) -> Iterator[h5py.File]:
         ) from error
     with file:
         try:
+            with path.open("rb") as plain:
+                fault = endless_heap(plain, file.id.get_create_plist().get_sizes()[1])
+            if fault is not None:
+                raise LogError(path, "the file is damaged", found=fault, needed="an intact file")
             yield file
         except (OSError, RuntimeError, KeyError, UnicodeDecodeError) as error:  # damage
             raise LogError(

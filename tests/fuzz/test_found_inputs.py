@@ -39,6 +39,8 @@ INPUTS = [
     ("matlab-numbers-of-no-type.mat", "matlab", "A.mat", "another log", "refused"),
     # 750 MB for a name of that length, which is not in the file
     ("hdf5-matrix-name-of-750-MB.h5", "hdf5-matrix", "A.h5", "another log", "refused"),
+    # what is free of a heap of texts has no size: the library never came to its end
+    ("hdf5-heap-without-end.h5", "hdf5", "A.h5", "another log", "refused"),
     # the sign of a time channel was ignored
     ("delimited-time-with-a-sign.toml", "delimited", "campaign.toml", "fault", "refused"),
     # 2 m were added to a tension

@@ -12,6 +12,7 @@ LAYER = {
     "address": 0,
     "digits": 0,
     "errors": 0,
+    "globalheap": 0,
     "units": 0,
     "visible": 0,
     "vocabulary": 0,
