@@ -1,5 +1,7 @@
 """Cyclic tests made from a law, for the tests of the stages that reduce them."""
 
+from pathlib import Path
+
 import hypothesis
 import numpy as np
 import pytest
@@ -13,6 +15,20 @@ hypothesis.settings.load_profile("any machine")
 
 # needs atheris, and is run by hand
 collect_ignore = ["fuzz_readers.py"]
+
+# each takes minutes; the first makes the campaigns that others read, and would wait for
+LONGEST = (
+    "browser/test_campaign_pages.py", "docs/test_docs_build.py", "cli/test_run_workers.py",
+    "browser/test_design_values.py",
+)  # fmt: skip
+
+
+def pytest_collection_modifyitems(items):
+    """The longest files come first, so that no process is left alone with one at the end."""
+    tests = Path(__file__).parent
+    places = {tests / name: place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: places.get(item.path, len(LONGEST)))
+
 
 # a process of the tests has one browser, whichever folder asks for it first
 __all__ = ["browser", "visit"]
