@@ -50,19 +50,18 @@ def endless_heap(
     and is padded to eight bytes; index 0 is what is free, whose size is that of all of it. The
     walk of HDF5 2.0.0 does not end where that is zero.
     """
-    header, n_left = _padded(8 + size_of_lengths), most
+    header, n_left, n_bytes = _padded(8 + size_of_lengths), most, file.seek(0, 2)
     for begin in _heaps(file):
         file.seek(begin + 8)
         end = begin + int.from_bytes(file.read(size_of_lengths), "little")
         at = begin + header
-        while at + header <= end:
+        # of a heap that the file does not hold the library says so
+        while at + header <= end <= n_bytes:
             if not n_left:
                 return f"more than {most:,} texts of any length"
             n_left -= 1
             file.seek(at)
             head = file.read(8 + size_of_lengths)
-            if len(head) < 8 + size_of_lengths:
-                break  # the file ends before the heap does, which the library sees
             index, size = int.from_bytes(head[:2], "little"), int.from_bytes(head[8:], "little")
             needed = size if index == _FREE else header + _padded(size)
             # beyond the end too: a sum of so many bytes may come back to where it was

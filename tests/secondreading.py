@@ -242,7 +242,7 @@ def _tdms(data, layout):
 
 
 def _parquet(data, layout):
-    table = pq.read_table(io.BytesIO(data))
+    table = pq.ParquetFile(io.BytesIO(data)).read()
     return lambda key: table.column(key).to_numpy().astype(float)
 
 

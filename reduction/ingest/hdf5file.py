@@ -121,6 +121,8 @@ def _plain(path: Path, dataset: h5py.Group | h5py.Dataset) -> h5py.Dataset:
     found: str | None
     if not isinstance(dataset, h5py.Dataset):
         problem, found = "is a group, not a data set", "a group"
+    elif (found := _no_type(dataset)) is not None:
+        problem = "has values of a type that is none"
     elif dataset.shape is None or dataset.shape == ():
         problem, found = "is a single value, not a series", f"shape {dataset.shape}"
     elif dataset.is_virtual or dataset.external:
@@ -137,6 +139,14 @@ def _plain(path: Path, dataset: h5py.Group | h5py.Dataset) -> h5py.Dataset:
             needed="a data set with the plain values in this file",
         )
     return dataset
+
+
+def _no_type(dataset: h5py.Dataset) -> str | None:
+    """What the library says of a type that it cannot give as one of numpy."""
+    try:
+        return None if isinstance(dataset.dtype, np.dtype) else "no type"
+    except (TypeError, ValueError) as error:
+        return str(error)[:200]
 
 
 def _not_written(dataset: h5py.Dataset) -> str | None:
@@ -256,6 +266,8 @@ def read_texts(
     length = 0
     if dataset.dtype.kind in "OSUT":
         watch.check_columns(dataset.size)
+        if dataset.dtype.kind == "O" and h5py.check_string_dtype(dataset.dtype) is None:
+            raise _no_text(path, dataset)  # rows of any length, for which there is no bound
         _check_lengths(path, dataset)
         # one by one: each of them may be the same long text
         for part in row_parts(dataset.shape[axis], 1):

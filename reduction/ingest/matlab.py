@@ -88,11 +88,13 @@ class _Variables(Mapping[str, Any]):
         stream: Any = io.BytesIO(self._bytes(stored))
         try:
             with warnings.catch_warnings():
-                # scipy goes on with numbers in a byte order that it does not know
+                # scipy goes on with numbers in a byte order that it does not know, and with texts
+                # of numbers that are no letters
                 warnings.simplefilter("error", UserWarning)
+                warnings.simplefilter("error", RuntimeWarning)
                 # mat_dtype keeps true/false apart from numbers
                 return scipy.io.loadmat(stream, mat_dtype=True, variable_names=[name])[name]
-        except (*_NOT_MATLAB, UserWarning) as error:
+        except (*_NOT_MATLAB, UserWarning, RuntimeWarning) as error:
             raise LogError(
                 self.path, f"variable '{name}' cannot be read", found=str(error)[:200],
                 needed="an intact .mat file", hint=_HINT,

@@ -41,6 +41,12 @@ INPUTS = [
     ("hdf5-matrix-name-of-750-MB.h5", "hdf5-matrix", "A.h5", "another log", "refused"),
     # what is free of a heap of texts has no size: the library never came to its end
     ("hdf5-heap-without-end.h5", "hdf5", "A.h5", "another log", "refused"),
+    # 3.4 GB for lists in place of names, which the library takes before it looks for them
+    ("hdf5-matrix-names-that-are-lists.h5", "hdf5-matrix", "A.h5", "another log", "refused"),
+    # ValueError: a float with more bits than numpy has
+    ("hdf5-float-of-no-type.h5", "hdf5", "A.h5", "another log", "refused"),
+    # a warning of scipy: numbers that are no letters, in a text
+    ("matlab-4-text-of-no-letters.mat", "matlab-4", "A.mat", "another log", "refused"),
     # the sign of a time channel was ignored
     ("delimited-time-with-a-sign.toml", "delimited", "campaign.toml", "fault", "refused"),
     # 2 m were added to a tension

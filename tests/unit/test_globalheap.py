@@ -66,6 +66,13 @@ def test_the_work_has_a_bound(good):
     assert endless_heap(good, most=3) == "more than 3 texts of any length"
 
 
+def test_a_heap_that_the_file_does_not_hold_is_left_to_the_library(good):
+    stated(good, 0, 2**63)
+    assert endless_heap(good) is None
+    with h5py.File(good) as file, pytest.raises(OSError, match="EOA|heap"):
+        file["as s"].attrs["units"]
+
+
 def test_lengths_may_be_of_four_bytes(tmp_path):
     path = tmp_path / "A.h5"
     made = h5py.h5p.create(h5py.h5p.FILE_CREATE)
