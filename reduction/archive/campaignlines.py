@@ -9,7 +9,6 @@ from pathlib import Path
 
 import xarray as xr
 
-from reduction.archive.inmemory import Opener
 from reduction.archive.linecurves import CURVES
 from reduction.archive.linesource import (
     Facts,
@@ -18,7 +17,7 @@ from reduction.archive.linesource import (
     line_source_of_test,
     specimens_of,
 )
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.archive.products import archives_of_tests
 from reduction.lookup.product import LineSource
 

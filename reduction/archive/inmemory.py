@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from reduction.archive.open import reading
 
-__all__ = ["ArchivesInMemory", "Opener"]
-
-Opener = Callable[[Path], AbstractContextManager[xr.Dataset]]
-"""How a step opens an archive for a block: `reduction.archive.open.reading` or that of several."""
+__all__ = ["ArchivesInMemory"]
 
 _MOST = 64  # archives, each of which takes 1.5 MB beside its values
 _LARGEST = 8_000_000  # bytes of values of one, unpacked
@@ -62,28 +60,40 @@ class ArchivesInMemory:
             As `reduction.archive.open.reading`.
         """
         stamp, kept = self._kept.get(path, (None, None))
-        if kept is not None and stamp == _stamp(path):
-            yield kept.copy()
-            return
-        self._kept.pop(path, None)
-        with reading(path) as archive:
-            if self._has_room(archive.nbytes):
-                # as it was when it was opened, so that one replaced meanwhile is read anew
-                stamp = _stamp(path)
-                archive.load()
-                if stamp is not None:
-                    self._kept[path] = (stamp, _unchangeable(archive))
-            yield archive.copy()
+        if kept is None or stamp != _stamp(path):
+            # from before it is opened: one that is replaced meanwhile is read anew the next time
+            stamp, kept = _stamp(path), None
+            self._kept.pop(path, None)
+            with reading(path) as archive:
+                if stamp is not None and self._has_room(archive.nbytes) and _is_read(archive):
+                    kept = _unchangeable(archive)
+                    self._kept[path] = (stamp, kept)
+                else:
+                    yield archive
+                    return
+        yield kept.copy()
 
     def _has_room(self, n_bytes: int) -> bool:
         held = sum(archive.nbytes for _, archive in self._kept.values())
         return len(self._kept) < self._most and n_bytes <= min(_LARGEST, _ROOM - held)
 
 
+def _is_read(archive: xr.Dataset) -> bool:
+    try:
+        archive.load()
+    except (AttributeError, OSError, RuntimeError):
+        # perhaps of a variable that no step asks for; one that does is told
+        return False
+    return True
+
+
 def _unchangeable(archive: xr.Dataset) -> xr.Dataset:
     """A step that would change a value for the steps after it fails."""
     for variable in archive.variables.values():
         variable.values.flags.writeable = False
+        for attribute in variable.attrs.values():
+            if isinstance(attribute, np.ndarray):
+                attribute.flags.writeable = False
     return archive
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Literal
@@ -17,10 +17,13 @@ from reduction.archive.sound import check_form, check_stored
 from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError, SettingsError
 
-__all__ = ["Chunks", "failing_reads", "open_archive", "reading"]
+__all__ = ["Chunks", "Opener", "failing_reads", "open_archive", "reading"]
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
 """Values of a chunk, or by dimension, as `xarray.open_dataset` takes them."""
+
+Opener = Callable[[Path], AbstractContextManager[xr.Dataset]]
+"""How a step opens an archive for a block: as `reading` does."""
 
 _CACHE = 1 << 20
 """Bytes of each variable that the library keeps as they are read: two chunks of an archive. Its own
@@ -125,8 +128,10 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
     """
     if not path.is_file():
         raise ArchiveError(f"there is no archive {path}", hint="Run the campaign first.")
+    is_sealed = False
     try:
         check_seal(path)
+        is_sealed = has_seal(path)
         check_stored(path)
         with _small_cache():
             dataset = xr.open_dataset(
@@ -148,7 +153,7 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
             raise ArchiveError(
                 f"{path} cannot be read", found=error.strerror or str(error)
             ) from error
-        if _OF_DISK.search(str(error)) and has_seal(path):
+        if _OF_DISK.search(str(error)) and is_sealed:
             raise _unreadable(str(path), error) from error
         raise ArchiveError(
             f"{path} is not a netCDF file",

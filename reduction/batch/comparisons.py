@@ -14,9 +14,8 @@ import xarray as xr
 from reduction import __version__
 from reduction.archive.comparisons import NamedComparison, comparisons_to_dataset
 from reduction.archive.curveerrors import curve_errors_of
-from reduction.archive.inmemory import Opener
 from reduction.archive.kept import stored_cycles
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.archive.whole import take_away
 from reduction.archive.write import write_archive
 from reduction.batch.part import PartStatus

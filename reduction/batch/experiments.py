@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from reduction import __version__
-from reduction.archive.inmemory import Opener
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.archive.write import write_archive
 from reduction.batch.part import PartStatus

@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from reduction import __version__
-from reduction.archive.inmemory import Opener
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.archive.properties import properties_to_dataset
 from reduction.archive.rope_steps import CHANGES_LENGTH, step_of_archive
 from reduction.archive.statederrors import says_what_is_shared

@@ -8,8 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from reduction.archive.inmemory import ArchivesInMemory, Opener
+from reduction.archive.inmemory import ArchivesInMemory
 from reduction.archive.laboratory import keep_details
+from reduction.archive.open import Opener
 from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.write import write_whole
 from reduction.batch.asked import products_asked

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from reduction.archive.inmemory import Opener
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.archive.shared import shared_contributions
 from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.stored import stored
@@ -38,7 +37,13 @@ def rows_of_run(
     path: Path | None,
     opener: Opener = reading,
 ) -> list[Row]:
-    """One row a specimen of a run; a run without an archive has one that says so."""
+    """One row a specimen of a run; a run without an archive has one that says so.
+
+    Raises
+    ------
+    ArchiveError
+        If an archive that is there cannot be read.
+    """
     log = run.partition(".")[0]
     specimens = campaign.tests[log].specimens
     about = {"run": run, "coded": coded, "order": _order(campaign, plan, run)}

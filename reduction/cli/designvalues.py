@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from reduction.archive.inmemory import Opener
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.cli.commandoutput import CommandOutput
 from reduction.designpage.page import PAGE_NAME, write_design_page
 from reduction.errors import ArchiveError

@@ -13,8 +13,7 @@ from reduction.archive.campaignlines import (
     lines_of_open_archive,
     names_apart,
 )
-from reduction.archive.inmemory import Opener
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.designpage.exportdata import curves_of_archive, refusal_of_surfaces
 from reduction.designpage.linedata import json_text, line_data
 from reduction.errors import ReductionError

@@ -13,8 +13,7 @@ from urllib.parse import quote
 from jinja2 import Environment, StrictUndefined
 
 from reduction import __version__
-from reduction.archive.inmemory import Opener
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.archive.write import write_whole
 from reduction.designpage.campaigns import CampaignLines, read_campaigns, state_of
 from reduction.designpage.exportdata import EXPORT_CONSTANTS, curves_of_published

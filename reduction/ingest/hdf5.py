@@ -130,7 +130,7 @@ def read_hdf5(
     """
     watch = watch or Watch(path)
     source = hash_source(path, name)
-    with open_hdf5(path) as file:
+    with open_hdf5(path, watch) as file:
         columns, n_rows = read_columns(
             path, layout, hdf5_table(path, file, layout, watch), parts=parts, watch=watch
         )

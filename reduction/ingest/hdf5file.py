@@ -44,8 +44,17 @@ _LONGEST_UNIT = 200
 
 
 @contextmanager
-def open_hdf5(path: Path) -> Iterator[h5py.File]:
-    """Open an HDF5 file; `LogError` where the file is none."""
+def open_hdf5(path: Path, watch: Watch | None = None) -> Iterator[h5py.File]:
+    """Open an HDF5 file for a block.
+
+    Raises
+    ------
+    LogError
+        If the file is none, or is damaged, or takes too long.
+    OSError
+        If the system refuses.
+    """
+    watch = watch or Watch(path)
     try:
         file = h5py.File(path, "r", locking=False)
     except OSError as error:
@@ -53,11 +62,13 @@ def open_hdf5(path: Path) -> Iterator[h5py.File]:
             path, "the file is not HDF5", found=str(error)[:200], needed="an HDF5 file"
         ) from error
     with file:
+        # outside of what is told as damage: the system may refuse
+        with path.open("rb") as plain:
+            lengths = file.id.get_create_plist().get_sizes()[1]
+            fault = endless_heap(plain, lengths, meanwhile=watch.check_time)
+        if fault is not None:
+            raise LogError(path, "the file is damaged", found=fault, needed="an intact file")
         try:
-            with path.open("rb") as plain:
-                fault = endless_heap(plain, file.id.get_create_plist().get_sizes()[1])
-            if fault is not None:
-                raise LogError(path, "the file is damaged", found=fault, needed="an intact file")
             yield file
         except (OSError, RuntimeError, KeyError, UnicodeDecodeError) as error:  # damage
             raise LogError(

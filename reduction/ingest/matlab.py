@@ -292,7 +292,7 @@ def open_matlab(path: Path, watch: Watch | None = None) -> Iterator[Mapping[str,
     """Variables of a MATLAB file of any version; `LogError` where the file is none."""
     watch = watch or Watch(path)
     if h5py.is_hdf5(path):
-        with open_hdf5(path) as file:
+        with open_hdf5(path, watch) as file:
             yield _Struct(path, file, watch)
     else:
         yield _Variables(path, watch)

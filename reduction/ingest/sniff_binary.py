@@ -215,7 +215,7 @@ def look_at_binary(path: Path, kind: Format, watch: Watch | None = None) -> Seen
             file = stack.enter_context(open_tdms(path, watch))
             candidates = _tdms_candidates(path, file, watch)
         elif kind == "hdf5":
-            hdf5 = stack.enter_context(open_hdf5(path))
+            hdf5 = stack.enter_context(open_hdf5(path, watch))
             candidates = _hdf5_candidates(path, hdf5, watch)
         elif kind == "matlab":
             variables = stack.enter_context(open_matlab(path, watch))

@@ -7,9 +7,8 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from reduction.archive.inmemory import Opener
 from reduction.archive.laboratory import read_details
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.archive.products import archives_of_tests
 from reduction.archive.whole import take_away
 from reduction.archive.write import write_whole

@@ -9,8 +9,7 @@ from typing import TypeVar
 
 import xarray as xr
 
-from reduction.archive.inmemory import Opener
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.errors import ArchiveError
 from reduction.report.comparisonsection import (
     comparison_findings,

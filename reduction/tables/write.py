@@ -10,8 +10,7 @@ from typing import Any
 
 import xarray as xr
 
-from reduction.archive.inmemory import Opener
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.variable import label
 from reduction.archive.whole import take_away

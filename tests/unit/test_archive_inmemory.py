@@ -1,5 +1,9 @@
 """Archives that are read once and given again: the same values, from memory, until the file is another."""
 
+from contextlib import contextmanager
+
+import h5py
+import netCDF4
 import numpy as np
 import pytest
 
@@ -44,6 +48,46 @@ def test_a_file_that_was_replaced_is_read_anew(rich_test, bare_test, write, open
     assert len(opened) == 2
 
 
+def test_a_file_that_is_replaced_while_it_is_read_is_read_anew(
+    rich_test, bare_test, write, monkeypatch, tmp_path
+):
+    path, archives = write(rich_test), ArchivesInMemory()
+    path = path.replace(tmp_path / "one.nc")
+    other = write(bare_test)
+    opened = module.reading
+
+    @contextmanager
+    def replaced(place):
+        with opened(place) as archive:
+            if other.exists():
+                other.replace(place)
+            yield archive
+
+    monkeypatch.setattr(module, "reading", replaced)
+    with archives.reading(path):
+        pass
+    with archives.reading(path) as archive, reading(path) as on_disk:
+        assert archive.identical(on_disk)
+
+
+def test_what_cannot_be_read_is_told_to_who_asks_for_it(rich_test, write):
+    path, archives = write(rich_test), ArchivesInMemory()
+    with netCDF4.Dataset(path, "a") as file:
+        file.createDimension("own", 5000)
+        file.createVariable("own", "f8", ("own",), compression="zlib")[:] = 1.0
+        file.createVariable("notes", "f8", ("own",), compression="zlib")[:] = range(5000)
+    with h5py.File(path) as file:
+        chunk = file["notes"].id.get_chunk_info(0)
+    with path.open("r+b") as file:
+        file.seek(chunk.byte_offset)
+        file.write(b"\xff" * chunk.size)
+    for _ in range(2):
+        with archives.reading(path) as archive:
+            assert archive["tension"].size
+        with pytest.raises(ArchiveError, match="NetCDF: "), archives.reading(path) as archive:
+            archive["notes"].load()
+
+
 def test_a_file_that_is_gone_is_not_given_from_memory(rich_test, write):
     path, archives = write(rich_test), ArchivesInMemory()
     with archives.reading(path):
@@ -61,6 +105,8 @@ def test_a_step_cannot_change_what_the_next_one_is_given(rich_test, write):
             for variable in archive.drop_vars("added").variables.values():
                 with pytest.raises(ValueError, match="read-only"):
                     variable.values[...] = 0
+                for attribute in variable.attrs.values():
+                    assert not (isinstance(attribute, np.ndarray) and attribute.flags.writeable)
             archive.attrs["title"] = ""
     with archives.reading(path) as archive, reading(path) as on_disk:
         assert archive.identical(on_disk)
