@@ -13,7 +13,7 @@ __all__ = ["endless_heap"]
 
 # what stands between the version and the size is not looked at by the library
 _SIGNATURE = b"GCOL\1"
-_BLOCK = 1 << 20
+_BLOCK = 1 << 16
 _FREE = 0  # the index of what is left of a heap
 _OFTEN = 1 << 12  # objects
 _LEAST = 8  # bytes of an object and the heap around it, however they lie

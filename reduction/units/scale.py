@@ -56,6 +56,8 @@ _NO_UNIT = (
 )  # fmt: skip
 # no unit of a test house is longer, and a tower of powers would never end
 _LONGEST, _MOST_POWERS = 40, 4
+# pint passes over a comment, and over much that follows or precedes a unit
+_STRAY = re.compile(r"[^\w *·/^().%°²³-]")
 # a dimension that shares its units with another one stands behind it
 _AS_FORCE_FIRST: tuple[Dimension, ...] = (
     "force", "number", *(name for name in DIMENSIONS if name not in ("force", "number")),
@@ -124,7 +126,8 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
     target = DIMENSIONS[dimension]
     powers = unit.count("^") + unit.count("**")
     too_long = len(unit) > _LONGEST or powers > _MOST_POWERS or re.search(r"\d{3}", unit)
-    if too_long or re.search(r"\*\*\s*\d+\s*\*\*", unit):
+    is_strange = _STRAY.search(unit.strip()) or re.search(r"\*\*\s*\d+\s*\*\*", unit)
+    if too_long or is_strange:
         raise SettingsError(
             "a unit is not one that a test house writes",
             found=repr(unit[:_LONGEST]),

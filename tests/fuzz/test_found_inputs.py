@@ -47,6 +47,8 @@ INPUTS = [
     ("hdf5-float-of-no-type.h5", "hdf5", "A.h5", "another log", "refused"),
     # a warning of scipy: numbers that are no letters, in a text
     ("matlab-4-text-of-no-letters.mat", "matlab-4", "A.mat", "another log", "refused"),
+    # pint takes kN and a NUL, or a comment, for kN
+    ("marked-unit-with-nul.csv", "marked", "results.csv", "another log", "refused"),
     # the sign of a time channel was ignored
     ("delimited-time-with-a-sign.toml", "delimited", "campaign.toml", "fault", "refused"),
     # 2 m were added to a tension

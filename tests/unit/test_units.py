@@ -112,6 +112,16 @@ def test_a_text_that_is_no_unit_expression_is_refused(unit):
 
 
 @pytest.mark.parametrize(
+    "around", ["{}\0", "{} # lbf", "{};", "{}\\", "\0{}", "{}\ufeff", "{}\x01"]
+)
+def test_what_stands_around_a_unit_is_not_passed_over(around):
+    with pytest.raises(SettingsError, match="not one that a test house writes"):
+        scale_to_si(around.format("kN"), "force")
+    with pytest.raises(SettingsError, match="not one that a test house writes"):
+        parse_quantity("2 " + around.format("kN"), "force")
+
+
+@pytest.mark.parametrize(
     ("unit", "si_unit", "factor", "offset"),
     [
         ("lbf", "N", 4.4482216152605, 0.0),
