@@ -82,7 +82,8 @@ class CheckedColumn:
                 if self._wanted.unit == CLOCK
                 else f"real numbers in {self._wanted.unit}",
             )
-        with np.errstate(invalid="ignore"):  # damage makes NaNs that signal
+        # damage makes NaNs that signal; a wider float may be infinite here, which is told
+        with np.errstate(invalid="ignore", over="ignore"):
             array = values.astype(np.float64, copy=False)
             column = without_marks(values, self._layout)
         if kind in "iu":

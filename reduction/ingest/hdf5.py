@@ -11,6 +11,7 @@ import h5py  # type: ignore[import-untyped]
 import numpy as np
 
 from reduction.errors import LogError
+from reduction.ingest.hdf5attributes import is_plain_attribute, unit_attribute
 from reduction.ingest.hdf5file import (
     chunk_length,
     data_set,
@@ -19,7 +20,6 @@ from reduction.ingest.hdf5file import (
     open_hdf5,
     read_texts,
     series_parts,
-    unit_attribute,
 )
 from reduction.ingest.layout import Layout
 from reduction.ingest.limits import Watch
@@ -71,7 +71,7 @@ def group_table(path: Path, group: h5py.Group, watch: Watch) -> ColumnTable:
     sets = list(members.values())
     return ColumnTable(
         names=tuple(members),
-        units=tuple(unit_attribute(member) for member in sets),
+        units=tuple(unit_attribute(path, member) for member in sets),
         load=lambda place, n_rows: series_parts(path, sets[place], n_rows, watch),
         n_rows=max((member.size or 0 for member in sets), default=0),
         where=f"group '{group.name}'",
@@ -84,7 +84,7 @@ def _attributes(group: h5py.Group | h5py.Dataset) -> dict[str, str]:
     """Attributes that are one text or number, as text."""
     texts = {}
     for key in group.attrs:
-        if group.attrs.get_id(key).shape != ():
+        if group.attrs.get_id(key).shape != () or not is_plain_attribute(group, key):
             continue
         value = group.attrs[key]
         if isinstance(value, (str, bytes, np.generic)) and not isinstance(value, np.void):

@@ -34,13 +34,10 @@ __all__ = [
     "read_data_set",
     "read_texts",
     "series_parts",
-    "unit_attribute",
 ]
 
-_UNIT_KEYS = ("units", "unit", "Units", "Unit")
 _PACKED = ("scale_factor", "add_offset")
 _SHOWN = 40
-_LONGEST_UNIT = 200
 
 
 @contextmanager
@@ -104,18 +101,6 @@ def find_member(path: Path, group: h5py.Group, name: str) -> h5py.Group | h5py.D
             )
         group = group[part]
     return group
-
-
-def unit_attribute(dataset: h5py.Dataset) -> str:
-    """Unit that a data set states; empty text where it states none."""
-    for key in _UNIT_KEYS:
-        if key in dataset.attrs:
-            value = np.asarray(dataset.attrs[key]).ravel()[:1].tolist()
-            text = "".join(
-                v.decode(errors="replace") if isinstance(v, bytes) else str(v) for v in value
-            )
-            return text[:_LONGEST_UNIT]  # longer than any: refused as another unit
-    return ""
 
 
 def read_data_set(

@@ -29,6 +29,7 @@ from scipy.io.matlab import (
 )
 
 from reduction.errors import LogError
+from reduction.ingest.hdf5attributes import plain_attribute
 from reduction.ingest.hdf5file import find_member, open_hdf5, read_data_set
 from reduction.ingest.layout import Layout
 from reduction.ingest.limits import Watch
@@ -132,9 +133,10 @@ class _Struct(Mapping[str, Any]):
         return self._values(member)
 
     def _values(self, dataset: h5py.Dataset) -> NDArray[Any]:
-        stated = np.asarray(dataset.attrs.get("MATLAB_class", b"")).tobytes()
-        kind = stated.rstrip(b"\0").decode(errors="replace")
-        if np.any(dataset.attrs.get("MATLAB_empty", 0)):
+        stated = plain_attribute(self.path, dataset, "MATLAB_class")
+        kind = "" if stated is None else stated.tobytes().rstrip(b"\0").decode(errors="replace")
+        is_empty = plain_attribute(self.path, dataset, "MATLAB_empty")
+        if is_empty is not None and np.any(is_empty):
             return np.zeros((0, 0))
         if kind == "char":
             self.watch.check_unpacked(_LETTER * (dataset.size or 0), f"'{dataset.name}'")

@@ -45,6 +45,10 @@ INPUTS = [
     ("hdf5-matrix-names-that-are-lists.h5", "hdf5-matrix", "A.h5", "another log", "refused"),
     # ValueError: a float with more bits than numpy has
     ("hdf5-float-of-no-type.h5", "hdf5", "A.h5", "another log", "refused"),
+    # SIGSEGV: a unit of any length that is neither text nor row, by HDF5
+    ("hdf5-unit-of-no-type.h5", "hdf5", "A.h5", "another log", "refused"),
+    # a warning of numpy: a float of sixteen bytes that is infinite in eight
+    ("hdf5-matrix-wide-float.h5", "hdf5-matrix", "A.h5", "another log", "refused"),
     # a warning of scipy: numbers that are no letters, in a text
     ("matlab-4-text-of-no-letters.mat", "matlab-4", "A.mat", "another log", "refused"),
     # pint takes kN and a NUL, or a comment, for kN
