@@ -233,7 +233,11 @@ def _hdf5(data, layout):
 def _matlab(data, layout):
     held = scipy.io.loadmat(io.BytesIO(data))
     held = held[layout["group"]][0, 0] if layout.get("group") else held
-    return lambda key: np.asarray(held[key], dtype=float).ravel()
+    # as of other formats, blanks around a name are none of it
+    found = (
+        {name.strip(): values for name, values in held.items()} if isinstance(held, dict) else held
+    )
+    return lambda key: np.asarray(found[key], dtype=float).ravel()
 
 
 def _tdms(data, layout):
