@@ -26,7 +26,12 @@ def is_plain_attribute(item: h5py.Group | h5py.Dataset, name: str) -> bool:
     word, and the process may end.
     """
     found = item.attrs.get_id(name)
-    return found.get_type().get_class() in _PLAIN_CLASSES and found.get_storage_size() <= _LARGEST
+    if found.get_type().get_class() not in _PLAIN_CLASSES or found.get_storage_size() > _LARGEST:
+        return False
+    try:
+        return isinstance(found.dtype, np.dtype)
+    except (TypeError, ValueError):  # letters of no encoding, a float with more bits than numpy has
+        return False
 
 
 def plain_attribute(path: Path, item: h5py.Group | h5py.Dataset, name: str) -> NDArray[Any] | None:

@@ -34,6 +34,7 @@ from reduction.ingest.hdf5file import find_member, open_hdf5, read_data_set
 from reduction.ingest.layout import Layout
 from reduction.ingest.limits import Watch
 from reduction.ingest.matlabcheck import HEADER, StoredVariable, stored_variables
+from reduction.ingest.matlabstored import equal_numbers, has_narrow_numbers
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, matrix_table, read_columns
@@ -86,15 +87,25 @@ class _Variables(Mapping[str, Any]):
         if stored.is_complex:  # the library would drop the imaginary part without a word
             raise _no_array(self.path, name, "complex numbers")
         self.watch.check_unpacked(stored.memory, f"variable '{name}'")
-        stream: Any = io.BytesIO(self._bytes(stored))
+        found = self._loaded(name, mat_dtype=True)  # which keeps true/false apart from numbers
+        if has_narrow_numbers(found) and not equal_numbers(
+            found, self._loaded(name, mat_dtype=False)
+        ):
+            raise LogError(
+                self.path, f"variable '{name}' cannot be read",
+                found="numbers that its class cannot hold", needed="an intact .mat file",
+            )  # fmt: skip
+        return found
+
+    def _loaded(self, name: str, *, mat_dtype: bool) -> Any:
+        stream: Any = io.BytesIO(self._bytes(self.stored[name]))
         try:
             with warnings.catch_warnings():
                 # scipy goes on with numbers in a byte order that it does not know, and with texts
                 # of numbers that are no letters
                 warnings.simplefilter("error", UserWarning)
                 warnings.simplefilter("error", RuntimeWarning)
-                # mat_dtype keeps true/false apart from numbers
-                return scipy.io.loadmat(stream, mat_dtype=True, variable_names=[name])[name]
+                return scipy.io.loadmat(stream, mat_dtype=mat_dtype, variable_names=[name])[name]
         except (*_NOT_MATLAB, UserWarning, RuntimeWarning) as error:
             raise LogError(
                 self.path, f"variable '{name}' cannot be read", found=str(error)[:200],

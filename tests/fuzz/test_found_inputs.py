@@ -49,6 +49,10 @@ INPUTS = [
     ("hdf5-unit-of-no-type.h5", "hdf5", "A.h5", "another log", "refused"),
     # a warning of numpy: a float of sixteen bytes that is infinite in eight
     ("hdf5-matrix-wide-float.h5", "hdf5-matrix", "A.h5", "another log", "refused"),
+    # TypeError: a unit in letters of no encoding
+    ("hdf5-unit-of-no-encoding.h5", "hdf5", "A.h5", "another log", "refused"),
+    # loads of 2.96 and 3.22 lb were 2 and 3: stored as doubles, of a class of whole numbers
+    ("matlab-doubles-of-a-whole-class.mat", "matlab", "A.mat", "another log", "refused"),
     # a warning of scipy: numbers that are no letters, in a text
     ("matlab-4-text-of-no-letters.mat", "matlab-4", "A.mat", "another log", "refused"),
     # pint takes kN and a NUL, or a comment, for kN
