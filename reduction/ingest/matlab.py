@@ -7,10 +7,6 @@ string, function handles) are refused: only MATLAB can read them.
 
 from __future__ import annotations
 
-import io
-import warnings
-import zlib
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,23 +14,15 @@ from typing import Any
 
 import h5py  # type: ignore[import-untyped]
 import numpy as np
-import scipy.io
 from numpy.typing import NDArray
-from scipy.io.matlab import (
-    MatlabFunction,
-    MatlabObject,
-    MatlabOpaque,
-    MatReadError,
-    matfile_version,
-)
+from scipy.io.matlab import MatlabFunction, MatlabObject, MatlabOpaque
 
 from reduction.errors import LogError
 from reduction.ingest.hdf5attributes import plain_attribute
 from reduction.ingest.hdf5file import find_member, open_hdf5, read_data_set
 from reduction.ingest.layout import Layout
 from reduction.ingest.limits import Watch
-from reduction.ingest.matlabcheck import HEADER, StoredVariable, stored_variables
-from reduction.ingest.matlabstored import equal_numbers, has_narrow_numbers
+from reduction.ingest.matlabvariables import OF_MATLAB_ALONE, Variables, no_array
 from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, matrix_table, read_columns
@@ -48,82 +36,8 @@ __all__ = [
     "struct_place",
 ]
 
-_NOT_MATLAB = (
-    MatReadError, ValueError, IndexError, OSError, TypeError, KeyError, EOFError, zlib.error,
-    NotImplementedError, UnboundLocalError,
-)  # fmt: skip
 _LETTER = 60  # bytes of a character while a text is put together
 _OWN_CLASSES = (MatlabOpaque, MatlabFunction, MatlabObject)
-_HINT = (
-    "A table or timetable can be read by MATLAB alone: save it as a struct of columns, "
-    "table2struct(T, 'ToScalar', true)."
-)
-
-
-class _Variables(Mapping[str, Any]):
-    """Variables of a v4 to v7 file, each read when it is asked for."""
-
-    def __init__(self, path: Path, watch: Watch) -> None:
-        self.path, self.watch = path, watch
-        try:
-            version, _ = matfile_version(str(path), appendmat=False)
-        except _NOT_MATLAB as error:
-            raise LogError(
-                path, "the file is not a MATLAB file that can be read", found=str(error)[:200],
-                needed="a .mat file of version 4 to 7.3",
-            ) from error  # fmt: skip
-        self.is_old = version == 0
-        held = stored_variables(path, version, watch)
-        self.stored = {variable.name: variable for variable in held}
-        self.twice = {name for name, count in Counter(v.name for v in held).items() if count > 1}
-        self.names = list(self.stored)
-
-    def __getitem__(self, name: str) -> Any:
-        stored = self.stored[name]
-        if name in self.twice:
-            raise _no_array(self.path, name, "two variables of that name")
-        if stored.kind == "sparse":  # what class it comes as depends on the release of scipy
-            raise _no_array(self.path, name, "a sparse matrix")
-        if stored.is_complex:  # the library would drop the imaginary part without a word
-            raise _no_array(self.path, name, "complex numbers")
-        self.watch.check_unpacked(stored.memory, f"variable '{name}'")
-        found = self._loaded(name, mat_dtype=True)  # which keeps true/false apart from numbers
-        if has_narrow_numbers(found) and not equal_numbers(
-            found, self._loaded(name, mat_dtype=False)
-        ):
-            raise LogError(
-                self.path, f"variable '{name}' cannot be read",
-                found="numbers that its class cannot hold", needed="an intact .mat file",
-            )  # fmt: skip
-        return found
-
-    def _loaded(self, name: str, *, mat_dtype: bool) -> Any:
-        stream: Any = io.BytesIO(self._bytes(self.stored[name]))
-        try:
-            with warnings.catch_warnings():
-                # scipy goes on with numbers in a byte order that it does not know, and with texts
-                # of numbers that are no letters
-                warnings.simplefilter("error", UserWarning)
-                warnings.simplefilter("error", RuntimeWarning)
-                return scipy.io.loadmat(stream, mat_dtype=mat_dtype, variable_names=[name])[name]
-        except (*_NOT_MATLAB, UserWarning, RuntimeWarning) as error:
-            raise LogError(
-                self.path, f"variable '{name}' cannot be read", found=str(error)[:200],
-                needed="an intact .mat file", hint=_HINT,
-            ) from error  # fmt: skip
-
-    def _bytes(self, stored: StoredVariable) -> bytes:
-        """The variable as a file of its own: the library would look for it from the first on."""
-        with self.path.open("rb") as stream:
-            head = b"" if self.is_old else stream.read(HEADER)
-            stream.seek(stored.begin)
-            return head + stream.read(stored.end - stored.begin)
-
-    def __iter__(self) -> Any:
-        return iter(self.names)
-
-    def __len__(self) -> int:
-        return len(self.names)
 
 
 class _Struct(Mapping[str, Any]):
@@ -213,7 +127,7 @@ def _member(path: Path, scope: Mapping[str, Any], name: str) -> Any:
             raise LogError(
                 path, f"'{name}' is not in the file",
                 found=", ".join(repr(key) for key in scope) or "nothing", needed=f"'{part}'",
-                hint=_HINT,
+                hint=OF_MATLAB_ALONE,
             )  # fmt: skip
         value = scope[part]
         scope = struct_fields(value) or {}
@@ -228,20 +142,14 @@ def _scope(path: Path, scope: Mapping[str, Any], name: str) -> Mapping[str, Any]
     if fields is None:
         raise LogError(
             path, f"'{name}' is not a struct", found=f"{type(value).__name__} {np.shape(value)}",
-            needed="one struct whose fields are the columns", hint=_HINT,
+            needed="one struct whose fields are the columns", hint=OF_MATLAB_ALONE,
         )  # fmt: skip
     return fields
 
 
-def _no_array(path: Path, name: str, found: str) -> LogError:
-    return LogError(
-        path, f"'{name}' is not an array", found=found, needed="an array of numbers", hint=_HINT
-    )
-
-
 def _array(path: Path, name: str, value: Any) -> NDArray[Any]:
     if not isinstance(value, np.ndarray) or isinstance(value, _OWN_CLASSES):
-        raise _no_array(path, name, type(value).__name__)
+        raise no_array(path, name, type(value).__name__)
     return value
 
 
@@ -308,7 +216,7 @@ def open_matlab(path: Path, watch: Watch | None = None) -> Iterator[Mapping[str,
         with open_hdf5(path, watch) as file:
             yield _Struct(path, file, watch)
     else:
-        yield _Variables(path, watch)
+        yield Variables(path, watch)
 
 
 def read_matlab(path: Path, layout: Layout, *, name: str, watch: Watch | None = None) -> RawLog:
