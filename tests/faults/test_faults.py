@@ -54,6 +54,13 @@ def test_a_call_that_fails_is_told_and_leaves_old_or_new_products(
     assert failures.ended.status == status
 
 
+@pytest.mark.parametrize("share", [0.05, 0.35, 0.65, 0.95])
+def test_a_disk_that_fails_while_an_archive_is_read_is_told_with_the_file(share, failures):
+    reads = [number for number, call, path in failures.calls("older") if "pread" in call]
+    number = reads[int(share * len(reads))]
+    assert failures.fail("older", number, *failures.ways("older", number)[0]) == []
+
+
 def test_products_of_two_runs_are_told_by_verify(failures, kills):
     """Killed after the first table, and its lock removed by a person."""
     _, (kinds, at) = failures.find("older", "rename", "processed/short/tables/columns.csv")
