@@ -58,7 +58,7 @@ nitpick_ignore_regex = [
     # parameters and fields
     (r"py:obj", r".*"),
     # other packages, whose pages are on the network
-    (r"py:class", r"(collections|enum|numpy|pandas|pydantic|xarray)\..*"),
+    (r"py:class", r"(collections|contextlib|enum|numpy|pandas|pathlib|pydantic|xarray)\..*"),
 ]
 
 # scripts are run where the products of the campaigns are
