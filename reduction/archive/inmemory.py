@@ -25,19 +25,13 @@ class ArchivesInMemory:
     What is kept is what was kept first, so that one pass after the other over more archives than
     there is room for finds some of them each time.
 
-    Parameters
-    ----------
-    most : int
-        Archives that are kept at once; others are opened each time.
-
     Notes
     -----
     To open an archive takes longer than to read all of a small one, since the library looks at
-    each of its 350 variables; a run opens each five times.
+    each of its 350 variables; the steps of a run read each five times.
     """
 
-    def __init__(self, most: int = _MOST) -> None:
-        self._most = most
+    def __init__(self) -> None:
         self._kept: dict[Path, tuple[_Stamp, xr.Dataset]] = {}
 
     @contextmanager
@@ -75,7 +69,7 @@ class ArchivesInMemory:
 
     def _has_room(self, n_bytes: int) -> bool:
         held = sum(archive.nbytes for _, archive in self._kept.values())
-        return len(self._kept) < self._most and n_bytes <= min(_LARGEST, _ROOM - held)
+        return len(self._kept) < _MOST and n_bytes <= min(_LARGEST, _ROOM - held)
 
 
 def _is_read(archive: xr.Dataset) -> bool:

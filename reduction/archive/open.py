@@ -12,7 +12,7 @@ from typing import Literal
 import netCDF4
 import xarray as xr
 
-from reduction.archive.seal import check_seal, has_seal
+from reduction.archive.seal import check_seal
 from reduction.archive.sound import check_form, check_stored
 from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError, SettingsError
@@ -130,8 +130,7 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
         raise ArchiveError(f"there is no archive {path}", hint="Run the campaign first.")
     is_sealed = False
     try:
-        check_seal(path)
-        is_sealed = has_seal(path)
+        is_sealed = check_seal(path)
         check_stored(path)
         with _small_cache():
             dataset = xr.open_dataset(

@@ -70,13 +70,18 @@ def has_seal(path: Path) -> bool:
     return _stated(path) is not None
 
 
-def check_seal(path: Path) -> None:
+def check_seal(path: Path) -> bool:
     """Compare a file with the sum at its end, where it has one.
 
     Parameters
     ----------
     path : pathlib.Path
         An archive.
+
+    Returns
+    -------
+    is_sealed : bool
+        Whether it has one, which is then the right one.
 
     Raises
     ------
@@ -87,7 +92,7 @@ def check_seal(path: Path) -> None:
     """
     stated = _stated(path)
     if stated is None:
-        return
+        return False
     found = _sum(path, path.stat().st_size - _LENGTH)
     if found != stated:
         raise ArchiveError(
@@ -96,6 +101,7 @@ def check_seal(path: Path) -> None:
             needed=f"{stated[:16]}..., which stands at its end",
             hint="Take a copy that is whole, or reduce the campaign again.",
         )
+    return True
 
 
 def _stated(path: Path) -> str | None:

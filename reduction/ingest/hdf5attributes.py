@@ -29,9 +29,10 @@ def is_plain_attribute(item: h5py.Group | h5py.Dataset, name: str) -> bool:
     if found.get_type().get_class() not in _PLAIN_CLASSES or found.get_storage_size() > _LARGEST:
         return False
     try:
-        return isinstance(found.dtype, np.dtype)
+        np.dtype(found.dtype)
     except (TypeError, ValueError):  # letters of no encoding, a float with more bits than numpy has
         return False
+    return True
 
 
 def plain_attribute(path: Path, item: h5py.Group | h5py.Dataset, name: str) -> NDArray[Any] | None:

@@ -112,8 +112,11 @@ def test_a_step_cannot_change_what_the_next_one_is_given(rich_test, write):
         assert archive.identical(on_disk)
 
 
-def test_as_many_are_kept_as_there_is_room_for(rich_test, bare_test, write, opened, tmp_path):
-    first, archives = write(rich_test), ArchivesInMemory(most=1)
+def test_as_many_are_kept_as_there_is_room_for(
+    rich_test, bare_test, write, opened, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(module, "_MOST", 1)
+    first, archives = write(rich_test), ArchivesInMemory()
     first = first.replace(tmp_path / "first.nc")
     second = write(bare_test)
     for _ in range(2):

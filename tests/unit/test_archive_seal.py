@@ -24,7 +24,7 @@ def test_the_sum_is_what_any_other_program_finds(tmp_path):
     write_seal(path)
     body, _, line = path.read_bytes().rpartition(b"\nsha256 of the bytes before this line: ")
     assert (body, line.decode()) == (b"as it is", f"{hashlib.sha256(b'as it is').hexdigest()}\n")
-    check_seal(path)
+    assert check_seal(path)
 
 
 def test_a_flipped_bit_anywhere_is_found(rich_test, write):
@@ -53,7 +53,7 @@ def test_another_file_has_no_sum(tmp_path, held):
     path = tmp_path / "T-1.nc"
     path.write_bytes(held)
     assert not has_seal(path)
-    check_seal(path)
+    assert not check_seal(path)
 
 
 def test_a_program_that_changes_an_archive_takes_its_sum_away_and_it_still_opens(rich_test, write):
