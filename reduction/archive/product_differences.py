@@ -1,0 +1,618 @@
+"""What changed between two products: numbers, names, attributes, tables and tests.
+
+Files are walked by the netCDF library itself, and variables are found by their names in whatever
+group they stand: a comparison depends neither on the layout of an archive nor on what reads it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from reduction.archive.changed_numbers import (
+    Change,
+    Index,
+    Rows,
+    have_own_labels,
+    is_uncertainty,
+    kind_of,
+    pair_by_name,
+    rows_by_labels,
+    uncertainty_name,
+    worst_change,
+)
+from reduction.archive.products import archives_in
+from reduction.errors import ArchiveError, DataError, SettingsError
+
+_LABELS = frozenset(
+    "specimen test name law hold number numerator denominator source of cycle clock run".split()
+)
+"""Last words of variables that say which row it is, where no coordinate of a dimension does."""
+_GRIDS = frozenset("bin grid level time radius".split())
+"""Last words of columns whose numbers are chosen and not measured."""
+_RUNNING = frozenset(["hold", "uncertainty_component"])
+"""Columns that number the rows of a file, and shift where a specimen is added."""
+_APART = ("history", "software_version")
+
+
+@dataclass
+class Differences:
+    """What changed between two products, in lists of plain objects.
+
+    Parameters
+    ----------
+    is_exact : bool
+        Whether a number moves with its last bit.
+    archived, tabled : list of Change
+        One a variable of an archive, one a column of a table, changed or not.
+    added, removed : list of dict
+        ``kind`` (campaign, archive, table, variable, column, rows), ``file`` and ``name``.
+    regrouped : list of dict
+        Variables that stand in another group now, which is no change.
+    attributes, history : list of dict
+        With ``file``, ``of`` (a variable or group), ``attribute``, ``before`` and ``after``; a
+        setting by its key. History and version of the software stand apart.
+    tests : list of dict
+        Rows of status.csv that differ in more than the time they took.
+    """
+
+    is_exact: bool
+    archived: list[Change] = field(default_factory=list)
+    tabled: list[Change] = field(default_factory=list)
+    added: list[dict[str, Any]] = field(default_factory=list)
+    removed: list[dict[str, Any]] = field(default_factory=list)
+    regrouped: list[dict[str, str]] = field(default_factory=list)
+    attributes: list[dict[str, Any]] = field(default_factory=list)
+    history: list[dict[str, Any]] = field(default_factory=list)
+    tests: list[dict[str, Any]] = field(default_factory=list)
+
+    @property
+    def changes(self) -> list[Change]:
+        """Every quantity once: those of the archives, and what the tables alone say."""
+        stored = {one.variable for one in self.archived}
+        told = {one.variable for one in self.archived if one.n_changed}
+        return self.archived + [
+            one
+            for one in self.tabled
+            if one.variable not in stored
+            or (one.n_changed and (one.variable not in told or one.kind == "number"))
+        ]
+
+    @property
+    def is_moved(self) -> bool:
+        """An answer moved, or a test that was reduced fails now."""
+        return any(one.n_moved for one in self.archived + self.tabled) or any(
+            one["fails_now"] for one in self.tests
+        )
+
+    def tell_names(
+        self, kind: str, file: str, before: Iterable[str], after: Iterable[str]
+    ) -> list[str]:
+        """Names on both sides, in the order of the first; the others are added or removed."""
+        sides = list(before), list(after)
+        for told, here, there in ((self.removed, *sides), (self.added, *sides[::-1])):
+            others = set(there)
+            told += [{"kind": kind, "file": file, "name": one} for one in here if one not in others]
+        common = set(sides[1])
+        return [name for name in sides[0] if name in common]
+
+    def tell_rows(self, file: str, name: str, rows: Rows | None) -> None:
+        """Rows of a dimension or table that one side alone has; ten of them by their labels."""
+        if rows is not None:
+            for told, labels in ((self.removed, rows.removed), (self.added, rows.added)):
+                if labels:
+                    one = {"kind": "rows", "file": file, "name": name}
+                    told.append(one | {"n": len(labels), "rows": labels[:10]})
+
+
+def differences_between(before: Path, after: Path, *, is_exact: bool = False) -> Differences:
+    """Compare two archives, two tables, or two folders of products.
+
+    Parameters
+    ----------
+    before, after : pathlib.Path
+        Two ``.nc``, two ``.csv``, two ``processed/CAMPAIGN``, or two ``processed``.
+    is_exact : bool
+        Whether a number moves with its last bit, rather than by half its standard uncertainty.
+
+    Returns
+    -------
+    differences : Differences
+        Shifts are in standard uncertainties of the product before, and where it has none of the
+        one after: both are made of the same data, so that their errors are the same errors and
+        do not add up.
+
+    Raises
+    ------
+    ArchiveError
+        If one is missing or cannot be read, or a folder has no archive.
+    SettingsError
+        If they are not of one kind.
+    DataError
+        If they have nothing in common.
+    """
+    for path in (before, after):
+        if not path.exists():
+            raise ArchiveError(f"there is no product {path}", needed="an archive or a folder")
+    found = Differences(is_exact)
+    kinds = {path.suffix.lower() if path.is_file() else "folder" for path in (before, after)}
+    if kinds == {"folder"}:
+        _compare_processed(found, before, after)
+    elif kinds == {".nc"}:
+        _compare_archives(found, before.name, before, after)
+    elif kinds == {".csv"}:
+        _compare_tables(found, before.name, before, after)
+    else:
+        raise SettingsError(
+            "these two cannot be compared",
+            found=f"{before} and {after}",
+            needed="two .nc, two .csv, two folders of products, or two campaign.toml",
+        )
+    if not found.archived and not found.tabled:
+        raise DataError(
+            f"{before} and {after} have nothing in common",
+            needed="archives or tables of one name, with variables or columns of one name",
+        )
+    return found
+
+
+# folders
+
+
+def _compare_processed(found: Differences, before: Path, after: Path) -> None:
+    """Compare the two campaigns that there are, or those of one name."""
+    sides = _campaigns(before), _campaigns(after)
+    if all(len(side) == 1 for side in sides):
+        (one,), (other,) = (side.values() for side in sides)
+        _compare_folders(found, "", one, other)
+        return
+    for name in found.tell_names("campaign", "", *sides):
+        _compare_folders(found, f"{name}/", sides[0][name], sides[1][name])
+
+
+def _campaigns(folder: Path) -> dict[str, Path]:
+    inside = [folder] if archives_in(folder) else sorted(folder.iterdir())
+    campaigns = {one.resolve().name: one for one in inside if archives_in(one)}
+    if not campaigns:
+        raise ArchiveError(
+            f"{folder}: no archive was found",
+            needed="a folder processed/CAMPAIGN with *.nc in it",
+            hint="`reduction run CAMPAIGN.toml` makes one.",
+        )
+    return campaigns
+
+
+def _compare_folders(found: Differences, place: str, before: Path, after: Path) -> None:
+    archives, tables = (
+        [
+            {path.relative_to(side).as_posix(): path for path in listed(side)}
+            for side in (before, after)
+        ]
+        for listed in (archives_in, lambda side: sorted(side.glob("tables/*.csv")))
+    )
+    for name in found.tell_names("archive", place, *archives):
+        _compare_archives(found, place + name, archives[0][name], archives[1][name])
+    for name in found.tell_names("table", place, *tables):
+        _compare_tables(found, place + name, tables[0][name], tables[1][name])
+    stated = [side / "status.csv" for side in (before, after)]
+    if all(path.is_file() for path in stated):
+        _compare_status(found, place, *(_read_table(path) for path in stated))
+
+
+def _compare_status(
+    found: Differences, place: str, before: pd.DataFrame, after: pd.DataFrame
+) -> None:
+    """Compare what became of each test; how long it took is no matter."""
+    left, right = (
+        {row.pop("test", ""): row for row in side.to_dict("records")}
+        for side in (one.drop(columns="seconds", errors="ignore") for one in (before, after))
+    )
+    for test in [*left, *(test for test in right if test not in left)]:
+        one, other = left.get(test), right.get(test)
+        if one != other:
+            ends = [None if row is None else row.get("exit_status") for row in (one, other)]
+            found.tests.append(
+                {
+                    "test": place + test,
+                    "change": "added" if one is None else "removed" if other is None else "changed",
+                    "fails_now": ends[0] == "0" and ends[1] not in (None, "0"),
+                    "before": one,
+                    "after": other,
+                }
+            )
+
+
+# archives
+
+
+class _Archive:
+    """An open file: groups, variables and dimensions by their paths, whatever its layout is."""
+
+    def __init__(self, path: Path, dataset: netCDF4.Dataset) -> None:
+        self.path = path
+        self.groups = dict(_walk(dataset))
+        self.variables: dict[str, netCDF4.Variable[Any]] = {}
+        self.dims: dict[str, list[str]] = {}
+        self._of_name: dict[str, list[str]] = {}
+        for place, group in self.groups.items():
+            for name, variable in group.variables.items():
+                key = f"{place}/{name}"
+                self.variables[key] = variable
+                dims = [f"{one.group().path.rstrip('/')}/{one.name}" for one in variable.get_dims()]
+                # the last one of a text is that of its letters
+                self.dims[key] = dims[:-1] if variable.dtype == "S1" else dims
+                self._of_name.setdefault(name, []).append(key)
+
+    def read(self, key: str) -> NDArray[Any]:
+        """Values as numbers or as text; a number that was never written is NaN."""
+        variable = self.variables[key]
+        with _unreadable(self.path, "netCDF"):
+            variable.set_auto_maskandscale(False)
+            variable.set_auto_chartostring(False)
+            values = np.asarray(variable[...])
+        if values.dtype.kind == "f":
+            fill = getattr(variable, "_FillValue", netCDF4.default_fillvals[values.dtype.str[1:]])
+            return np.where(values == fill, np.nan, values)
+        if values.dtype.kind in "iub":
+            return values
+        if values.dtype == "S1" and values.ndim:
+            size = max(values.shape[-1], 1)
+            letters = np.zeros((*values.shape[:-1], size), "S1")
+            letters[..., : values.shape[-1]] = values
+            return np.char.decode(letters.view(f"S{size}")[..., 0], "utf-8", "replace")
+        texts = [str(one) for one in values.ravel().tolist()]
+        return np.array(texts, dtype=str).reshape(values.shape)
+
+    def is_of(self, key: str, kinds: str) -> bool:
+        """Whether values are of these kinds of numpy; text, and what it does not know, is "O"."""
+        return getattr(self.variables[key].dtype, "kind", "O") in kinds
+
+    def uncertainty_of(self, key: str) -> str | None:
+        """Path of the standard uncertainty of a variable; in its own group first."""
+        place, _, name = key.rpartition("/")
+        stated = str(getattr(self.variables[key], "ancillary_variables", "")).split()
+        for one in (uncertainty_name(name), *filter(is_uncertainty, stated)):
+            paths = self._of_name.get(one, [])
+            if paths:
+                return f"{place}/{one}" if f"{place}/{one}" in paths else paths[0]
+        return None
+
+    @cached_property
+    def labels(self) -> dict[str, dict[str, dict[str, str]]]:
+        """Paths of what says which row it is: by dimension, by how well, by name."""
+        auxiliary = {
+            name
+            for variable in self.variables.values()
+            for name in str(getattr(variable, "coordinates", "")).split()
+        }
+        found: dict[str, dict[str, dict[str, str]]] = {}
+        for key, dims in self.dims.items():
+            name = _name(key)
+            is_text, is_single = not self.is_of(key, "fiub"), len(dims) == 1
+            if is_single and name == _name(dims[0]):
+                # the dimension may have another name on the other side
+                rank, name = "number" if self.is_of(key, "iub") else "coordinate", ""
+            elif is_single and name in auxiliary:
+                rank = "auxiliary"
+            elif (
+                name.rpartition("_")[2] in _LABELS
+                and dims
+                and (is_text or (is_single and self.is_of(key, "iu")))
+            ):
+                rank = "named"
+            else:
+                continue
+            found.setdefault(dims[-1], {}).setdefault(rank, {}).setdefault(name, key)
+        return found
+
+    def size(self, dim: str) -> int:
+        """Rows of a dimension."""
+        place, _, name = dim.rpartition("/")
+        return int(self.groups[place].dimensions[name].size)
+
+
+@contextmanager
+def _unreadable(path: Path, kind: str) -> Iterator[None]:
+    """Tell of the file what a library says of it."""
+    try:
+        yield
+    except (AttributeError, OSError, RuntimeError, ValueError) as error:
+        said = str(error).splitlines() or [type(error).__name__]
+        raise ArchiveError(f"{path} cannot be read as {kind}", found=said[0]) from error
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[_Archive]:
+    with _unreadable(path, "netCDF"):
+        dataset = netCDF4.Dataset(path)
+    with dataset:
+        yield _Archive(path, dataset)
+
+
+def _walk(group: netCDF4.Dataset) -> Iterator[tuple[str, netCDF4.Dataset]]:
+    yield str(group.path).rstrip("/"), group
+    for inner in group.groups.values():
+        yield from _walk(inner)
+
+
+def _name(path: str) -> str:
+    return path.rpartition("/")[2]
+
+
+def _compare_archives(found: Differences, file: str, before: Path, after: Path) -> None:
+    """Compare variables and attributes of two files."""
+    with _opened(before) as left, _opened(after) as right:
+        pairs = pair_by_name(left.variables, right.variables)
+        others = {other: key for key, other in pairs.items()}
+        found.tell_names(
+            "variable", file, (key.lstrip("/") for key in left.variables if key not in pairs), ()
+        )
+        found.tell_names(
+            "variable", file, (), (key.lstrip("/") for key in right.variables if key not in others)
+        )
+        found.regrouped += [
+            {"file": file, "variable": _name(key), "before": key, "after": other}
+            for key, other in pairs.items()
+            if key != other
+        ]
+        rows: dict[tuple[str, str], Rows | None] = {}
+        for key, other in pairs.items():
+            dims = list(zip(left.dims[key], right.dims[other], strict=False))
+            for pair in dims:
+                if pair not in rows:
+                    rows[pair] = _match_dimensions(left, right, pair)
+                    found.tell_rows(file, _name(pair[0]), rows[pair])
+            found.archived.append(
+                _compare_variables(
+                    file, (left, key), (right, other), [rows[pair] for pair in dims], found.is_exact
+                )
+            )
+        _compare_attributes(found, file, left, right, pairs)
+
+
+def _match_dimensions(before: _Archive, after: _Archive, pair: tuple[str, str]) -> Rows | None:
+    """Rows of a dimension by their labels, else by their places; None where neither will do."""
+    ranks = before.labels.get(pair[0], {}), after.labels.get(pair[1], {})
+    words: list[NDArray[Any]] = []
+    for rank in ("coordinate", "auxiliary", "named", "number"):
+        here, there = (side.get(rank, {}) for side in ranks)
+        names = [name for name in here if name in there]
+        is_text = any(not before.is_of(here[name], "fiub") for name in names)
+        if not names or (rank == "named" and not is_text):
+            continue
+        sides = [before.read(here[one]) for one in names], [after.read(there[one]) for one in names]
+        words = words or sides[0]
+        rows = rows_by_labels(*sides)
+        if rows.places[0] is None:
+            return rows
+        if rows.places[0].size and ((rank == "coordinate" and is_text) or have_own_labels(sides)):
+            return rows
+    is_as_long = before.size(pair[0]) == after.size(pair[1])
+    return Rows((None, None), words) if is_as_long else None
+
+
+def _compare_variables(
+    file: str,
+    before: tuple[_Archive, str],
+    after: tuple[_Archive, str],
+    rows: Sequence[Rows | None],
+    is_exact: bool,
+) -> Change:
+    """Compare two variables along their matched rows."""
+    sides, name = (before, after), _name(before[1])
+    stated = [archive.uncertainty_of(key) for archive, key in sides]
+    one = Change(
+        file, name, kind_of(name, has_uncertainty=any(stated)),
+        unit=str(getattr(before[0].variables[before[1]], "units", "")),
+    )  # fmt: skip
+    if not all(archive.is_of(key, "fiub") for archive, key in sides):
+        one = replace(one, kind="text")
+    dims = [archive.dims[key] for archive, key in sides]
+    known = [row for row in rows if row is not None]
+    if len(dims[0]) != len(dims[1]) or len(known) < len(dims[0]):
+        return _other_shape(one, [archive.variables[key].shape for archive, key in sides], is_exact)
+    values = [
+        _taken(archive.read(key), [row.places[side] for row in known])
+        for side, (archive, key) in enumerate(sides)
+    ]
+    uncertainty = None
+    if one.kind in ("answer", "uncertainty"):
+        uncertainty = np.array(np.nan)
+        for side, (archive, _) in enumerate(sides):
+            own = stated[side]
+            if own is not None and set(archive.dims[own]) <= set(dims[side]):
+                has = [dim in archive.dims[own] for dim in dims[side]]
+                places = [row.places[side] for row, is_in in zip(known, has, strict=True) if is_in]
+                lengths = zip(values[0].shape, has, strict=True)
+                shape = [size if is_in else 1 for size, is_in in lengths]
+                read = _taken(archive.read(own), places).astype(float).reshape(shape)
+                uncertainty = np.where(uncertainty > 0, uncertainty, read)
+    return worst_change(
+        one, values[0], values[1], uncertainty,
+        lambda at: {
+            _name(dim): ", ".join(row.words(place))
+            for dim, row, place in zip(dims[0], known, at, strict=True)
+        },
+        is_exact=is_exact, is_read=False,
+    )  # fmt: skip
+
+
+def _other_shape(one: Change, shapes: Sequence[tuple[int, ...]], is_exact: bool) -> Change:
+    """An answer that cannot be held against the other one counts as moved."""
+    told = [" x ".join(map(str, shape)) or "one value" for shape in shapes]
+    is_moved = one.kind != "text" and (is_exact or one.kind != "number")
+    return replace(
+        one, change="shape", n=1, n_changed=1, n_moved=int(is_moved), before=told[0], after=told[1]
+    )
+
+
+def _taken(values: NDArray[Any], places: Sequence[Index | None]) -> NDArray[Any]:
+    """Rows that were matched, along each dimension."""
+    for axis, one in enumerate(places):
+        if one is not None:
+            values = np.take(values, one, axis=axis)
+    return values
+
+
+def _compare_attributes(
+    found: Differences, file: str, before: _Archive, after: _Archive, pairs: Mapping[str, str]
+) -> None:
+    objects: list[tuple[str, Any, Any]] = [
+        (place or "/", group, after.groups[place])
+        for place, group in before.groups.items()
+        if place in after.groups
+    ]
+    objects += [
+        (_name(key), before.variables[key], after.variables[other]) for key, other in pairs.items()
+    ]
+    for name, one, another in objects:
+        left, right = _attributes(one), _attributes(another)
+        for key in [*left, *(key for key in right if key not in left)]:
+            one_side, other_side = left.get(key), right.get(key)
+            if repr(one_side) == repr(other_side):
+                continue
+            if key == "history":
+                one_side, other_side = (
+                    str(side or "").splitlines() for side in (one_side, other_side)
+                )
+                common = {*one_side} & {*other_side}
+                one_side, other_side = (
+                    [line for line in side if line not in common] for side in (one_side, other_side)
+                )
+            told: dict[str, Any] = {"file": file, "of": name, "attribute": key}
+            told |= {"before": one_side, "after": other_side}
+            (found.history if key in _APART else found.attributes).append(told)
+
+
+def _attributes(one: netCDF4.Dataset | netCDF4.Variable[Any]) -> dict[str, Any]:
+    """By name, and the kind of the values of a variable; a JSON object key by key."""
+    found = {"type": str(one.dtype)} if isinstance(one, netCDF4.Variable) else {}
+    for name in one.ncattrs():
+        value = one.getncattr(name)
+        found |= _by_key(name, value.tolist() if hasattr(value, "tolist") else value)
+    return found
+
+
+def _by_key(name: str, value: Any) -> dict[str, Any]:
+    if isinstance(value, str) and value.startswith("{"):
+        try:
+            value = json.loads(value)
+        except ValueError:
+            return {name: value}
+    if isinstance(value, dict) and value:
+        inner = (_by_key(f"{name}.{key}", one) for key, one in value.items())
+        return {key: one for part in inner for key, one in part.items()}
+    return {name: str(value) if isinstance(value, float) and np.isnan(value) else value}
+
+
+# tables
+
+
+def _read_table(path: Path) -> pd.DataFrame:
+    with _unreadable(path, "a table"):
+        return pd.read_csv(path, dtype=object, keep_default_na=False, encoding="utf-8")
+
+
+def _compare_tables(found: Differences, file: str, before: Path, after: Path) -> None:
+    """Compare rows by their first columns, numbers by the column of their uncertainty."""
+    frames = [_read_table(path) for path in (before, after)]
+    columns = found.tell_names("column", file, *(frame.columns for frame in frames))
+    if not columns:
+        return
+    sides = [{column: _cells(frame[column]) for column in columns} for frame in frames]
+    keys = _key_columns(columns, frames, sides)
+    rows = _match_tables(keys, [len(frame) for frame in frames], sides)
+    if rows is None:
+        told = [f"{len(frame)} row{'' if len(frame) == 1 else 's'}" for frame in frames]
+        found.tabled.append(
+            Change(file, "every column", "number", "shape", 1, 1, 1, before=told[0], after=told[1])
+        )
+        return
+    found.tell_rows(file, "row", rows)
+    sides = [
+        {column: _taken(cells, [rows.places[n]]) for column, cells in side.items()}
+        for n, side in enumerate(sides)
+    ]
+    names = {column.partition(" [")[0]: column for column in columns}
+    labels = [key.partition(" [")[0] for key in keys] if rows.labels else ["row"]
+    for name, column in names.items():
+        values = [side[column] for side in sides]
+        own = names.get(uncertainty_name(name))
+        kind = kind_of(name, has_uncertainty=own is not None)
+        if any(cells.dtype.kind == "U" for cells in values):
+            kind = "text"
+        uncertainty = None
+        if own is not None and kind in ("answer", "uncertainty"):
+            stated = [side[own] for side in sides if side[own].dtype.kind == "f"]
+            if stated:
+                uncertainty = np.where(stated[0] > 0, stated[0], stated[-1])
+        found.tabled.append(
+            worst_change(
+                Change(file, name, kind, unit=column.partition(" [")[2].rstrip("]")),
+                values[0], values[1], uncertainty,
+                lambda at: dict(zip(labels, rows.words(at[0]), strict=True)),
+                is_exact=found.is_exact, is_read=True,
+            )
+        )  # fmt: skip
+
+
+def _cells(column: pd.Series[Any]) -> NDArray[Any]:
+    """Numbers, to their last bit, where every cell that is not empty has one; else text."""
+    texts = column.tolist()
+    try:
+        return np.array([float(one) if one else np.nan for one in texts], dtype=float)
+    except ValueError:
+        return np.array(texts, dtype=str)
+
+
+def _key_columns(
+    columns: Sequence[str],
+    frames: Sequence[pd.DataFrame],
+    sides: Sequence[Mapping[str, NDArray[Any]]],
+) -> list[str]:
+    """The first columns that together say which row it is; none where they do not."""
+    for skipped in (_RUNNING, frozenset[str]()):
+        keys: list[str] = []
+        for column in columns:
+            name = column.partition(" [")[0]
+            if name in skipped:
+                continue
+            is_grid = name.rpartition("_")[2] in _GRIDS
+            if not is_grid and any(_is_measured(side[column]) for side in sides):
+                break
+            keys.append(column)
+            if not any(frame.duplicated(keys).any() for frame in frames):
+                return keys
+    return []
+
+
+def _is_measured(cells: NDArray[Any]) -> bool:
+    """Numbers that are no whole ones."""
+    return cells.dtype.kind == "f" and bool(np.any(cells[np.isfinite(cells)] % 1))
+
+
+def _match_tables(
+    keys: Sequence[str], lengths: Sequence[int], sides: Sequence[Mapping[str, NDArray[Any]]]
+) -> Rows | None:
+    """Rows by their keys, else by their places; None where neither will do."""
+    is_as_long = lengths[0] == lengths[1]
+    by_place = Rows((None, None), []) if is_as_long else None
+    if not keys:
+        return by_place
+    labels = [[side[key] for key in keys] for side in sides]
+    rows = rows_by_labels(*labels)
+    if rows.places[0] is None:
+        return rows
+    # whole numbers alone may be answers themselves, and would be taken for other rows
+    is_sure = not is_as_long or any(cells.dtype.kind == "U" for cells in labels[0])
+    return rows if rows.places[0].size and is_sure else by_place

@@ -1,0 +1,307 @@
+"""Two products held against each other: what is run for it, and what is said of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from contextlib import ExitStack
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, cast
+
+from rich.markup import escape
+
+from reduction.archive.changed_numbers import Change
+from reduction.archive.product_differences import Differences, differences_between
+from reduction.cli.commandoutput import CommandOutput
+from reduction.cli.numbers import short, table_of, within
+from reduction.errors import DataError, SettingsError
+from reduction.remote import scratch_folder
+from reduction.units import UnitSystem, display_unit
+
+_ROWS = 20
+"""Rows of a table; the others are counted, and stand in the answer of ``--json``."""
+_ORDER = ("answer", "uncertainty", "number")
+
+
+def show_differences(
+    before: Path, after: Path | None, *, against: str | None, is_exact: bool, output: CommandOutput
+) -> None:
+    """Compare two products, or two runs of a campaign; status 4 where an answer moved."""
+    if (after is None) == (against is None):
+        raise SettingsError(
+            "diff compares two things",
+            found="B and --against" if against else "A alone",
+            needed="A and B, or CAMPAIGN.toml --against REV",
+        )
+    if against is not None and before.suffix.lower() != ".toml":
+        raise SettingsError(
+            "--against runs a campaign", found=str(before), needed="its campaign.toml"
+        )
+    with ExitStack() as opened:
+        scratch = opened.enter_context(scratch_folder())
+        # what was asked for is named, and not its copy
+        if against is not None:
+            from reduction.cli.otherversion import run_revision
+
+            one = run_revision(against, before.absolute(), scratch / "before", output)
+            output.names[str(one)] = f"{before} by {against}"
+        else:
+            one = _products(before, scratch / "before", output)
+        other = _products(before if after is None else after, scratch / "after", output)
+        found = differences_between(one, other, is_exact=is_exact)
+    _say(found, output)
+    output.answer(_document(found))
+    if found.is_moved:
+        output.raise_status(DataError.exit_status)
+
+
+def _products(path: Path, scratch: Path, output: CommandOutput) -> Path:
+    """A product as it is; of a campaign.toml what a run of it makes."""
+    if path.suffix.lower() != ".toml":
+        return path
+    # two products that are there are compared without what makes them
+    from reduction.cli.remote import campaign_at
+    from reduction.cli.runs import run_campaign
+
+    silent = CommandOutput(quiet=True)
+    with campaign_at(path, allow_remote=False, output=silent) as campaign:
+        run_campaign(
+            campaign, processed=scratch / "processed", reports=scratch / "reports",
+            tests=(), force=True, jobs=None, scheduler=None, output=silent,
+        )  # fmt: skip
+    made = scratch / "processed" / campaign.id
+    output.names[str(made)] = str(path)
+    return made
+
+
+# what is said
+
+
+def _say(found: Differences, output: CommandOutput) -> None:
+    units = cast("UnitSystem", output.units)
+    output.say(_verdict(found, units))
+    _say_numbers(found.changes, units, output)
+    texts = [one for one in found.changes if one.kind == "text" and one.n_changed]
+    _say_counted("texts changed", (one.variable for one in texts), output)
+    for heading, named in (("removed", found.removed), ("added", found.added)):
+        _say_counted(heading, (_said_name(one) for one in named), output)
+    _say_counted("in another group now", (one["variable"] for one in found.regrouped), output)
+    _say_attributes(found.attributes, output)
+    for one in found.tests:
+        output.say(f"test {one['test']}: {_said_test(one)}")
+    versions = [one for one in found.history if one["attribute"] != "history"]
+    for said in _counted(f"{one['before']} -> {one['after']}" for one in versions):
+        output.say(f"version: {said}")
+    n_histories = len(found.history) - len(versions)
+    if n_histories:
+        output.say(f"history: other lines in {_number(n_histories, 'file')}")
+
+
+def _verdict(found: Differences, units: UnitSystem) -> str:
+    """One line: how many answers moved, what else counts, and the worst."""
+    changes = found.changes
+    answers = [one for one in changes if one.kind == "answer"]
+    n_moved, n_changed = (
+        sum(getattr(one, name) for one in answers) for name in ("n_moved", "n_changed")
+    )
+    far = "changed" if found.is_exact else "moved by more than half their standard uncertainty"
+    said = [f"{n_moved:,} of {_number(sum(one.n for one in answers), 'answer')} {far}"]
+    if n_changed > n_moved:
+        said.append(f"{n_changed - n_moved:,} changed by less")
+    for name in ("came", "went"):
+        n = sum(getattr(one, f"n_{name}") for one in answers)
+        if n:
+            said.append(f"{n:,} {name}")
+    wider = sum(one.n_moved for one in changes if one.kind == "uncertainty")
+    if wider:
+        far = "" if found.is_exact else " by more than half"
+        said.append(f"{_number(wider, 'standard uncertainty')} changed{far}")
+    others = {one.variable for one in changes if one.kind == "number" and one.n_changed}
+    if others:
+        said.append(f"{_number(len(others), 'quantity')} without uncertainty changed")
+    failing = [one["test"] for one in found.tests if one["fails_now"]]
+    if failing:
+        said.append(f"failing now: {', '.join(failing)}")
+    moved = _ranked(one for one in changes if one.n_moved)
+    if moved:
+        worst = moved[0]
+        before, after, unit = _shown(worst, units)
+        where = " ".join([Path(worst.file).with_suffix("").as_posix(), *_where(worst)])
+        said.append(
+            f"worst: {worst.variable} of {where}: {before} -> {after} {unit}".rstrip()
+            + f", {_far(worst)}"
+        )
+    return "; ".join(said)
+
+
+def _ranked(changes: Iterable[Change]) -> list[Change]:
+    """The worst first: what moved, answers before other numbers, then by the shift."""
+
+    def rank(one: Change) -> tuple[bool, int, float]:
+        size = one.relative if one.shift is None else one.shift
+        return (
+            not one.n_moved,
+            _ORDER.index(one.kind),
+            -abs(size or 0.0),
+        )
+
+    return sorted((one for one in changes if one.kind in _ORDER), key=rank)
+
+
+def _say_numbers(changes: Sequence[Change], units: UnitSystem, output: CommandOutput) -> None:
+    """The worst of each quantity, in whatever files it changed."""
+    of_name: dict[tuple[str, str], list[Change]] = {}
+    for one in _ranked(one for one in changes if one.n_changed):
+        of_name.setdefault((one.variable, one.kind), []).append(one)
+    if not of_name:
+        return
+    table = table_of(
+        *"quantity|worst at|before|after|change|changed|moved|came|went".split("|"), texts=2
+    )
+    for same in list(of_name.values())[:_ROWS]:
+        worst = same[0]
+        before, after, unit = _shown(worst, units)
+        table.add_row(
+            escape(worst.variable + (f" [{unit}]" if unit else "")),
+            escape(", ".join([worst.file, *_where(worst)])), before, after, _far(worst),
+            *(str(sum(numbers)) for numbers in zip(*map(_counts, same), strict=True)),
+        )  # fmt: skip
+    output.show(table)
+    if len(of_name) > _ROWS:
+        output.say(f"  and {_number(len(of_name) - _ROWS, 'quantity')} more (--json has all)")
+
+
+def _counts(one: Change) -> tuple[int, ...]:
+    return one.n_changed, one.n_moved, one.n_came, one.n_went
+
+
+def _shown(one: Change, units: UnitSystem) -> tuple[str, str, str]:
+    """Both values with as many digits as show the change, and their unit."""
+    unit, factor = display_unit(one.unit, units)
+    values = [
+        value * factor if isinstance(value, (int, float)) else value
+        for value in (one.before, one.after)
+    ]
+    numbers = [value for value in values if isinstance(value, (int, float))]
+    if len(numbers) == 2:
+        halves = [abs(numbers[1] - numbers[0]), (one.standard_uncertainty or 0.0) * factor]
+        texts = [within(value, *halves) for value in numbers]
+        # a change beyond the seventh digit needs all of them
+        return (
+            *(texts if texts[0] != texts[1] else map(repr, numbers)),
+            "" if unit == "1" else unit,
+        )
+    texts = ["-" if v is None else short(v) if isinstance(v, float) else str(v) for v in values]
+    return texts[0], texts[1], "" if unit == "1" else unit
+
+
+def _far(one: Change) -> str:
+    """How far a number went, in uncertainties where it has one."""
+    if one.change in ("came", "went", "shape"):
+        return one.change
+    if one.shift is not None:
+        return f"{one.shift:+.3g} u"
+    return "from 0" if one.relative is None else f"{100 * one.relative:+.3g} %"
+
+
+def _where(one: Change) -> list[str]:
+    """Labels of a place: a number with what it counts."""
+    return [
+        f"{name} {label}" if label[:1].isdigit() or label[:1] == "-" else label
+        for name, label in one.where.items()
+    ]
+
+
+def _said_name(one: dict[str, Any]) -> str:
+    if one["kind"] == "rows":
+        more = ", ..." if one["n"] > len(one["rows"]) else ""
+        return f"{one['name']} {', '.join(map(_cut, one['rows'][:3]))}{more}"
+    return f"{one['kind']} {one['name']}"
+
+
+def _said_test(one: dict[str, Any]) -> str:
+    if one["change"] != "changed":
+        return str(one["change"])
+    differing = [
+        key for key in one["before"] if one["before"][key] != (one["after"] or {}).get(key)
+    ]
+    return "; ".join(
+        f"{key} {_cut(one['before'][key])} -> {_cut(one['after'].get(key))}" for key in differing
+    )
+
+
+def _say_attributes(attributes: Sequence[dict[str, Any]], output: CommandOutput) -> None:
+    alike: dict[tuple[str, str, str], list[str]] = {}
+    for one in attributes:
+        values = (_cut(one["before"]), _cut(one["after"]))
+        of = one["attribute"] if one["of"].startswith("/") else f"{one['of']}.{one['attribute']}"
+        alike.setdefault((of, *values), []).append(one["file"])
+    if not alike:
+        return
+    table = table_of("attribute", "before", "after", "files", texts=3)
+    for said, files in list(alike.items())[:_ROWS]:
+        table.add_row(*map(escape, said), str(len(files)))
+    output.show(table)
+    if len(alike) > _ROWS:
+        output.say(f"  and {_number(len(alike) - _ROWS, 'attribute')} more (--json has all)")
+
+
+def _cut(value: object) -> str:
+    text = "" if value is None else str(value)
+    return text if len(text) <= 40 else f"{text[:37]}..."
+
+
+def _say_counted(heading: str, names: Iterable[str], output: CommandOutput) -> None:
+    said = _counted(names)
+    more = f", and {len(said) - _ROWS} more" if len(said) > _ROWS else ""
+    if said:
+        output.say(f"{heading}: {', '.join(said[:_ROWS])}{more}")
+
+
+def _counted(names: Iterable[str]) -> list[str]:
+    """Each name once, with the number of its files."""
+    counts: dict[str, int] = {}
+    for name in names:
+        counts[name] = counts.get(name, 0) + 1
+    return [f"{name} ({_number(n, 'file')})" if n > 1 else name for name, n in counts.items()]
+
+
+def _number(n: int, name: str) -> str:
+    plural = f"{name[:-1]}ies" if name.endswith("y") else f"{name}s"
+    return f"{n:,} {name if n == 1 else plural}"
+
+
+# the answer of --json
+
+
+def _document(found: Differences) -> dict[str, Any]:
+    changed = [asdict(one) for one in found.changes if one.n_changed]
+    tables: dict[str, dict[str, Any]] = {}
+
+    def table(file: str) -> dict[str, Any]:
+        empty = {"file": file, "columns": [], "added": [], "removed": []}
+        return tables.setdefault(file, empty)
+
+    for one in found.tabled:
+        if one.n_changed:
+            table(one.file)["columns"].append(asdict(one))
+    for key, named in (("added", found.added), ("removed", found.removed)):
+        for each in named:
+            if each["file"].endswith(".csv"):
+                table(each["file"])[key].append(each)
+    return {
+        "status": DataError.exit_status if found.is_moved else 0,
+        "verdict": _verdict(found, "si"),
+        "exact": found.is_exact,
+        "n_answers": sum(one.n for one in found.changes if one.kind == "answer"),
+        "answers": [one for one in changed if one["kind"] in ("answer", "uncertainty")],
+        "numbers": [one for one in changed if one["kind"] == "number"],
+        "texts": [one for one in changed if one["kind"] == "text"],
+        "added": found.added,
+        "removed": found.removed,
+        "moved": found.regrouped,
+        "attributes": found.attributes,
+        "history": found.history,
+        "tables": list(tables.values()),
+        "tests": found.tests,
+    }
