@@ -1,4 +1,4 @@
-"""Two thousand small campaigns in the catalogue: the index made, brought up to date, and asked.
+"""Two thousand small campaigns in the catalogue: their files made, and asked.
 
     python benchmarks/catalogue.py [number of campaigns]
 
@@ -23,15 +23,14 @@ import numpy as np
 from figures import Figure, hand_on
 
 from reduction.archive.open import open_archive
-from reduction.catalogue.changes import changes_since
 from reduction.catalogue.condition import condition_of
-from reduction.catalogue.index import INDEX_NAME, load_index
+from reduction.catalogue.file import FILE_NAME, load_catalogue
 from reduction.catalogue.query import Query, answer, needed_quantities
-from reduction.catalogue.refresh import refresh
+from reduction.catalogue.read import rebuild
 
 ROOT = Path(__file__).parents[1]
 WANTED = 1.0  # s, of a question
-N_SAMPLES, PASSES, JOBS = 200, 7, 2
+N_SAMPLES, PASSES = 200, 7
 OPTIONS = ("--kind", "cyclic", "--specimen", "new", "--where", "frequency >= 0.9 Hz")
 QUANTITY = "apparent_spring_constant"
 SCALED = (
@@ -74,12 +73,12 @@ def seconds_of_command(folder: Path, *options: str) -> float:
 
 
 def seconds_of_question(folder: Path, query: Query) -> float:
-    """Of one question: what changed, the numbers, the rows."""
+    """Of one question: the numbers, the rows."""
     start = perf_counter()
-    index = load_index(folder / INDEX_NAME, needed_quantities(query))
-    if index is None or not changes_since(index, folder).is_none:
-        raise SystemExit("the index is not what it should be")
-    answer(index, query)
+    catalogue = load_catalogue(folder, needed_quantities(query))
+    if catalogue.unreadable:
+        raise SystemExit("the catalogue is not what it should be")
+    answer(catalogue, query)
     return perf_counter() - start
 
 
@@ -90,16 +89,9 @@ def main(count: int) -> list[Figure]:
         product = small_product(Path(place))
         campaigns(product, folder, count)
         start = perf_counter()
-        refresh(None, changes_since(None, folder), folder / INDEX_NAME, jobs=JOBS)
+        if rebuild(folder):
+            raise SystemExit("an archive is not in its catalogue")
         made = perf_counter() - start
-        index = load_index(folder / INDEX_NAME)
-        if index is None:
-            raise SystemExit("the index is not there")
-        changed = folder / "campaign-0007" / "T-1.nc"
-        changed.touch()
-        start = perf_counter()
-        refresh(index, changes_since(index, folder), folder / INDEX_NAME)
-        updated = perf_counter() - start
         query = Query(
             names={"test_kind": ("cyclic",), "specimen": ("new",)},
             where=(condition_of(OPTIONS[-1]),),
@@ -115,17 +107,13 @@ def main(count: int) -> list[Figure]:
             "the command": lambda: seconds_of_command(folder, *asked),
             "the command, every test to CSV": lambda: seconds_of_command(folder, *whole),
         }
-        size = (folder / INDEX_NAME).stat().st_size / 1e6
-        each, n_numbers = product.stat().st_size / 1e3, sum(part.num_rows for part in index.values)
-        print(f"{count} archives of {each:.0f} kB, {n_numbers} numbers, index {size:.1f} MB")
+        size = sum(path.stat().st_size for path in folder.glob(f"*/{FILE_NAME}")) / 1e6
+        each, n_numbers = product.stat().st_size / 1e3, len(load_catalogue(folder).numbers)
+        print(f"{count} archives of {each:.0f} kB, {n_numbers} numbers, catalogues {size:.1f} MB")
         print(f"load before: {os.getloadavg()[0]:.1f}, {os.cpu_count()} processors\n")
         print("| what | s, median | s, least | s, most |\n|---|---|---|---|")
-        print(f"| index made, {JOBS} processes | {made:.1f} | | |")
-        print(f"| one archive changed | {updated:.2f} | | |")
-        found = [
-            Figure(what=f"index of {count:,} campaigns made, {JOBS} processes", values=(made,)),
-            Figure(what="index after one archive changed", values=(updated,)),
-        ]
+        print(f"| catalogues made | {made:.1f} | | |")
+        found = [Figure(what=f"catalogues of {count:,} campaigns made", values=(made,))]
         for name, time in rows.items():
             times = [time() for _ in range(PASSES)]
             found.append(

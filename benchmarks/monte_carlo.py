@@ -95,7 +95,7 @@ def t_1(draw: int) -> Numbers:
         ]  # fmt: skip
         surveys = [survey, *others]
         models, _ = fit_strain_models(campaign, surveys)
-        basis = basis_of(campaign, survey, past_of(surveys, models), pulls={}, failed=())
+        basis = basis_of(campaign, survey, past_of(surveys, models), pulls={})
         return dict(_numbers(reduce_survey(campaign, survey, basis.models, None, "{}")))
 
 

@@ -40,7 +40,7 @@ def seconds(path: Path, *, propagated: bool) -> tuple[float, int]:
     surveys = [one for plan in campaign.tests.values() for one in read_test(campaign, plan)]
     models, _ = fit_strain_models(campaign, surveys)
     (survey,) = surveys
-    basis = basis_of(campaign, survey, past_of(surveys, models), pulls={}, failed=())
+    basis = basis_of(campaign, survey, past_of(surveys, models), pulls={})
     test = reduce_test(
         located_again(campaign, survey),
         description=describe(campaign, survey),

@@ -1,10 +1,10 @@
-"""Two workers of Dask against two bare processes, on a campaign of many synthetic tests.
+"""Two workers of --jobs against two bare processes, on a campaign of many synthetic tests.
 
     python benchmarks/workers.py [TESTS] [ROWS] [REPEATS]
 
 Each side reads, locates, reduces and archives all tests: one process; two processes that share
-nothing and have half of the tests each; two workers behind a scheduler.  Imports and the start
-of the cluster are excluded everywhere.  The sides run in turn, so that the ratios hold when the
+nothing and have half of the tests each; two workers.  Imports and the start
+of the workers are excluded everywhere.  The sides run in turn, so that the ratios hold when the
 machine's speed drifts.  Wanted: two workers reach at least 85 % of the ratio over one process
 that two bare processes reach.
 """
@@ -23,8 +23,7 @@ from statistics import median
 from figures import Figure, hand_on
 
 from reduction.batch.basis import basis_of
-from reduction.batch.clusters import local_cluster
-from reduction.batch.executor import Executor, Serial
+from reduction.batch.executor import Workers, local_workers
 from reduction.batch.firstpass import survey_campaign
 from reduction.batch.history import past_of
 from reduction.batch.lock import run_lock
@@ -79,18 +78,15 @@ def part_of(path: Path, first: int, step: int) -> Campaign:
     return replace(campaign, tests={name: campaign.tests[name] for name in names})
 
 
-def reduce_all(campaign: Campaign, folder: Path, executor: Executor | None = None) -> None:
+def reduce_all(campaign: Campaign, folder: Path, workers: Workers | None = None) -> None:
     """Both passes over the tests, to their archives."""
-    executor, progress = executor or Serial(), Silent()
-    with run_lock(folder, remark=print) as lock:
-        first = survey_campaign(campaign, executor=executor, lock=lock)
+    with run_lock(folder) as lock:
+        first = survey_campaign(campaign, workers=workers, lock=lock)
         models, errors = fit_strain_models(campaign, first.surveys)
         statuses = reduce_campaign(
-            campaign, first, first.surveys, errors=errors, folder=folder, executor=executor,
-            basis=partial(
-                basis_of, campaign, past=past_of(first.surveys, models), pulls={}, failed=()
-            ),
-            lock=lock, progress=progress, clock=time.perf_counter, force=True, command="benchmark",
+            campaign, first, first.surveys, errors=errors, folder=folder, workers=workers,
+            basis=partial(basis_of, campaign, past=past_of(first.surveys, models), pulls={}),
+            lock=lock, progress=Silent(), clock=time.perf_counter, force=True, command="benchmark",
         )  # fmt: skip
     bad = [one.message for one in statuses if one.status == "failed"]
     if bad:
@@ -122,14 +118,14 @@ def bare(path: Path, folder: Path, n_processes: int) -> float:
     return taken
 
 
-def with_dask(path: Path, folder: Path, n_workers: int) -> float:
-    """Wall time of workers behind a scheduler, which are there already."""
+def with_workers(path: Path, folder: Path, n_workers: int) -> float:
+    """Wall time of worker processes, which are there already."""
     campaign = load_campaign(path)
     few = replace(campaign, tests=dict(list(campaign.tests.items())[: 2 * n_workers]))
-    with local_cluster(n_workers) as cluster:
-        reduce_all(few, folder / "imports", cluster)
+    with local_workers(n_workers) as workers:
+        reduce_all(few, folder / "imports", workers)
         start = time.perf_counter()
-        reduce_all(campaign, folder / f"dask-{n_workers}", cluster)
+        reduce_all(campaign, folder / f"workers-{n_workers}", workers)
         return time.perf_counter() - start
 
 
@@ -139,7 +135,7 @@ def main(n_tests: int, n_rows: int, repeats: int) -> list[Figure]:
     sides = {
         "one process": lambda path, folder: bare(path, folder, 1),
         "two bare processes": lambda path, folder: bare(path, folder, 2),
-        "two workers of Dask": lambda path, folder: with_dask(path, folder, 2),
+        "two workers": lambda path, folder: with_workers(path, folder, 2),
     }
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -158,9 +154,7 @@ def main(n_tests: int, n_rows: int, repeats: int) -> list[Figure]:
         print(f"| {side} | {median(times):.2f} | {min(times):.2f} | {max(times):.2f} | {listed} |")
     shares = [
         own / plain
-        for own, plain in zip(
-            ratios["two workers of Dask"], ratios["two bare processes"], strict=True
-        )
+        for own, plain in zip(ratios["two workers"], ratios["two bare processes"], strict=True)
     ]
     print(
         f"\nShare of the ratio of bare processes that workers reach: median {median(shares):.2f} "
@@ -178,7 +172,7 @@ def main(n_tests: int, n_rows: int, repeats: int) -> list[Figure]:
             for side, times in taken.items()
         ),
         Figure(
-            what=f"{tests}, two workers of Dask",
+            what=f"{tests}, two workers",
             against="of the gain of two bare processes",
             ratios=tuple(shares),
             at_least=0.85,

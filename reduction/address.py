@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["is_address", "secrets_of", "shown_address", "without_secrets"]
-
 _SCHEME = r"[A-Za-z][A-Za-z0-9+.\-]*://"
 _IN_TEXT = re.compile(rf"{_SCHEME}[^\s'\"<>]*")
 _STOPS = ".,:;)"

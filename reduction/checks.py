@@ -13,8 +13,6 @@ from reduction.errors import DataError, SettingsError
 from reduction.record import Bools, Floats
 from reduction.samples.search import any_sample
 
-__all__ = ["as_finite", "as_increasing", "as_positive", "as_same_shape", "as_spread"]
-
 
 def _refuse(name: str, values: Floats, bad: Bools, what: str, needed: str) -> None:
     first = int(np.flatnonzero(bad.ravel())[0])

@@ -11,7 +11,7 @@ from typing import Literal
 
 from reduction.errors import DataError
 from reduction.line.single import SingleTimeCheck
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, read_only_arrays
 from reduction.surface.cautions import Caution
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.screening import ScreeningEffects
@@ -19,10 +19,9 @@ from reduction.surface.select import ReducedSurfaces
 from reduction.surface.stiffness_product import FormQuality, StiffnessForm
 from reduction.uncertainty.product import Component, Contributions
 
-__all__ = ["ExperimentResult", "RunTable", "SharedSurfaces"]
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class RunTable:
     """One row a run and specimen, as measured.
 
@@ -70,7 +69,6 @@ class RunTable:
 
     def __post_init__(self) -> None:
         """Check that every column has one entry a run, and make the arrays read-only."""
-        freeze_arrays(self)
         n_runs = len(self.run)
         columns = {
             "specimen": len(self.specimen),
@@ -95,6 +93,7 @@ class RunTable:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SharedSurfaces:
     """What errors that runs share add to the coefficients of surfaces.
 
@@ -110,12 +109,9 @@ class SharedSurfaces:
     coefficient: Floats
     coefficient_engineering: Floats
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ExperimentResult:
     """What the runs of one experiment say together.
 
@@ -178,7 +174,3 @@ class ExperimentResult:
     notes: tuple[str, ...] = ()
     refusal_status: int = 0
     shared: SharedSurfaces | None = None
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)

@@ -10,8 +10,6 @@ import re
 from collections.abc import Iterable
 from typing import Literal
 
-__all__ = ["SEVERITIES", "Severity", "by_severity", "full_note", "severity_of"]
-
 Severity = Literal["doubt", "refusal", "note", "method"]
 SEVERITIES: tuple[Severity, ...] = ("doubt", "refusal", "note", "method")
 """Most serious first."""

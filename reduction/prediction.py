@@ -10,8 +10,6 @@ from dataclasses import dataclass, field
 from reduction.predict.product import HoseDesign, HoseEvents, HosePrediction
 from reduction.predict.uncertainty import HoseUncertainty
 
-__all__ = ["HelicalLayer", "HosePlan", "HoseTarget", "LayerResponse", "PredictedHose"]
-
 
 @dataclass(frozen=True)
 class HelicalLayer:

@@ -33,8 +33,6 @@ from reduction.strain.model import StrainModel
 from reduction.uncertainty.lag import LagEstimate
 from reduction.uncertainty.product import Contributions, LineSpread
 
-__all__ = ["History", "ReducedTest", "TestDescription"]
-
 
 @dataclass(frozen=True)
 class TestDescription:

@@ -7,32 +7,18 @@ an earlier one said.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from enum import IntFlag
 from math import pi
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reduction.errors import DataError
 
-__all__ = [
-    "UNUSABLE",
-    "Bools",
-    "Floats",
-    "Integers",
-    "Quality",
-    "Record",
-    "Specimen",
-    "SpliceMarks",
-    "StepReadings",
-    "areas_of",
-    "freeze_arrays",
-    "require_shapes",
-]
-
+_T = TypeVar("_T")
 Floats = NDArray[np.float64]
 Integers = NDArray[np.integer[Any]]
 Bools = NDArray[np.bool_]
@@ -61,12 +47,19 @@ UNUSABLE = np.uint16(Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quali
 """Flags of samples that no number may rest on."""
 
 
-def freeze_arrays(product: object) -> None:
-    """Make every array field of a dataclass instance non-writeable."""
-    for item in fields(product):  # type: ignore[arg-type]
-        value = getattr(product, item.name)
-        if isinstance(value, np.ndarray):
-            value.setflags(write=False)
+def read_only_arrays(cls: type[_T]) -> type[_T]:
+    """Make every array of an instance non-writeable when it is made, before its own checks."""
+    check: Callable[[Any], None] | None = cls.__dict__.get("__post_init__")
+
+    def freeze_and_check(self: Any) -> None:
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+        if check is not None:
+            check(self)
+
+    cls.__post_init__ = freeze_and_check  # type: ignore[attr-defined]
+    return cls
 
 
 def require_shapes(product: object, shapes: Mapping[str, tuple[int, ...]], *, of: str) -> None:
@@ -169,6 +162,7 @@ def areas_of(specimens: tuple[Specimen, ...]) -> Floats:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SpliceMarks:
     """Tape readings at the splice toes of one specimen, one row a reading.
 
@@ -198,7 +192,6 @@ class SpliceMarks:
 
     def __post_init__(self) -> None:
         """Check that a row is 0 < near toe < far toe < far thimble."""
-        freeze_arrays(self)
         ordered = (
             (self.near_toe > 0) & (self.near_toe < self.far_toe) & (self.far_toe < self.far_thimble)
         )
@@ -230,6 +223,7 @@ class SpliceMarks:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Record:
     """One test in SI, every row of the log kept.
 
@@ -289,7 +283,6 @@ class Record:
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
-        freeze_arrays(self)
         n_samples = self.time.shape[0]
         shapes = {
             "crosshead_position": (n_samples,),
@@ -306,6 +299,7 @@ class Record:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class StepReadings:
     """Readings of a stepwise test in SI, one row a weight; arrays have shape (n_steps,).
 
@@ -323,7 +317,3 @@ class StepReadings:
     tension_standard_uncertainty: float = float("nan")
     metadata: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)

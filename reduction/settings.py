@@ -11,22 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-__all__ = [
-    "ArchiveSettings",
-    "CycleSettings",
-    "HoldSettings",
-    "Limits",
-    "ModulusSettings",
-    "PhaseSettings",
-    "QualitySettings",
-    "ReductionSettings",
-    "RopeSettings",
-    "SlipSettings",
-    "StoredSamples",
-    "StrainMethod",
-    "StrainSettings",
-]
-
 StrainMethod = Literal[
     "marks",
     "strain-ratio",
@@ -152,7 +136,7 @@ class ArchiveSettings:
     samples: StoredSamples | None = None
     """Every one, or those of selected cycles and outside cycles; None: by the longest record."""
     longest_record: int = 1_000_000
-    """Longest record stored whole; of a longer one a quarter of this at most is stored. [1]"""
+    """Longest record stored whole; of a longer one about a quarter of this at most. [1]"""
 
 
 @dataclass(frozen=True)
@@ -161,7 +145,7 @@ class Limits:
 
     file_size: int = 100_000_000_000
     """Largest file. [byte]"""
-    unpacked_size: int = 4_000_000_000
+    unpacked_size: int = 2_500_000_000
     """Memory that a file which is read whole, or one piece of another, may unpack to. [byte]"""
     line_length: int = 1_000_000
     """Longest line of a text. [byte]"""

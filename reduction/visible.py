@@ -6,8 +6,6 @@ import json
 import re
 import unicodedata
 
-__all__ = ["bare_cell", "cut", "safe_cell", "toml_comment", "toml_text", "visible"]
-
 _LONGEST = 2000  # characters of a part of a message
 _KEPT = "\n\t"
 _FORMULA = re.compile(r"'*[=+\-@\t\r]")

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from reduction.samples.scratch import give_back, let_go
 
-__all__ = ["run_blocks"]
-
 _TOGETHER = 1 << 20  # samples of blocks that run at a time, if one is long
 
 Item = TypeVar("Item")

@@ -117,7 +117,8 @@ def _read(path, layout, limits):
     except ReductionError as error:
         _say(f"refused: {error}")
         sys.exit(error.exit_status)
-    _say(f"read {log.n_rows_read} rows;", *log.notes)
+    loads = sum(log.columns["tension.1"][:30])  # as many rows as every good file has
+    _say(f"read {log.n_rows_read} rows, loads {loads:g};", *log.notes)
 
 
 def _forked(asked, seconds, cwd, environment):
@@ -167,6 +168,8 @@ def _child(asked, cwd, environment):
     except BaseException:
         traceback.print_exc()
     finally:
+        if "reduction.ingest.bounded" in sys.modules:
+            sys.modules["reduction.ingest.bounded"].end_reader()  # its memory counts too
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)

@@ -45,6 +45,11 @@ class Run:
     reports: Path
     done: subprocess.CompletedProcess
 
+    @property
+    def said(self):
+        """What the run printed as one object."""
+        return json.loads(self.done.stdout)
+
 
 def run_campaign(name, folder, *options, **environment):
     done = reduction(

@@ -10,22 +10,73 @@ from visits import browser, visit
 from reduction.cycles.product import Cycles
 
 # an example takes as long as the machine lets it: others may work beside
-hypothesis.settings.register_profile("any machine", deadline=None)
-hypothesis.settings.load_profile("any machine")
+hypothesis.settings.register_profile("some", deadline=None, max_examples=20)
+hypothesis.settings.register_profile("nightly", deadline=None, max_examples=100)
+hypothesis.settings.load_profile("some")
 
 # needs atheris, and is run by hand
 collect_ignore = ["fuzz_readers.py"]
 
-# each takes minutes; the first makes the campaigns that others read, and would wait for
+# each takes a minute or more; the first makes the campaigns that others read, and would wait for
 LONGEST = (
     "browser/test_campaign_pages.py", "docs/test_docs_build.py", "cli/test_run_workers.py",
     "browser/test_design_values.py",
 )  # fmt: skip
+# files in which all is nightly but a few tests, which are slow
+NIGHTLY_BUT = {
+    "cli/test_run_workers.py": ("test_products_have_the_same_bytes_on_any_number_of_workers[2]",),
+    "browser/test_design_values.py": (
+        "test_line_types_are_those_of_the_export",
+        "test_questions_put_into_the_form_are_answered_in_the_same_words",
+        "test_the_page_is_sound_for_everybody[dark-390]",
+    ),
+    "browser/test_explorer.py": ("test_a_setting_is_moved_seen_saved_and_run",),
+}
+# files that run campaigns or start servers over and over
+SLOW_FILES = (
+    "cli/test_catalogue.py", "cli/test_explore.py", "cli/test_hostile_binary.py",
+    "cli/test_run_remote.py", "cli/test_verify.py", "unit/test_batch_cluster.py",
+    "unit/test_catalogue.py", "unit/test_explore_server.py", "unit/test_explore_session.py",
+    "unit/test_remote_transfer.py", "unit/test_report_client.py", "unit/test_verify.py",
+)  # fmt: skip
+SLOW_FOLDERS = ("browser", "docs", "faults", "fuzz")
+# what a whole campaign of the project or a browser is needed for
+SLOW_FIXTURES = {"synthetic", "static", "nylon_campaign", "hose_campaign", "campaigns", "browser"}
 
 
-def pytest_collection_modifyitems(items):
-    """The longest files come first, so that no process is left alone with one at the end."""
+def is_nightly(config):
+    return config.option.markexpr == "nightly"
+
+
+def pytest_configure(config):
+    """Before the tests are imported: each of them asks how many examples it has."""
+    if is_nightly(config):
+        hypothesis.settings.load_profile("nightly")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config, items):
+    """Mark by folder and fixture, and put the longest files first.
+
+    A property is tried with some examples by default and with all of them nightly. No process is
+    left alone with a long file at the end.
+    """
     tests = Path(__file__).parent
+    slow_places = {tests / name for name in (*SLOW_FOLDERS, *SLOW_FILES)}
+    nightly_but = {tests / name: kept for name, kept in NIGHTLY_BUT.items()}
+    for item in items:
+        is_property = getattr(getattr(item, "obj", None), "is_hypothesis_test", False)
+        if is_nightly(config) and is_property:
+            item.add_marker(pytest.mark.nightly)
+        if item.path in nightly_but:
+            is_kept = item.name in nightly_but[item.path]
+            item.add_marker(pytest.mark.slow if is_kept else pytest.mark.nightly)
+        if (
+            item.get_closest_marker("nightly")
+            or SLOW_FIXTURES & set(getattr(item, "fixturenames", ()))
+            or not slow_places.isdisjoint((item.path, *item.path.parents))
+        ):
+            item.add_marker(pytest.mark.slow)
     places = {tests / name: place for place, name in enumerate(LONGEST)}
     items.sort(key=lambda item: places.get(item.path, len(LONGEST)))
 

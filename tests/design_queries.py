@@ -1,20 +1,19 @@
 """Questions to the design-value page, and what the command line shows for them."""
 
+import json
 import math
 import re
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
 
 from reduction.cli import lookup as command
-from reduction.cli.export import line_of
 from reduction.cli.lookuppoints import Wanted
 from reduction.errors import ReductionError
-from reduction.export.moordyn import moordyn_files
 from reduction.units import display_unit
 
-LONG_NUMBER = re.compile(r"(?<![\w.])-?(?=[\d.]{13})\d+\.\d+(?:e[-+]\d+)?(?=[ |\n])")
-"""One of more than twelve signs, as only the rows of a line type and of a table have them."""
+NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
 class Told:
@@ -59,11 +58,51 @@ def shown_by_command(question, lines, monkeypatch):
     heads = [str(column.header).replace("\\[", "[") for column in table.columns]
     cells = [next(iter(column.cells)) for column in table.columns]
     headline, *said = output.texts
+    of = output.document
     return {
         "headline": headline,
         "row": [list(pair) for pair in zip(heads, cells, strict=True)],
         "said": said,
-    }
+        "values": [
+            of["value"], *of["interval"], *of["surface_interval"], *of["line_interval"],
+            of["peak_share"], of["minimum_share"],
+        ],
+    }  # fmt: skip
+
+
+def same_answer(shown, wanted):
+    """Numbers are one to a millionth; texts are one, but for a half of the last digit."""
+    if shown.keys() != wanted.keys():
+        return False
+    if "refused" in wanted:
+        return same_text(shown["refused"], wanted["refused"])
+    size = abs(wanted["values"][0] or 0)
+    return (
+        all(
+            one == other
+            if one is None or other is None
+            else math.isclose(one, other, rel_tol=1e-6, abs_tol=1e-6 * size)
+            for one, other in zip(shown["values"], wanted["values"], strict=True)
+        )
+        and same_text(shown["headline"], wanted["headline"])
+        and same_text(json.dumps(shown["row"]), json.dumps(wanted["row"]))
+        and same_text(json.dumps(shown["said"]), json.dumps(wanted["said"]))
+    )
+
+
+def same_text(shown, wanted):
+    """Texts are one, but for numbers that differ by one in their last digit."""
+    ours, theirs = NUMBER.findall(shown), NUMBER.findall(wanted)
+    return NUMBER.sub("#", shown) == NUMBER.sub("#", wanted) and all(
+        one == other or abs(Decimal(one) - Decimal(other)) <= last_place(other)
+        for one, other in zip(ours, theirs, strict=True)
+    )
+
+
+def last_place(text):
+    """One in the last digit of a number that is written so."""
+    power = Decimal(text).as_tuple().exponent
+    return Decimal(1).scaleb(power)
 
 
 def levels_of(line, quantity, branch):
@@ -161,97 +200,3 @@ def page_lines(processed, lines_of):
         own = lines_of(str(folder))
         found += [(f"{folder.name}/{line.name}", line, own) for line in own]
     return found
-
-
-SHOWN_LINES = """LINES.map((line) => ({
-  key: line.key, curves: Object.keys(line.export), is_surface: Object.keys(line.surfaces).length > 0,
-  file: Object.values(line.export)[0].file ?? "none",
-  archive: line.campaign ? [line.campaign, line.test, line.specimen] : null,
-}))"""
-"""What `types_of` needs of the lines of a page."""
-
-
-def types_of(shown, sources, count, seed):
-    """Random line types: `shown` are the lines of a page, `sources` the published ones by name."""
-    chance = np.random.default_rng(seed)
-    # surfaces of a campaign have no name on the command line of an export
-    known = [one for one in shown if not (one["archive"] and one["is_surface"])]
-    of_reports = [one for one in known if one["key"] in sources]
-    found = []
-    for number in range(count):
-        among = known if number % 3 == 0 else of_reports
-        one = among[chance.integers(len(among))]
-        forms = (
-            ["table", "static-dynamic", "load-dependent"] if one["key"] in sources else ["table"]
-        )
-        form = str(chance.choice(forms))
-        found.append(
-            {
-                "line": one["key"], "archive": one["archive"], "file": one["file"], "form": form,
-                "curve": str(chance.choice(one["curves"])), "flag": bool(chance.integers(2)),
-                "levels": {} if form == "table" else _cycle(sources[one["key"]], chance),
-                "stated": {
-                    "diameter": chance.choice([None, 0.0131]),
-                    "linear_density": chance.choice([None, 0.1, 0.12345, 1.3, 0.01]),
-                    "wet_linear_density": chance.choice([None, None, 0.0123, 0.2]),
-                },
-            }
-        )  # fmt: skip
-    return found
-
-
-def _cycle(line, chance):
-    """Levels of a cycle, mostly inside what was tested."""
-    surface = next(iter(line.surfaces.values()), None)
-    low, high = (
-        ([0.1, 500, 300], [0.5, 2000, 900]) if surface is None else (surface.low, surface.high)
-    )
-    is_share = np.isfinite(line.rated_break_strength) and chance.integers(2)
-    levels = {}
-    for name, least, most in zip(
-        ("frequency", "mean_tension", "tension_amplitude"), low, high, strict=True
-    ):
-        value = least + chance.choice([0.0, 0.5, 1.0, *chance.uniform(size=3)]) * (most - least)
-        unit, factor = ("Hz", 1.0) if name == "frequency" else ("N", 1.0)
-        if is_share and name != "frequency":
-            unit, factor = "%RBS", 100 / line.rated_break_strength
-        levels[name] = [float(f"{factor * value:.4g}"), unit]
-    return levels
-
-
-def type_by_command(question, processed):
-    """Files of `reduction export --to moordyn`, or the refusal, for a line type of the page."""
-    stated = {name: value for name, value in question["stated"].items() if value is not None}
-    levels = {name: level_text(*given) for name, given in question["levels"].items()}
-    of_test = question["archive"]
-    source = of_test and str(Path(processed) / of_test[0] / f"{of_test[1]}.nc")
-    try:
-        line = line_of(
-            [source or question["line"]],
-            question["curve"] or None,
-            precedence=None,
-            specimen=of_test[2] if of_test else None,
-            stated=stated,
-            levels=levels,
-            extrapolate="flag" if question["flag"] else "refuse",
-        )
-        files = moordyn_files(line, question["file"], form=question["form"])
-    except ReductionError as error:
-        return {"refused": str(error)}
-    return {"files": [[name or f"{question['file']}.dat", text] for name, text in files.items()]}
-
-
-def same_text(shown, wanted):
-    """Texts are one, but for the last digits of numbers that are written with fifteen.
-
-    Those are compared as numbers, and a difference that is none has no sign: sums of products end
-    in other bits on other processors.
-    """
-    shown, wanted = (text.replace("-0.0 percent", "+0.0 percent") for text in (shown, wanted))
-    if shown == wanted:
-        return True
-    ours, theirs = LONG_NUMBER.findall(shown), LONG_NUMBER.findall(wanted)
-    return LONG_NUMBER.sub("#", shown) == LONG_NUMBER.sub("#", wanted) and all(
-        math.isclose(float(one), float(other), rel_tol=1e-9)
-        for one, other in zip(ours, theirs, strict=True)
-    )

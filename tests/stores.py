@@ -6,18 +6,17 @@ from contextlib import contextmanager
 from hashlib import sha256
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from io import BytesIO
-from pathlib import Path
 
 import fsspec
 from fsspec.registry import _registry
 
 
 class ObjectStore(fsspec.AbstractFileSystem):
-    """What S3 is to a program: objects are put whole, listed and read; none is renamed or appended.
+    """What S3 is to a program that reads: objects by their keys.
 
     ``closed`` are keys that nobody may touch, ``cut`` says after how many bytes reading one
     breaks off, ``moving`` are keys whose content is another one after each read, ``short``
-    those of which the last byte is lost on the way here or there.
+    those of which the last byte is lost on the way here.
     """
 
     protocol = "s3"
@@ -27,11 +26,10 @@ class ObjectStore(fsspec.AbstractFileSystem):
     cut: dict = {}  # noqa: RUF012
     moving: set = set()  # noqa: RUF012
     short: set = set()  # noqa: RUF012
-    written: list = []  # noqa: RUF012
 
     @classmethod
     def empty(cls):
-        for held in (cls.objects, cls.closed, cls.cut, cls.moving, cls.short, cls.written):
+        for held in (cls.objects, cls.closed, cls.cut, cls.moving, cls.short):
             held.clear()
 
     def _check(self, path):
@@ -50,21 +48,9 @@ class ObjectStore(fsspec.AbstractFileSystem):
             return {"name": path, "size": 0, "type": "directory"}
         raise FileNotFoundError(path)
 
-    def ls(self, path, detail=True, **kwargs):
-        path = self._strip_protocol(path)
-        self._check(path)
-        below = {
-            f"{path}/{name.removeprefix(f'{path}/').partition('/')[0]}"
-            for name in self.objects
-            if name.startswith(f"{path}/")
-        }
-        if not below:
-            raise FileNotFoundError(path)
-        return [self.info(name) if detail else name for name in sorted(below)]
-
     def _open(self, path, mode="rb", **kwargs):
         if mode != "rb":
-            raise NotImplementedError("objects are put whole")
+            raise NotImplementedError("nothing is written")
         self._check(path)
         data = self.objects[path]
         if path in self.moving:
@@ -73,35 +59,10 @@ class ObjectStore(fsspec.AbstractFileSystem):
             data = data[:-1]
         return _Cut(data, self.cut.get(path))
 
-    def put_file(self, lpath, rpath, **kwargs):
-        path = self._strip_protocol(rpath)
-        self._check(path)
-        data = Path(lpath).read_bytes()
-        self.objects[path] = data[:-1] if path in self.short else data
-        self.written.append(path)
+    def ls(self, path, detail=True, **kwargs):
+        raise NotImplementedError("a file is asked for by its name")
 
-    def pipe_file(self, path, value, mode="overwrite", **kwargs):
-        path = self._strip_protocol(path)
-        self._check(path)
-        if mode == "create" and path in self.objects:
-            raise FileExistsError
-        self.objects[path] = value
-
-    def _rm(self, path):
-        self._check(path)
-        del self.objects[path]
-
-    def cp_file(self, path1, path2, **kwargs):
-        raise NotImplementedError("no renaming here")
-
-    def created(self, path):
-        raise NotImplementedError
-
-    def modified(self, path):
-        raise NotImplementedError
-
-    def sign(self, path, expiration=100, **kwargs):
-        raise NotImplementedError
+    cp_file = _rm = created = modified = sign = ls
 
 
 class _Cut(BytesIO):
@@ -132,19 +93,6 @@ def object_store():
         _registry.pop("s3")
         if before is not None:
             _registry["s3"] = before
-
-
-@contextmanager
-def memory_store():
-    """The store of fsspec at memory://, empty."""
-    system = fsspec.filesystem("memory")
-    system.store.clear()
-    system.pseudo_dirs[:] = [""]
-    try:
-        yield system
-    finally:
-        system.store.clear()
-        system.pseudo_dirs[:] = [""]
 
 
 class Server(ThreadingHTTPServer):

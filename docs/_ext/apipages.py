@@ -11,6 +11,7 @@ import importlib
 import inspect
 import pkgutil
 from collections.abc import Iterator
+from types import ModuleType
 
 __all__ = ["pages", "public_modules"]
 
@@ -40,8 +41,8 @@ DOORS = {
     "reduction.archive.budget": "uncertainty budgets out of an archive",
     "reduction.batch.run": "a campaign from its logs to its products",
     "reduction.campaign.load": "campaign.toml",
-    "reduction.catalogue.index": "the index over campaigns",
-    "reduction.catalogue.query": "questions to the index",
+    "reduction.catalogue.file": "the catalogues of campaigns",
+    "reduction.catalogue.query": "questions to them",
     "reduction.errors": "errors and their exit statuses",
     "reduction.experiment": "an experiment in one piece",
     "reduction.ingest.layout": "declared layouts of logs",
@@ -63,7 +64,16 @@ DOORS = {
 def _of_room(room: str) -> list[str]:
     package = importlib.import_module(f"reduction.{room}")
     found = [info.name for info in pkgutil.iter_modules(package.__path__, f"reduction.{room}.")]
-    return [name for name in found if getattr(importlib.import_module(name), "__all__", ())]
+    return [name for name in found if _offers(importlib.import_module(name))]
+
+
+def _offers(module: ModuleType) -> bool:
+    """Whether a module defines a function, a class or a constant without an underscore."""
+    return any(
+        not name.startswith("_")
+        and (getattr(thing, "__module__", None) == module.__name__ or name.isupper())
+        for name, thing in vars(module).items()
+    )
 
 
 def public_modules() -> Iterator[str]:

@@ -2,26 +2,24 @@
 A question to all campaigns
 ===========================
 
-The catalogue is an index over every archive below a folder: which tests, under which conditions, with
-which numbers.
+Each campaign has a catalogue beside its archives: which tests, under which conditions, with which numbers. A
+question goes to those of all campaigns.
 """
 
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from reduction.catalogue.changes import changes_since
+from reduction.catalogue.file import load_catalogue
 from reduction.catalogue.query import Query, answer
-from reduction.catalogue.refresh import refresh
 
-processed = Path("processed")
-index = refresh(None, changes_since(None, processed), processed / "catalogue.parquet").index
+catalogue = load_catalogue(Path("processed"))
 
 # %%
 # Every spring constant of a cyclic test, of whatever campaign. The answer is an Arrow table.
 
 found = answer(
-    index, Query(names={"test_kind": ("cyclic",)}, quantity=("apparent_spring_constant",))
+    catalogue, Query(names={"test_kind": ("cyclic",)}, quantity=("apparent_spring_constant",))
 )
 rows = found.select(
     ["campaign", "test", "specimen", "test_mean_strain", "test_apparent_spring_constant"]

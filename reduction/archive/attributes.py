@@ -6,6 +6,7 @@ Several raw files stand one a line, and so do the stages in ``history``.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 from collections.abc import Mapping, Sequence
@@ -15,8 +16,6 @@ from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError
 from reduction.product import ReducedTest
 from reduction.provenance import Origin, Source, Step
-
-__all__ = ["CONVENTIONS", "PartName", "global_attributes", "part_attributes"]
 
 PartName = Literal["surfaces", "outcomes", "predictions", "comparisons", "change_in_length"]
 
@@ -78,6 +77,7 @@ def global_attributes(
             "raw_metadata": "" if test.record is None else _as_json(test.record.metadata),
             "stored_samples": "" if test.record is None else samples,
             "settings": test.settings_json,
+            "key": key_of(test.settings_json),
         },
         steps=test.stage_lines,
         version=version,
@@ -118,11 +118,17 @@ def part_attributes(part: PartName, names: Sequence[str] = (), *, origin: Origin
             **_raw_files(origin.sources),
             "uncertainty_propagation": _PROPAGATION,
             "settings": origin.settings_json,
+            "key": key_of(origin.settings_json),
         },
         steps=origin.steps,
         version=origin.version,
         command=origin.command,
     )
+
+
+def key_of(settings_json: str) -> str:
+    """What a product is known by beside its raw files and version: SHA-256 of its settings."""
+    return hashlib.sha256(settings_json.encode()).hexdigest()
 
 
 def _raw_files(sources: Sequence[Source]) -> dict[str, str]:

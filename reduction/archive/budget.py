@@ -23,12 +23,6 @@ from reduction.record import Floats
 from reduction.uncertainty.budget import Budget, budget_of
 from reduction.uncertainty.product import Component
 
-__all__ = [
-    "all_budgets",
-    "budget_from_archive",
-    "quantities_with_budget",
-]
-
 _CONTRIBUTION = "_uncertainty_contribution"
 _RANDOM = "_random_standard_uncertainty"
 _U = "_standard_uncertainty"
@@ -189,23 +183,11 @@ def _why_there_is_none(archive: xr.Dataset, place: Mapping[str, int]) -> str:
 
 
 def _no_budget(archive: xr.Dataset, quantity: str, known: Sequence[str]) -> SettingsError:
-    """Why a quantity has no budget: not there, not shared, or kept without its parts."""
+    """Why a quantity has no budget: not there, or not shared."""
     of_archive = next(
         (one for pattern in _NAMES if (one := pattern.format(quantity)) in archive), None
     )
-    if of_archive is None:
-        why, listed = "is not in this archive", known
-    elif known:
-        why, listed = "has no shared part", known
-    else:
-        hint = "Reduce it again: the archive keeps no error apart, as those of earlier versions."
-        is_known = f"{of_archive}{_U}" in archive
-        return SettingsError(
-            f"{quantity} has no budget in this archive",
-            found=f"{of_archive}{_U} as a whole" if is_known else "no uncertainty of it",
-            needed="an archive that keeps what its numbers share",
-            hint=hint,
-        )
+    why = "is not in this archive" if of_archive is None else "has no shared part"
     return SettingsError(
-        f"{quantity} {why}", needed="one of " + (", ".join(listed) or "none: no error is shared")
+        f"{quantity} {why}", needed="one of " + (", ".join(known) or "none: no error is shared")
     )

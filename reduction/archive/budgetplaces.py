@@ -13,17 +13,6 @@ from reduction.moduli.interpolation import curve_at
 from reduction.record import Floats
 from reduction.units import parse_quantity
 
-__all__ = [
-    "ON_AN_AXIS",
-    "find_place",
-    "label_of",
-    "parse_place",
-    "place_name",
-    "read_at",
-    "where_known",
-    "words_of",
-]
-
 # what a user calls a dimension; no quantity has two of one name
 _CALLED = {"branch_name": "branch", "strain_bin": "strain", "first_loading_strain_bin": "strain",
            "ratio_strain_bin": "strain", "tension_grid": "tension"}  # fmt: skip

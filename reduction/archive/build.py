@@ -15,8 +15,6 @@ from reduction.archive.variable import Variable
 from reduction.errors import ArchiveError
 from reduction.samples.scratch import let_go
 
-__all__ = ["build_dataset"]
-
 _COMPRESSED_FROM = 4096  # values; below it a chunk and its index cost more than they save
 _TRIED = 16384  # values by which it is told how the others compress
 _CHUNK = 65536  # values; half a megabyte, which a cycle of a long record costs to read

@@ -21,10 +21,6 @@ from reduction.archive.open import Opener, reading
 from reduction.archive.products import archives_of_tests
 from reduction.lookup.product import LineSource
 
-__all__ = [
-    "archives_of_lines", "lines_of_archive", "lines_of_open_archive", "names_apart", "told_apart",
-]  # fmt: skip
-
 _SURFACES = "surfaces.nc"
 
 

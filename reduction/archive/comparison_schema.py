@@ -35,8 +35,6 @@ from reduction.archive.reasons import (
 from reduction.archive.shared import COMPONENT, FREEDOM
 from reduction.archive.variable import Variable, companion, count, flag, label, measured, stated
 
-__all__ = ["COMPARISON_SCHEMA"]
-
 _C = ("comparison",)
 _P = ("comparison", "comparison_point")
 _V = ("comparison", "curve")

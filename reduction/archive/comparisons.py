@@ -22,8 +22,6 @@ from reduction.record import Floats
 from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.vocabulary import quantity
 
-__all__ = ["NamedComparison", "comparisons_to_dataset"]
-
 _OF_CURVE = {
     "tension_bias": "bias",
     "tension_rms": "rms",

@@ -11,8 +11,6 @@ from reduction.archive.stored import stored
 from reduction.compare.shared import SharedErrors, constant_errors
 from reduction.record import Bools, Floats
 
-__all__ = ["curve_errors_of"]
-
 _OF_STRAIN = frozenset(
     {"position_gain", "position_offset", "strain_calibration", "strain_gain", "splice_method"}
 )
@@ -28,10 +26,6 @@ _OF_ALL_SAMPLES = (
     "stiffness",
 )  # fmt: skip
 """What may be stated of a test that is in its curve: not the noise of a reading."""
-_OLD = (
-    "the archive of the test is of a version that kept no shared errors: what is stated of its "
-    "channels counts as zeros that all samples share; reduce it again for more"
-)
 _NO_CURVE = (
     "the archive of the test holds no curve with what its instruments may be wrong by (a specimen "
     "without a diameter has none): what is stated of load and crosshead is not in the comparison"
@@ -73,8 +67,6 @@ def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tupl
         if there.any():
             return _errors(archive, archive[axis].values, tension, of_error, slope, there), ()
     stated = stated_errors_of(archive)
-    if stated is None:
-        return _of_old(archive, place), (_OLD,)
     has_curve = any(
         curve in archive and np.isfinite(archive[curve].values[place]).any()
         for curve, *_ in _CURVES
@@ -115,22 +107,6 @@ def _of_length(archive: xr.Dataset, place: int) -> SharedErrors:
     gauge = _number(archive, "strain_gauge_length", place)
     spread = _number(archive, "strain_gauge_length_standard_uncertainty", place)
     return constant_errors(strain_gain=spread / gauge if gauge > 0 and spread > 0 else 0.0)
-
-
-def _of_old(archive: xr.Dataset, place: int) -> SharedErrors:
-    """Zeros of load and strain from what stands in the archive of its channels."""
-    gauge = _number(archive, "strain_gauge_length", place)
-    offset = _number(archive, "strain_standard_uncertainty", place)
-    of_length = 0.0
-    if gauge > 0:
-        position = "crosshead_position"
-        if "crosshead_displacement" in archive:
-            position = "crosshead_displacement"
-        offset = _number(archive, f"{position}_standard_uncertainty", place) / gauge
-        of_length = _number(archive, "strain_gauge_length_standard_uncertainty", place) / gauge
-    tension = _number(archive, "tension_standard_uncertainty", place)
-    known = np.nan_to_num([tension, offset, of_length]).tolist()
-    return constant_errors(tension_offset=known[0], strain_offset=known[1], strain_gain=known[2])
 
 
 def _number(archive: xr.Dataset, name: str, place: int) -> float:

@@ -17,17 +17,6 @@ from reduction.moduli.product import ElastomerFit, ModulusCurves, Ratio, Segment
 from reduction.record import Floats
 from reduction.vocabulary import BRANCH_NAMES
 
-__all__ = [
-    "CURVE_ROWS",
-    "ELASTOMER_ROWS",
-    "curve_values",
-    "elastomer_values",
-    "first_loading_values",
-    "ratio_values",
-    "segment_values",
-    "stress_at_strain_values",
-]
-
 _S = ("specimen",)
 _B = ("specimen", "branch_name", "strain_bin")
 _F = ("specimen", "branch_name", "first_loading_strain_bin")

@@ -47,8 +47,6 @@ from reduction.archive.stepwise import stepwise_values
 from reduction.archive.values import Values
 from reduction.product import ReducedTest
 
-__all__ = ["to_dataset"]
-
 
 def to_dataset(
     test: ReducedTest, *, version: str, command: str, kept: KeptSamples | None = None

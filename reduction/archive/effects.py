@@ -12,8 +12,6 @@ from reduction.record import Floats
 from reduction.surface.confounding import alias_matrix, half_normal_coordinates
 from reduction.surface.screening import ScreeningEffects
 
-__all__ = ["alias_values", "effect_values"]
-
 
 def effect_values(effects: ScreeningEffects, response_names: Sequence[str]) -> Values:
     """Return the effects of the factors and then of the dummies, which are not tested.

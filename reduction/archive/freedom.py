@@ -11,6 +11,7 @@ References
 from __future__ import annotations
 
 import json
+from functools import cache
 
 import numpy as np
 import xarray as xr
@@ -19,8 +20,6 @@ from reduction.archive.shared import COMPONENT, FREEDOM
 from reduction.archive.stored import stored
 from reduction.record import Floats
 from reduction.uncertainty.combine import effective_degrees_of_freedom
-
-__all__ = ["cycles_averaged", "effective_freedom", "random_freedom"]
 
 _RANDOM = "_random_standard_uncertainty"
 _CONTRIBUTION = "_uncertainty_contribution"
@@ -76,13 +75,19 @@ def cycles_averaged(archive: xr.Dataset, name: str) -> Floats:
     >>> print(cycles_averaged(cycles, "test_dynamic_modulus"))
     [2]
     """
-    settings = json.loads(str(archive.attrs.get("settings") or "{}"))
-    break_in = settings.get("reduction", {}).get("cycles", {}).get("break_in_cycles", 0)
+    break_in = _break_in_cycles(str(archive.attrs.get("settings") or "{}"))
     for single in (name.removeprefix("test_"), _SINGLE):
         if single in archive and archive.variables[single].dims == ("specimen", "cycle"):
             known = np.isfinite(archive.variables[single].values[:, break_in:])
             return np.asarray(known.sum(axis=1))
     return np.asarray(max(archive.sizes.get("cycle", 0) - break_in, 0))
+
+
+@cache
+def _break_in_cycles(settings: str) -> int:
+    """How many first cycles are in no mean, by the settings of an archive."""
+    stated = json.loads(settings).get("reduction", {}).get("cycles", {})
+    return int(stated.get("break_in_cycles", 0))
 
 
 def random_freedom(archive: xr.Dataset, name: str) -> Floats:

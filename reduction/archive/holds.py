@@ -14,8 +14,6 @@ from reduction.holds.product import HoldResult, hold_numbers
 from reduction.phases.standstill import Standstills
 from reduction.record import Floats
 
-__all__ = ["HOLD_ROWS", "hold_values", "standstill_values"]
-
 HOLD_ROWS: tuple[Variable, ...] = tuple(
     chain(
         count("hold_number", ("hold",)),

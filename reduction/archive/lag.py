@@ -8,8 +8,6 @@ from reduction.archive.values import Values
 from reduction.archive.variable import Variable, count, flag, measured
 from reduction.uncertainty.lag import LAG_REFUSALS, LagEstimate
 
-__all__ = ["LAG_ROWS", "lag_values"]
-
 _S = ("specimen",)
 
 LAG_ROWS: tuple[Variable, ...] = tuple(

@@ -21,15 +21,6 @@ from reduction.line.quasistatic import (
 from reduction.record import Floats, Specimen
 from reduction.uncertainty.product import LINE_METHODS, LineSpread
 
-__all__ = [
-    "LINE_REFUSALS",
-    "LINE_ROWS",
-    "line_values",
-    "pull_values",
-    "random_of_line",
-    "spread_of_line_values",
-]
-
 LINE_REFUSALS = {
     "given": 0,
     "quasi_static_unknown": 1,

@@ -14,8 +14,6 @@ from reduction.lookup.line import Branch
 from reduction.lookup.product import LineCurve
 from reduction.record import Bools
 
-__all__ = ["CURVES", "curves_of_specimen"]
-
 _OVER_STRAIN = ("tangent_modulus", "branch_tension")
 _OVER_TENSION = {
     "quasi_static_spring_constant": ("quasi_static_spring_constant", "mean_tension"),
@@ -85,10 +83,7 @@ def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
 
 
 def _uncertainty(dataset: xr.Dataset, name: str, place: tuple[int, ...], seen: Bools) -> _Parts:
-    """Uncertainty of a curve where it was seen, by its parts; nothing where the archive has none.
-
-    Without parts, as in older archives, all of it counts as of this curve alone.
-    """
+    """Uncertainty of a curve where it was seen, by its parts; nothing where it has none."""
     if f"{name}_standard_uncertainty" not in dataset:
         return {}
     spread = np.asarray(

@@ -21,14 +21,6 @@ from reduction.surface.tested import greatest_leverage
 from reduction.uncertainty.product import Component
 from reduction.vocabulary import RESPONSES, quantity
 
-__all__ = [
-    "Facts",
-    "facts_of_specimens",
-    "line_source_of_experiment",
-    "line_source_of_test",
-    "specimens_of",
-]
-
 _SCALES = ("log_", "box_cox_", "")
 """A surface on a scale that was asked for stands before the one of the quantity itself."""
 _TEXTS = {

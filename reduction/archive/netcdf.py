@@ -19,8 +19,6 @@ from numpy.typing import NDArray
 from reduction.samples.blocks import sample_blocks
 from reduction.samples.scratch import let_go
 
-__all__ = ["write_netcdf"]
-
 _BLOCK = 1 << 20  # values of the last dimension at a time: whole chunks
 _CACHE = 1 << 19  # bytes of the largest chunk: each is written once
 
@@ -74,7 +72,10 @@ def _defined(file: netCDF4.Dataset, name: str, variable: xr.Variable) -> netCDF4
         for key in ("zlib", "complevel", "shuffle", "chunksizes")
         if key in encoding
     }
-    place = file.createVariable(name, kind, dims, fill_value=encoding.get("_FillValue"), **options)
+    # with the sum of each chunk the library refuses values that are not as they were written
+    place = file.createVariable(
+        name, kind, dims, fill_value=encoding.get("_FillValue"), fletcher32=bool(dims), **options
+    )
     if options:
         place.set_var_chunk_cache(_CACHE)
     place.set_auto_maskandscale(False)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from reduction.archive.values import Values, texts
 from reduction.product import ReducedTest
 
-__all__ = ["note_values"]
-
 
 def note_values(test: ReducedTest) -> Values:
     """Return the notes in the order of the stages, by stage and text."""

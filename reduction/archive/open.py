@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Container, Hashable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Literal
 
+import h5py  # type: ignore[import-untyped]
 import netCDF4
+import numpy as np
 import xarray as xr
 
-from reduction.archive.seal import check_seal
-from reduction.archive.sound import check_form, check_stored
+from reduction.archive.comparison_schema import COMPARISON_SCHEMA
+from reduction.archive.outcomes import OUTCOME_SCHEMA
+from reduction.archive.prediction_schema import PREDICTION_SCHEMA
+from reduction.archive.properties import PROPERTY_SCHEMA
+from reduction.archive.schema import schema_of
+from reduction.archive.surface_schema import SURFACE_SCHEMA
+from reduction.archive.variable import Variable
 from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError, SettingsError
-
-__all__ = ["Chunks", "Opener", "failing_reads", "open_archive", "reading"]
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
 """Values of a chunk, or by dimension, as `xarray.open_dataset` takes them."""
@@ -30,9 +37,27 @@ _CACHE = 1 << 20
 64 MB hold all that was ever read of a test, beside what is made of it."""
 
 
+_MOST = 64  # archives that are kept in memory, each of which takes 1.5 MB beside its values
+_LARGEST = 8_000_000  # bytes of values of one, unpacked
+_ROOM = 64_000_000  # and of all
 _OF_LIBRARY = re.compile(r"(\[Errno -\d+\] )?NetCDF: ")
-_OF_DISK = re.compile(r"HDF error|HDF5 attribute")
-_AGAIN = "Check the disk; take a copy that is whole, or reduce the campaign again."
+_MOST_PACKED = 1100  # times that deflated values can be larger than the file
+_LONGEST_SETTINGS = 20_000_000
+_TEXTS = (
+    "id", "campaign", "test", "test_kind", "title", "raw_file", "raw_file_sha256", "raw_file_bytes",
+    "raw_metadata", "settings", "key", "history", "command", "software_version", "synthetic",
+)  # fmt: skip
+_AGAIN = "Check the disk; take a copy that is whole, or remove it and run the campaign again."
+
+
+# by the dimension that its kind alone has; a reduced test compares specimens, too
+_OF_CAMPAIGN: dict[str, dict[str, Variable]] = {
+    "experiment": SURFACE_SCHEMA,
+    "outcome": OUTCOME_SCHEMA,
+    "comparison_point": COMPARISON_SCHEMA,
+    "hose": PREDICTION_SCHEMA,
+    "property": PROPERTY_SCHEMA,
+}
 
 
 @contextmanager
@@ -56,6 +81,40 @@ def reading(path: Path) -> Iterator[xr.Dataset]:
     """
     with failing_reads(str(path)), open_archive(path) as dataset:
         yield dataset
+
+
+def read_once() -> Opener:
+    """Give an opener that reads small archives whole, once, and gives them again from memory.
+
+    To open an archive takes longer than to read all of a small one, since the library looks at each
+    of its 350 variables; the steps of a run read each five times.
+
+    Returns
+    -------
+    opener : Opener
+        As `reading`; of a small archive it gives a copy in which variables may be added, and
+        values may not be changed.  A file that is another one by now is read anew.
+    """
+    kept: dict[Path, tuple[tuple[int, ...], xr.Dataset]] = {}
+
+    @contextmanager
+    def opener(path: Path) -> Iterator[xr.Dataset]:
+        found = path.stat() if path.is_file() else None
+        stamp = () if found is None else (found.st_mtime_ns, found.st_size, found.st_ino)
+        if kept.get(path, (None,))[0] != stamp:
+            kept.pop(path, None)
+            with reading(path) as archive:
+                # what is kept is what was kept first: pass after pass over many finds some of them
+                room = _ROOM - sum(other.nbytes for _, other in kept.values())
+                if len(kept) >= _MOST or archive.nbytes > min(_LARGEST, room):
+                    yield archive
+                    return
+                for variable in archive.load().variables.values():
+                    variable.values.flags.writeable = False
+                kept[path] = stamp, archive
+        yield kept[path][1].copy()
+
+    return opener
 
 
 @contextmanager
@@ -83,20 +142,15 @@ def failing_reads(what: str) -> Iterator[None]:
     ...     raise RuntimeError("NetCDF: HDF error")
     Traceback (most recent call last):
     reduction.errors.ArchiveError: processed/nylon/T-1.nc cannot be read; found NetCDF: HDF
-    error. Check the disk; take a copy that is whole, or reduce the campaign again.
+    error. Check the disk; take a copy that is whole, or remove it and run the campaign again.
     """
     try:
         yield
     except (AttributeError, OSError, RuntimeError) as error:
         if not _OF_LIBRARY.match(str(error)):
             raise
-        raise _unreadable(what, error) from error
-
-
-def _unreadable(what: str, error: Exception) -> ArchiveError:
-    return ArchiveError(
-        f"{what} cannot be read", found=_OF_LIBRARY.sub("NetCDF: ", _words(error)), hint=_AGAIN
-    )
+        found = _OF_LIBRARY.sub("NetCDF: ", _words(error))
+        raise ArchiveError(f"{what} cannot be read", found=found, hint=_AGAIN) from error
 
 
 def _words(error: Exception) -> str:
@@ -128,10 +182,8 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
     """
     if not path.is_file():
         raise ArchiveError(f"there is no archive {path}", hint="Run the campaign first.")
-    is_sealed = False
     try:
-        is_sealed = check_seal(path)
-        check_stored(path)
+        _refuse(path, _fault_stored(path))
         with _small_cache():
             dataset = xr.open_dataset(
                 path, engine="netcdf4", decode_times=False, decode_timedelta=False
@@ -146,18 +198,13 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
             needed="a name in the character set of this process",
             hint="Set PYTHONUTF8=1, or take a locale of UTF-8, or rename the folder.",
         ) from error
-    except (AttributeError, OSError, RuntimeError, ValueError, TypeError) as error:
+    except (AttributeError, KeyError, OSError, RuntimeError, ValueError, TypeError) as error:
         # a TypeError of a scale that is text
-        if isinstance(error, OSError) and (error.errno or 0) > 0:  # those of the library are below
-            raise ArchiveError(
-                f"{path} cannot be read", found=error.strerror or str(error)
-            ) from error
-        if _OF_DISK.search(str(error)) and is_sealed:
-            raise _unreadable(str(path), error) from error
         raise ArchiveError(
-            f"{path} is not a netCDF file",
+            f"{path} cannot be read as a netCDF file",
             found=_words(error),
             needed="an archive of a reduced test",
+            hint=_AGAIN,
         ) from error
     found = dataset.attrs.get("schema_version")
     if not isinstance(found, str) or found != SCHEMA_VERSION:
@@ -169,7 +216,7 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
             hint="Reduce the test again with this version.",
         )
     try:
-        check_form(path, dataset)
+        _refuse(path, _fault_of_form(dataset))
     except ArchiveError:
         dataset.close()
         raise
@@ -178,6 +225,82 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
     # what is known to be an archive is opened again, so that a fault is one of the chunks
     dataset.close()
     return _open_in_chunks(path, chunks)
+
+
+def _refuse(path: Path, fault: str | None) -> None:
+    if fault is not None:
+        raise ArchiveError(
+            f"{path} is not made as an archive is",
+            found=fault,
+            needed="the variables and attributes that a run writes",
+            hint="Take the archive as a run wrote it, or reduce the campaign again.",
+        )
+
+
+def _fault_stored(path: Path) -> str | None:
+    """Values that lie in other files, or are more than the file can hold."""
+    size = path.stat().st_size
+    with h5py.File(path, "r", locking=False) as file:
+        for raw in file.id:
+            name = raw.decode(errors="replace")[:80]
+            if file.id.links.get_info(raw).type != h5py.h5l.TYPE_HARD:
+                return f"a link '{name}'"
+            held = h5py.h5o.open(file.id, raw)
+            if not isinstance(held, h5py.h5d.DatasetID):
+                return f"'{name}', which is no variable"
+            made = held.get_create_plist()
+            if made.get_layout() == h5py.h5d.VIRTUAL or made.get_external_count():
+                return f"a variable '{name}' whose values lie in other files"
+            n_bytes = math.prod(held.shape or ()) * held.get_type().get_size()
+            if n_bytes > _MOST_PACKED * size:
+                return f"a variable '{name}' of {n_bytes:,} bytes in a file of {size:,}"
+    return None
+
+
+def _fault_of_form(dataset: xr.Dataset) -> str | None:
+    """Variables and attributes of another kind than archives have them; no values are read."""
+    for key in _TEXTS:
+        if not isinstance(dataset.attrs.get(key, ""), str):
+            return f"attribute {key} that is no text"
+    is_of_a_test = "diameter" in dataset.variables and not _OF_CAMPAIGN.keys() & set(dataset.dims)
+    if is_of_a_test and not dataset.attrs.get("test"):
+        return "no attribute test"
+    settings = dataset.attrs.get("settings", "")
+    if len(settings) > _LONGEST_SETTINGS:
+        return f"settings of {len(settings):,} characters"
+    if settings and not _is_json_object(settings):
+        return "settings that are no JSON object"
+    for label, index in dataset.indexes.items():  # in memory already
+        values = index.to_numpy()
+        if values.dtype.kind == "f" and not np.all(np.isfinite(values)):
+            return f"coordinate {label} that is not finite"
+    schema = schema_of_file(dataset.dims)
+    for name, variable in dataset.variables.items():
+        row = schema.get(str(name))
+        if row is None:  # of another program, which may add to a file
+            continue
+        if {"scale_factor", "add_offset"} & set(variable.encoding):
+            return f"{name} that is packed"
+        if variable.dims != row.dims:
+            return f"{name} along {', '.join(map(str, variable.dims)) or 'nothing'}"
+        if variable.dtype.kind not in ("SUOT" if row.is_text else "fiu"):
+            return f"{name} of type {np.dtype(variable.dtype)}"
+    return None
+
+
+def _is_json_object(text: str) -> bool:
+    try:
+        return isinstance(json.loads(text), dict)
+    except (RecursionError, ValueError):
+        return False
+
+
+def schema_of_file(dimensions: Container[Hashable]) -> Mapping[str, Variable]:
+    """What a file may hold, by the dimension that its kind alone has."""
+    for dimension, schema in _OF_CAMPAIGN.items():
+        if dimension in dimensions:
+            return schema
+    return schema_of(is_stepwise="step" in dimensions)
 
 
 @contextmanager

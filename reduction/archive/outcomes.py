@@ -24,8 +24,6 @@ from reduction.errors import ArchiveError
 from reduction.outcomes.product import Outcome, OutcomeQuantity, Place
 from reduction.provenance import Origin
 
-__all__ = ["OUTCOME_SCHEMA", "outcomes_of_dataset", "outcomes_to_dataset"]
-
 _ALONG = ("outcome",)
 _QUANTITIES: tuple[OutcomeQuantity, ...] = get_args(OutcomeQuantity)
 _PLACES: tuple[Place, ...] = get_args(Place)

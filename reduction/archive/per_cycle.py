@@ -17,16 +17,6 @@ from reduction.moduli.product import (
 )
 from reduction.vocabulary import BRANCH_NAMES
 
-__all__ = [
-    "amplitude_values",
-    "cycle_values",
-    "end_modulus_values",
-    "identity_values",
-    "loop_values",
-    "slip_values",
-    "trend_values",
-]
-
 
 def cycle_values(cycles: Cycles, *, control: str) -> Values:
     """Return the cycles and their branches; ``control`` gives band and rate their unit."""

@@ -10,20 +10,7 @@ from reduction.archive.stored import stored
 from reduction.record import Floats
 from reduction.uncertainty.product import Contributions
 
-__all__ = ["keeps_shared", "parts_of"]
-
 _ROWS = "_uncertainty_contribution"
-_CURVES = (
-    "branch_tension",
-    "branch_tension_first_loading",
-    "quasi_static_strain",
-    "secant_modulus",
-)
-
-
-def keeps_shared(dataset: xr.Dataset) -> bool:
-    """Whether an archive keeps shared errors of its curves apart from what is their own."""
-    return any(f"{name}{_ROWS}" in dataset for name in _CURVES)
 
 
 def parts_of(

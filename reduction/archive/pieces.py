@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from reduction.archive.pieceparts import keeps_shared, parts_of
+from reduction.archive.pieceparts import parts_of
 from reduction.archive.steppieces import pieces_of_weights
 from reduction.archive.strainmodel import strain_model_of
 from reduction.errors import DataError, SettingsError
@@ -15,8 +15,6 @@ from reduction.lookup.pieces import CurvePiece, PieceBranch, pieces_of_branches
 from reduction.lookup.source import PieceSource
 from reduction.lookup.staticpiece import piece_of_pull
 from reduction.strain.model import StrainModel
-
-__all__ = ["pieces_of_test", "source_of_tests", "specimens_of"]
 
 _SAME = 1e-6
 """Relative difference of two diameters that are one."""
@@ -125,7 +123,6 @@ def source_of_tests(
     pieces: list[CurvePiece] = []
     piece_sources: list[str] = []
     notes = [f"of other specimens: {', '.join(others)}"] if others else []
-    alone: list[str] = []
     for one in own:
         test = str(one.attrs.get("test", "")) if one_campaign else _id(one)
         whole = str(one.attrs.get("part_of", ""))
@@ -137,7 +134,6 @@ def source_of_tests(
             notes.append(f"{test} ({one.attrs.get('test_kind', 'unknown')}) has no {branch} curve")
             continue
         pieces += found
-        alone += [] if keeps_shared(one) else [test]
         piece_sources += [_said(one)] * len(found)
         place = specimens_of(one).index(specimen)
         slips = int(one["n_slips"].values[place]) if "n_slips" in one else 0
@@ -148,11 +144,6 @@ def source_of_tests(
             f"no test of '{specimen}' gives a {branch} curve of tension over strain",
             found=", ".join(f"{_id(one)} ({one.attrs.get('test_kind', '')})" for one in own),
             needed="cycles, a first rise, weights or a slow pull",
-        )
-    if alone:
-        notes.append(
-            f"{', '.join(alone)}: what is shared with other tests, as a load cell, is not kept "
-            "apart: all that is known of the uncertainty counts as that of the piece alone"
         )
     models = [strain_model_of(one, specimens_of(one).index(specimen)) for one in own]
     known = [model for model in models if model is not None]

@@ -25,8 +25,6 @@ from itertools import chain
 from reduction.archive.reasons import PART, SETTING
 from reduction.archive.variable import Variable, count, label, mask, measured, stated
 
-__all__ = ["HOSE_STATES", "PREDICTION_SCHEMA"]
-
 HOSE_STATES = {"slack": 1, "broken": 2, "jammed": 4, "bore_too_small": 8}
 """Masks: cords carry nothing, are broken, touch; the bore is below its limit."""
 

@@ -18,8 +18,6 @@ from reduction.prediction import PredictedHose
 from reduction.provenance import Origin
 from reduction.record import Floats
 
-__all__ = ["EVENTS", "predictions_to_dataset"]
-
 EVENTS = ("deepest_slack", "pick_up", "working", "cord_break")
 _STATES = {
     "slack": "is_slack",

@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-__all__ = ["OF_CAMPAIGN", "archives_in", "archives_of_tests"]
-
 OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_length")
 """Archives of a whole campaign, by their file names; no test may be called so."""
 

@@ -19,8 +19,6 @@ from reduction.line.step import RopeStep
 from reduction.line.tensile import TensilePull
 from reduction.record import Floats, Specimen
 
-__all__ = ["ROPE_ROWS", "rope_values"]
-
 _S = ("specimen",)
 _P = ("held_pair",)
 _T = ("held_pair", "held_pair_point")

@@ -8,7 +8,7 @@ kept, and ``property_remark`` says why.  Where errors are shared, each is an ent
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import chain
 
 import numpy as np
@@ -26,15 +26,9 @@ from reduction.record import Floats
 from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.uncertainty.product import Component
 
-__all__ = ["PROPERTY_SCHEMA", "properties_to_dataset"]
-
 _ALONG = ("property",)
 _U = "_standard_uncertainty"
 _OF_STEP = "as the step has it"
-_SILENT = (
-    "no uncertainty: what {0} shares with the other tests, as a load cell, is not kept in its "
-    "archive, and it would count as exact: reduce it again"
-)
 _MEASURED = ("property_stiffness", "property_stiffness_over_strength", "property_strain")
 
 PROPERTY_SCHEMA: dict[str, Variable] = {
@@ -69,7 +63,6 @@ def properties_to_dataset(
     component: Mapping[tuple[str, str], Sequence[Component]],
     *,
     origin: Origin,
-    silent: Collection[tuple[str, str]] = (),
 ) -> xr.Dataset:
     """Bring properties into the form of the archive; no file is touched.
 
@@ -81,9 +74,6 @@ def properties_to_dataset(
         Shared errors that the contributions of the properties of a step are of.
     origin : Origin
         The campaign, and the archives of the tests that they are from.
-    silent : collection of (specimen, step)
-        Steps whose archives do not keep what they share beside others that do: their properties
-        would count as exact, and have no uncertainty.
 
     Returns
     -------
@@ -100,7 +90,6 @@ def properties_to_dataset(
     if not listed:
         raise ArchiveError("there are no properties to keep", needed="one or more")
     rows = [one for _, one in listed]
-    is_silent = [(specimen, one.step) in silent for specimen, one in listed]
     is_stiffness = np.array([one.is_stiffness for one in rows])
     values: Values = {
         "property": np.arange(1, len(rows) + 1),
@@ -110,9 +99,7 @@ def properties_to_dataset(
         "property_low_tension": numbers([one.low_tension for one in rows]),
         "property_high_tension": numbers([one.high_tension for one in rows]),
         "property_reference_time": numbers([one.reference_time for one in rows]),
-        "property_remark": texts(
-            [_remark(one, lost) for one, lost in zip(rows, is_silent, strict=True)]
-        ),
+        "property_remark": texts([one.reason for one in rows]),
     }
     of_rows = [component.get((specimen, one.step), ()) for specimen, one in listed]
     axis = tuple(sorted({error for own in of_rows for error in own}))
@@ -132,7 +119,7 @@ def properties_to_dataset(
     freedom = numbers([one.degrees_of_freedom for one in rows])
     for name, (number, spread, contribution) in parts.items():
         is_given = np.isfinite(number)
-        own = np.where(is_given & ~np.array(is_silent), contribution, np.nan)
+        own = np.where(is_given, contribution, np.nan)
         values[name] = number
         values[f"{name}{_U}"] = combined_standard_uncertainty(
             own, np.where(is_given, spread, np.nan)
@@ -148,14 +135,6 @@ def properties_to_dataset(
         PROPERTY_SCHEMA,
         attributes=part_attributes("change_in_length", list(found), origin=origin),
     )
-
-
-def _remark(one: ChangeInLength, is_silent: bool) -> str:
-    """Why there is no number, or what is not in it; and why it has no uncertainty."""
-    said = [one.reason] if one.reason else []
-    if is_silent and np.isfinite(one.value):
-        said.append(_SILENT.format(one.step))
-    return "; ".join(said)
 
 
 def _on_axis(

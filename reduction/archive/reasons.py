@@ -5,28 +5,6 @@ A reason stands in the archive beside the variable, as `reduction.archive.variab
 
 from __future__ import annotations
 
-__all__ = [
-    "AXIS",
-    "BOUND",
-    "CHECK",
-    "CLOCK",
-    "CRITERION",
-    "MOVEMENT",
-    "NO_YES",
-    "OF_MARKS",
-    "OF_UNCERTAINTY",
-    "PART",
-    "READING",
-    "SEE_PER_DECADE",
-    "SETTING",
-    "SPREAD",
-    "STATED",
-    "STATISTIC",
-    "STRENGTH",
-    "TWO_METHODS",
-    "WHERE_IT_STOOD",
-]
-
 READING = "a reading: its uncertainty is that of the channel"
 CLOCK = "a reading of the clock"
 BOUND = "bound"

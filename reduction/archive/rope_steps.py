@@ -26,8 +26,6 @@ from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import error_field
 from reduction.uncertainty.product import Component, InstrumentErrors
 
-__all__ = ["CHANGES_LENGTH", "ArchivedStep", "step_of_archive"]
-
 _HELD = ("quasi-static stiffness", "creep")
 CHANGES_LENGTH = ("bedding-in", "dynamic stiffness", *_HELD)
 """Steps that a change-in-length property can come from."""

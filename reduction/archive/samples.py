@@ -16,8 +16,6 @@ from reduction.samples.blocks import full_like, sample_blocks
 from reduction.samples.scratch import empty_like
 from reduction.strain.stress import nominal_stress
 
-__all__ = ["row_account", "sample_values"]
-
 
 def sample_values(test: ReducedTest, record: Record, kept: KeptSamples | None = None) -> Values:
     """Return everything that stands along ``sample``, with the declared uncertainties.

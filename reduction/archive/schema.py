@@ -89,13 +89,6 @@ from reduction.archive.variable import Variable, count, flag, label, mask, measu
 from reduction.record import Quality
 from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES
 
-__all__ = [
-    "COEFFICIENTS",
-    "QUALITY_MASKS",
-    "SCHEMA",
-    "schema_of",
-]
-
 QUALITY_MASKS = {(mask_.name or "").lower(): int(mask_) for mask_ in Quality}
 
 COEFFICIENTS = {

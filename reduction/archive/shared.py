@@ -22,19 +22,6 @@ from reduction.samples.scratch import beside, let_go
 from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.uncertainty.product import Component, Contributions
 
-__all__ = [
-    "COMPONENT",
-    "FREEDOM",
-    "SHARED",
-    "SHARED_OF_CHANNELS",
-    "SHARED_OF_STEPS",
-    "SHARED_ROWS",
-    "component_values",
-    "components_of",
-    "shared_contributions",
-    "with_shared",
-]
-
 COMPONENT = "uncertainty_component"
 FREEDOM = "uncertainty_source_degrees_of_freedom"
 """Of each shared error; there where one of them is from a few readings."""

@@ -14,8 +14,6 @@ from reduction.record import Floats, Specimen
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.product import Contributions
 
-__all__ = ["history_values", "random_of_section", "specimen_values", "strain_model_values"]
-
 
 def specimen_values(specimens: Sequence[Specimen]) -> Values:
     """Return what is known of each specimen before the test."""

@@ -10,12 +10,10 @@ import xarray as xr
 from reduction.errors import ArchiveError
 from reduction.uncertainty.stated import StatedErrors
 
-__all__ = ["says_what_is_shared", "stated_errors_of"]
-
 _ONE_CELL = "has_one_load_cell"
 
 
-def stated_errors_of(archive: xr.Dataset) -> StatedErrors | None:
+def stated_errors_of(archive: xr.Dataset) -> StatedErrors:
     """Standard uncertainties with which a test was reduced.
 
     Parameters
@@ -25,8 +23,8 @@ def stated_errors_of(archive: xr.Dataset) -> StatedErrors | None:
 
     Returns
     -------
-    errors : StatedErrors or None
-        Zero where nothing was stated; None where the archive is older than such statements.
+    errors : StatedErrors
+        Zero where nothing was stated.
 
     Raises
     ------
@@ -38,9 +36,7 @@ def stated_errors_of(archive: xr.Dataset) -> StatedErrors | None:
     A key that this version does not know is of a later one, and none of its errors.
     """
     settings = json.loads(str(archive.attrs.get("settings") or "{}"))
-    kept = settings.get("uncertainty")
-    if kept is None:
-        return None
+    kept = settings.get("uncertainty") or {}
     one_cell = kept.get(_ONE_CELL, False)
     if not isinstance(one_cell, bool):
         raise _fault(_ONE_CELL, one_cell, "true or false")
@@ -51,19 +47,6 @@ def stated_errors_of(archive: xr.Dataset) -> StatedErrors | None:
             raise _fault(name, value, "a number in SI")
         known[name] = float(value)
     return StatedErrors(has_one_load_cell=one_cell, **known)
-
-
-def says_what_is_shared(archive: xr.Dataset) -> bool:
-    """Whether an archive of a test says what its numbers share with others, be it nothing.
-
-    Archives of earlier versions do not; one without contributions of which something is stated, or
-    that does not say what is stated, is such a one.
-    """
-    if any(str(name).endswith("_uncertainty_contribution") for name in archive.variables):
-        return True
-    settings = json.loads(str(archive.attrs.get("settings") or "{}"))
-    stated = settings.get("uncertainty")
-    return stated is not None and not any(stated.values())
 
 
 def _fault(name: str, value: object, needed: str) -> ArchiveError:

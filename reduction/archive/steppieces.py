@@ -15,8 +15,6 @@ from reduction.lookup.staticpiece import mean_piece, piece_of_steps
 from reduction.moduli.stepwise import StepwiseResult
 from reduction.record import Floats
 
-__all__ = ["pieces_of_weights"]
-
 
 def pieces_of_weights(
     dataset: xr.Dataset, branch: PieceBranch, name: str

@@ -13,8 +13,6 @@ from reduction.archive.variable import Variable, companion, flag, label, mask, m
 from reduction.moduli.stepwise import StepwiseResult
 from reduction.vocabulary import BRANCH_VALUES
 
-__all__ = ["STEPWISE", "STEP_MASKS", "STEP_ROWS", "stepwise_values"]
-
 STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
 
 STEP_ROWS: tuple[Variable, ...] = tuple(

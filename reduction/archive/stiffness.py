@@ -9,8 +9,6 @@ import numpy as np
 from reduction.archive.values import Values, pad, texts
 from reduction.surface.stiffness_product import FormQuality, StiffnessForm
 
-__all__ = ["stiffness_values"]
-
 _QUALITY = (
     "n_coefficients",
     "sigma",

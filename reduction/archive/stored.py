@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import xarray as xr
 
-__all__ = ["stored"]
-
 
 def stored(dataset: xr.Dataset, name: str) -> xr.Variable | None:
     """Give a variable of an archive, or nothing.

@@ -11,8 +11,6 @@ from reduction.archive.schema import COEFFICIENTS
 from reduction.settings import StrainMethod
 from reduction.strain.model import StrainModel
 
-__all__ = ["strain_model_of"]
-
 
 def strain_model_of(dataset: xr.Dataset, place: int) -> StrainModel | None:
     """Method and coefficients of one specimen's strain; marks and covariance stay in the file.

@@ -14,8 +14,6 @@ from reduction.surface.product import ResponseSurfaces
 from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.uncertainty.surfacepoints import with_shared_at_points
 
-__all__ = ["both_parts", "point_values", "ridge_values"]
-
 _CONFIDENCE = 0.95
 _RADIUS = np.linspace(0.0, 1.0, 11)
 

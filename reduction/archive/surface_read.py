@@ -20,8 +20,6 @@ from reduction.surface.parts import Anova, BlockEffects, Canonical, Diagnostics,
 from reduction.surface.product import LACK_OF_FIT_REASONS, STATIONARY_REASONS, ResponseSurfaces
 from reduction.vocabulary import RESPONSES, SURFACE_NAMES
 
-__all__ = ["surface_names", "surfaces_of"]
-
 _SPREAD = "_standard_uncertainty"
 _LABEL_OF_DIM = {
     "factor": "factor_name",

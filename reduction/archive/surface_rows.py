@@ -10,14 +10,6 @@ from reduction.archive.shared import COMPONENT
 from reduction.archive.variable import Variable, companion, flag, label, measured, stated
 from reduction.surface.product import STATIONARY_KINDS
 
-__all__ = [
-    "COUNT",
-    "FROM_SURFACE",
-    "LEVELS",
-    "NOT_EVALUATED",
-    "rows_of_response",
-]
-
 _STATIONARY_FLAGS = {name or "none": code for code, name in STATIONARY_KINDS.items()}
 
 COUNT = "count"

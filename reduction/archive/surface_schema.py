@@ -56,8 +56,6 @@ from reduction.archive.surface_rows import (
 from reduction.archive.variable import Variable, count, label, measured, stated
 from reduction.vocabulary import RESPONSES, SURFACE_NAMES
 
-__all__ = ["SURFACE_SCHEMA"]
-
 _E = ("experiment",)
 _T = ("experiment", "term")
 _F = ("experiment", "factor")

@@ -21,8 +21,6 @@ from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.units import combined_unit
 from reduction.vocabulary import SURFACE_NAMES
 
-__all__ = ["experiment_values"]
-
 _RUN_COLUMNS = (
     "frequency",
     "mean_tension",
@@ -132,7 +130,6 @@ def _run_values(runs: RunTable, response_names: Sequence[str]) -> Values:
         random = runs.response_standard_uncertainty[index]
         values[f"{name}_measured_standard_uncertainty"] = random
         if runs.shared is not None:
-            # one that does not keep what it shares would count as exact; its budget is its own
             rows = runs.shared.values[name]
             values |= {
                 f"{name}_measured_standard_uncertainty": combined_standard_uncertainty(

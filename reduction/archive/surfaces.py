@@ -19,8 +19,6 @@ from reduction.errors import ArchiveError
 from reduction.experiment import ExperimentResult
 from reduction.provenance import Origin
 
-__all__ = ["surfaces_to_dataset"]
-
 
 def surfaces_to_dataset(results: Sequence[ExperimentResult], *, origin: Origin) -> xr.Dataset:
     """Bring experiments into the form of the archive; no file is touched.

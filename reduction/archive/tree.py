@@ -2,50 +2,37 @@
 
 from __future__ import annotations
 
-import atexit
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from contextlib import ExitStack
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
-from reduction.address import shown_address
 from reduction.archive.open import Chunks, open_archive
 from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
 from reduction.errors import ArchiveError, SettingsError
-from reduction.remote.mirror import copied
-from reduction.remote.place import allowed
-from reduction.remote.scratch import renamed, scratch_folder
-
-__all__ = ["open_campaign"]
 
 # what an archive says of itself: of a campaign with one archive it is not said either
 _OF_ONE_ARCHIVE = frozenset(
     {
         "id", "test", "test_kind", "test_order", "raw_file", "raw_file_sha256", "raw_file_bytes",
-        "raw_metadata", "stored_samples", "settings", "history",
+        "raw_metadata", "stored_samples", "settings", "key", "history",
     }
 )  # fmt: skip
 
 
-def open_campaign(
-    path: str | Path, *, chunks: Chunks | None = None, allow_remote: bool = False
-) -> xr.DataTree | xr.Dataset:
+def open_campaign(path: str | Path, *, chunks: Chunks | None = None) -> xr.DataTree | xr.Dataset:
     """Open a processed campaign, or one of its archives; nothing but labels is read.
 
     Parameters
     ----------
     path : str or pathlib.Path
-        ``processed/<campaign>``, or one archive in it; an address on the net as text.
+        ``processed/<campaign>``, or one archive in it.
     chunks : int or mapping of str to int or "auto", optional
         Passed on to Dask, if it is installed: values of a chunk by dimension, such as
         ``{"sample": 655360}`` or ``{"sample": "auto"}``; ``{}`` for chunks as they are stored.
         Without it variables are no Dask arrays, and are read when they are asked for all the same.
-    allow_remote : bool
-        Whether archives are copied from an address on the net. The copies are gone when what
-        was opened is closed, or Python ends.
 
     Returns
     -------
@@ -59,10 +46,10 @@ def open_campaign(
     ------
     ArchiveError
         If there is nothing of that name, no archive in the folder, a file that is no archive of
-        this version, the archives are of more than one campaign, or cannot be copied.
+        this version, or the archives are of more than one campaign.
     SettingsError
         If Dask is wanted and not installed, refuses the chunks, or no archive has a dimension
-        of the name; if it is an address and addresses are not allowed.
+        of the name.
 
     Examples
     --------
@@ -72,34 +59,13 @@ def open_campaign(
     reduction.errors.ArchiveError: there is no processed campaign processed/none; needed
     the folder of a campaign in processed/, or an archive. Run the campaign first.
     """
-    if not allowed(str(path), allow_remote, what="the campaign"):
-        return _opened(Path(path), chunks)
-    names: dict[str, str] = {}
-    with ExitStack() as scratch, renamed(names):
-        copy = copied(str(path), scratch.enter_context(scratch_folder()))
-        names[str(copy)] = shown_address(str(path))
-        kept = ExitStack()
-        campaign = _opened(copy, chunks, at_end=kept.close)
-        kept.push(scratch.pop_all())
-    atexit.register(kept.close)  # of one that is never closed
-    return campaign
-
-
-def _opened(
-    path: Path, chunks: Chunks | None, at_end: Callable[[], None] | None = None
-) -> xr.DataTree | xr.Dataset:
-    """Open what lies on this machine; ``at_end`` is called when all of it is closed."""
+    path = Path(path)
     if path.is_file():
         with ExitStack() as opened:
             archive = opened.enter_context(open_archive(path, chunks=chunks))
             _refuse_unknown(chunks, [archive])
             opened.pop_all()
-        if at_end is None:
-            return archive
-        # its own way to close it stays with the archive
-        again = archive.copy()
-        again.set_close(partial(_in_turn, archive.close, at_end))
-        return again
+        return archive
     if not path.is_dir():
         raise ArchiveError(
             f"there is no processed campaign {path.as_posix()}",
@@ -121,15 +87,8 @@ def _opened(
         # each file is now closed by its node
         for name, one in nodes.items():
             tree[name].set_close(one.close)
-        if at_end is not None:
-            tree[name].set_close(partial(_in_turn, one.close, at_end))
         opened.pop_all()
     return tree
-
-
-def _in_turn(*calls: Callable[[], None]) -> None:
-    for call in calls:
-        call()
 
 
 def _without_archives(folder: Path) -> ArchiveError:

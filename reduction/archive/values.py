@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction.record import Floats
 
-__all__ = ["Values", "numbers", "pad", "pad_texts", "texts"]
-
 Values = dict[str, NDArray[Any]]
 """Name of the schema to array; dimensions and attributes are the schema's business."""
 

@@ -11,19 +11,6 @@ from dataclasses import dataclass, field
 from reduction.errors import ArchiveError
 from reduction.vocabulary import QUANTITIES
 
-__all__ = [
-    "SUFFIXES",
-    "TEXT",
-    "Variable",
-    "companion",
-    "count",
-    "flag",
-    "label",
-    "mask",
-    "measured",
-    "stated",
-]
-
 TEXT = "U"
 SUFFIXES = {
     "_random_standard_uncertainty": (

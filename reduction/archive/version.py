@@ -2,7 +2,5 @@
 
 from __future__ import annotations
 
-__all__ = ["SCHEMA_VERSION"]
-
 SCHEMA_VERSION = "1"
 """Changes when a name, dimension or meaning changes; additions leave it as it is."""

@@ -14,8 +14,6 @@ from pathlib import Path
 
 from reduction.errors import ArchiveError
 
-__all__ = ["remove_abandoned", "take_away", "whole_file"]
-
 # of disks on a network that know nothing of folders that are flushed
 _NO_SUCH_CALL = (errno.EINVAL, errno.ENOTSUP, errno.ENOSYS)
 

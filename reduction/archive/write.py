@@ -1,4 +1,4 @@
-"""Writing products: an archive is checked before it gets its name, so a bad one is never seen."""
+"""Writing products, each whole or not at all."""
 
 from __future__ import annotations
 
@@ -10,17 +10,13 @@ from pathlib import Path
 
 import xarray as xr
 
-from reduction.archive.check import check_archive
 from reduction.archive.netcdf import write_netcdf
-from reduction.archive.seal import write_seal
 from reduction.archive.whole import remove_abandoned, whole_file
 from reduction.errors import ArchiveError
 
-__all__ = ["appended_whole", "write_archive", "write_whole"]
-
 
 def write_archive(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset of `reduction.archive.dataset.to_dataset` as one netCDF file, and seal it.
+    """Write a dataset of `reduction.archive.dataset.to_dataset` as one netCDF file.
 
     Parameters
     ----------
@@ -32,13 +28,11 @@ def write_archive(dataset: xr.Dataset, path: Path) -> None:
     Raises
     ------
     ArchiveError
-        If the disk refuses, or the file that was written breaks a rule of CF.
+        If the disk refuses.
     """
     try:
         with whole_file(path) as part:
             write_netcdf(dataset, part)
-            _refuse_faults(part, path.name)
-            write_seal(part)
     except ArchiveError:
         raise
     except (OSError, RuntimeError) as error:
@@ -103,18 +97,6 @@ def _append(part: Path, path: Path, text: str) -> None:
             file.write(text)
     except OSError as error:
         raise _not_written(path, error) from error
-
-
-def _refuse_faults(part: Path, name: str) -> None:
-    findings = check_archive(part)
-    if findings:
-        raise ArchiveError(
-            f"{name} does not follow CF and is not kept",
-            found="; ".join(findings[:5]),
-            needed="no finding",
-            hint="This is a defect of the software; the file before is kept.",
-            n_findings=len(findings),
-        )
 
 
 def _not_written(path: Path, error: Exception) -> ArchiveError:

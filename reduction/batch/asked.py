@@ -7,8 +7,6 @@ from pathlib import Path
 from reduction.archive.products import OF_CAMPAIGN
 from reduction.campaign.plan import Campaign
 
-__all__ = ["parts_asked", "products_asked"]
-
 
 def parts_asked(campaign: Campaign) -> set[str]:
     """Names of the archives of the whole campaign that its campaign.toml asks for."""

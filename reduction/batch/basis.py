@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from reduction.batch.describe import settings_json
 from reduction.batch.history import Past, history_of, history_remarks
 from reduction.batch.pulls import origins_of, pulls_of
-from reduction.batch.standing import failed_beside
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.line.product import SlowPull
@@ -16,15 +15,12 @@ from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.product import History
 from reduction.strain.model import StrainModel
 
-__all__ = ["Basis", "basis_of"]
-
 
 @dataclass(frozen=True)
 class Basis:
     """What a test's product rests on now; ``settings`` is all of it as JSON.
 
-    ``remarks`` is what the campaign leaves open about the test, ``failed`` the other tests
-    of its specimens that failed.
+    ``remarks`` is what the campaign leaves open about the test.
     """
 
     history: History | None
@@ -33,7 +29,6 @@ class Basis:
     pull_origins: tuple[PullOrigin | None, ...]
     settings: str
     remarks: tuple[str, ...]
-    failed: tuple[Survey, ...]
 
 
 def basis_of(
@@ -42,7 +37,6 @@ def basis_of(
     past: Past,
     *,
     pulls: Mapping[tuple[str, str], SlowPull],
-    failed: Sequence[str],
 ) -> Basis:
     """Gather what one test rests on.
 
@@ -56,8 +50,6 @@ def basis_of(
         All tests of the campaign, with their models.
     pulls : mapping of (test, specimen) to SlowPull
         Every slow pull that an experiment names.
-    failed : sequence of str
-        Ids of the tests that failed in the first pass.
 
     Returns
     -------
@@ -76,5 +68,4 @@ def basis_of(
         pull_origins=origins,
         settings=settings_json(campaign, survey, of_test, history, of_run, origins),
         remarks=history_remarks(survey, past, campaign),
-        failed=failed_beside(survey, past.surveys, failed),
     )

@@ -14,8 +14,6 @@ from reduction.campaign.plan import Campaign
 from reduction.errors import SettingsError
 from reduction.strain.model import StrainModel
 
-__all__ = ["check_campaign", "selected_surveys"]
-
 
 def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
     """The surveys that were asked for; a test's name stands for all its steps."""

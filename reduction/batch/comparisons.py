@@ -20,6 +20,7 @@ from reduction.archive.whole import take_away
 from reduction.archive.write import write_archive
 from reduction.batch.part import PartStatus
 from reduction.batch.predictions import settings_of_hose
+from reduction.batch.standing import NOT_REDUCED
 from reduction.campaign.plan import Campaign, ComparisonPlan
 from reduction.errors import DataError, ReductionError
 from reduction.ingest.source import hash_source
@@ -28,15 +29,13 @@ from reduction.prediction import HosePlan
 from reduction.provenance import Origin, Source, Step
 from reduction.record import Integers
 
-__all__ = ["compare_archive", "write_comparisons", "write_named"]
-
 
 def write_comparisons(
     campaign: Campaign,
     folder: Path,
     *,
     failed: Collection[str],
-    waiting: Mapping[str, str],
+    waiting: Collection[str],
     command: str,
     opener: Opener = reading,
 ) -> list[PartStatus]:
@@ -50,8 +49,8 @@ def write_comparisons(
         Of its products.
     failed : collection of str
         Tests whose archive, where there is one, is of an earlier run and not used.
-    waiting : mapping of str to str
-        Tests that were not asked for and have to be reduced first, with the reason.
+    waiting : collection of str
+        Tests that were not asked for and have to be reduced first.
     command : str
         For the product's ``command`` attribute, without paths.
     opener : Opener
@@ -77,7 +76,7 @@ def write_comparisons(
     for plan in campaign.comparisons.values():
         path = folder / f"{plan.measured}.nc"
         if plan.measured in waiting:
-            text = f"not compared: {plan.measured} is {waiting[plan.measured]}{kept}"
+            text = f"not compared: {plan.measured} is {NOT_REDUCED}{kept}"
             statuses.append(PartStatus(plan.name, "no_work", 0, text))
             continue
         try:

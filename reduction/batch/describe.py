@@ -18,8 +18,6 @@ from reduction.product import History, TestDescription
 from reduction.record import Floats
 from reduction.strain.model import StrainModel
 
-__all__ = ["describe", "settings_json"]
-
 
 def describe(campaign: Campaign, survey: Survey) -> TestDescription:
     """What the laboratory kept about a test."""

@@ -16,7 +16,7 @@ from reduction.archive.write import write_archive
 from reduction.batch.part import PartStatus
 from reduction.batch.planned import same_logs
 from reduction.batch.runrows import LINE, MEASURED, Row, rows_of_run
-from reduction.batch.waiting import waiting_in_words
+from reduction.batch.standing import waiting_in_words
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.errors import FitError
 from reduction.experiment import ExperimentResult, RunTable
@@ -31,8 +31,6 @@ from reduction.surface.levels import FactorLevels
 from reduction.uncertainty.product import Contributions
 from reduction.vocabulary import quantity
 
-__all__ = ["fit_experiments", "fit_rows", "settings_of_experiments", "write_experiments"]
-
 _UNITS = {"temperature": "K", "diameter": "m"}
 # notes of which the message tells the first: without that part there is little to read
 _MAIN_PART = ("refused: response surfaces", "refused: effects", "refused: surface of")
@@ -43,7 +41,7 @@ def write_experiments(
     folder: Path,
     *,
     failed: Collection[str],
-    waiting: Mapping[str, str],
+    waiting: Collection[str],
     raw_sha256: Mapping[str, str],
     command: str,
     opener: Opener = reading,
@@ -58,8 +56,8 @@ def write_experiments(
         Of the campaign's archives, of which one is made.
     failed : collection of str
         Tests whose archive, where there is one, is of an earlier run and not used.
-    waiting : mapping of str to str
-        Runs that were not asked for and have to be reduced first, with the reason.
+    waiting : collection of str
+        Runs that were not asked for and have to be reduced first.
     raw_sha256 : mapping of str to str
         Hashes of the raw files by run.
     command : str
@@ -272,19 +270,14 @@ def fit_rows(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
 
 
 def _shared(plan: ExperimentPlan, rows: list[Row]) -> Contributions | None:
-    """What errors that runs share add to their responses, and to the levels as reached.
-
-    Not a number, where the archive of a run does not keep it beside those of others that do.
-    """
+    """What errors that runs share add to their responses, and to the levels as reached."""
     given = [row.get("shared", {}) for row in rows]
-    missing = np.array([np.nan if row.get("keeps_shared") is False else 0.0 for row in rows])
     component = tuple(sorted({one for row in given for own in row.values() for one in own}))
     if not component:
         return None
     names = dict.fromkeys((*MEASURED, *plan.responses))
     tables = {
         name: np.array([[row.get(name, {}).get(one, 0.0) for row in given] for one in component])
-        + missing
         for name in names
     }
     values = {name: tables[name] for name in plan.responses}

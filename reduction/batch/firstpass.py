@@ -6,14 +6,11 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
-from reduction.batch.executor import Executor, Serial, Task
+from reduction.batch.executor import Task, Workers, work_on
 from reduction.batch.lock import RunLock
 from reduction.batch.progress import Progress, Silent
 from reduction.batch.survey import Survey, survey_log
 from reduction.campaign.plan import Campaign
-from reduction.samples.scratch import is_on_disk
-
-__all__ = ["FirstPass", "survey_campaign", "with_record"]
 
 # records larger than this together are read again rather than kept between the passes
 KEPT_SAMPLES = 10_000_000
@@ -24,17 +21,17 @@ class FirstPass:
     """What the tests of a campaign hold, without their samples; and the records that are kept.
 
     ``surveys`` are in the order of the campaign; a test that failed carries its error.  ``kept``
-    holds, by log, the surveys with their records, where the log was read.
+    holds, by log, the surveys with their records, where the log was read in this process.
     """
 
     surveys: list[Survey]
-    kept: dict[str, Task[list[Survey]]] = field(default_factory=dict)
+    kept: dict[str, list[Survey]] = field(default_factory=dict)
 
 
 def survey_campaign(
     campaign: Campaign,
     *,
-    executor: Executor | None = None,
+    workers: Workers | None = None,
     lock: RunLock | None = None,
     progress: Progress | None = None,
 ) -> FirstPass:
@@ -44,7 +41,7 @@ def survey_campaign(
     ----------
     campaign : Campaign
         As loaded.
-    executor : Executor, optional
+    workers : Workers, optional
         Where it is done; one log after another in this process where left out.
     lock : RunLock, optional
         That the run holds.
@@ -56,28 +53,29 @@ def survey_campaign(
     first : FirstPass
         The surveys, and the records as far as they are kept.
     """
-    executor = executor or Serial()
     progress = progress or Silent()
     progress.stage("survey", len(campaign.tests))
-    shared = executor.send(campaign)
-    kept: dict[str, Task[list[Survey]]] = {}
-    told: list[Task[list[Survey]]] = []
-    for log in campaign.tests:
-        kept[log] = executor.start(
-            _survey, shared, log, lock, executor.is_elsewhere,
-            stage="survey", test=log, size=_n_bytes(campaign, log),
-        )  # fmt: skip
-        told.append(executor.start(_without_records, kept[log], stage="", test=log))
+    is_elsewhere = workers is not None
+    tasks = [
+        Task(log, (with_one_log(campaign, log), log, lock, is_elsewhere), _n_bytes(campaign, log))
+        for log in campaign.tests
+    ]
+    kept: dict[str, list[Survey]] = {}
     of_log: dict[str, list[Survey]] = {}
-    n_kept = 0
-    for ended in executor.ended(told):
+    n_rows = 0
+    for ended in work_on(_survey, tasks, workers=workers, begun=progress.begun):
         found = ended.value or [Survey(campaign.tests[ended.test], error=ended.error)]
-        of_log[ended.test] = found
-        n_kept += sum(survey.n_rows for survey in found)
-        if n_kept > KEPT_SAMPLES and len(campaign.tests) > 1:
-            del kept[ended.test]
+        n_rows += sum(survey.n_rows for survey in found)
+        if not is_elsewhere and (n_rows <= KEPT_SAMPLES or len(campaign.tests) == 1):
+            kept[ended.test] = found
+        of_log[ended.test] = [replace(survey, located=None) for survey in found]
         progress.ended(ended.test)
     return FirstPass([survey for log in campaign.tests for survey in of_log[log]], kept)
+
+
+def with_one_log(campaign: Campaign, log: str) -> Campaign:
+    """What the work on one log needs of a campaign: of thousands of tests each is sent one."""
+    return replace(campaign, tests={log: campaign.tests[log]})
 
 
 def _n_bytes(campaign: Campaign, log: str) -> int:
@@ -94,16 +92,8 @@ def _survey(campaign: Campaign, log: str, lock: RunLock | None, is_elsewhere: bo
     if lock is not None:
         lock.confirm()
     surveys = survey_log(campaign, log)
-    for survey in surveys:
-        record = None if survey.located is None else survey.located.record
-        if is_elsewhere and record is not None and is_on_disk(record.time):
-            # between workers it would go through memory: it is read again instead
-            survey.located = None
-    return surveys
-
-
-def _without_records(surveys: Sequence[Survey]) -> list[Survey]:
-    return [replace(survey, located=None) for survey in surveys]
+    # to send a record between processes takes longer than to read it again
+    return [replace(one, located=None) for one in surveys] if is_elsewhere else surveys
 
 
 def with_record(survey: Survey, kept: Sequence[Survey] | None) -> Survey:

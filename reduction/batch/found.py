@@ -8,8 +8,6 @@ from reduction.ingest.quality import account_rows
 from reduction.phases.intervals import median_step
 from reduction.pipeline.locate import Located
 
-__all__ = ["found_in"]
-
 
 def found_in(located: Located) -> dict[str, Any]:
     """Rate, gaps, standstills, flags and notes of a record, beside its rows and cycles.

@@ -15,8 +15,6 @@ from reduction.pipeline.extremes import greatest_strain, growth_of_slack_length
 from reduction.product import History
 from reduction.strain.model import StrainModel
 
-__all__ = ["Past", "history_of", "history_remarks", "past_of"]
-
 Models = Mapping[tuple[str, str], StrainModel]
 Place = tuple[int, int]
 

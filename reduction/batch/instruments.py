@@ -13,8 +13,6 @@ from reduction.record import Specimen
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.product import InstrumentErrors
 
-__all__ = ["instruments_of", "stepwise_instruments"]
-
 
 def instruments_of(
     campaign: Campaign, survey: Survey, models: Sequence[StrainModel]

@@ -14,8 +14,6 @@ from reduction.record import Floats, SpliceMarks
 from reduction.strain.fit import fit_strain_model
 from reduction.strain.model import StrainModel
 
-__all__ = ["fit_strain_models"]
-
 
 def _pooled(
     marks: SpliceMarks, surveys: Sequence[Survey], measured: Callable[[Survey], dict[str, Floats]]

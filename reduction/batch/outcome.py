@@ -11,8 +11,6 @@ from reduction.campaign.plan import Campaign
 from reduction.errors import LogError, ReductionError, SettingsError
 from reduction.notes import Severity, by_severity, full_note, severity_of
 
-__all__ = ["note_message", "status_row"]
-
 _SERIOUS: tuple[Severity, ...] = ("doubt", "refusal")
 
 

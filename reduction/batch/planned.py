@@ -13,8 +13,6 @@ from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.surface.cautions import NEAR_ZERO
 from reduction.surface.levels import engineering_levels
 
-__all__ = ["experiments_found", "same_logs"]
-
 
 def experiments_found(campaign: Campaign, tests: Sequence[TestStatus]) -> list[dict[str, Any]]:
     """What a check says of every experiment.

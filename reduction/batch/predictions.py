@@ -21,8 +21,6 @@ from reduction.pipeline.prediction import predict_from_plan
 from reduction.prediction import HosePlan, PredictedHose
 from reduction.provenance import Origin, Source, Step
 
-__all__ = ["settings_of_hose", "write_hoses", "write_predictions"]
-
 
 def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list[PartStatus]:
     """Predict the hoses of a campaign, and write them as one archive.

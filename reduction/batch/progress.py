@@ -6,8 +6,6 @@ from typing import Protocol
 
 from reduction.batch.status import TestStatus
 
-__all__ = ["Progress", "Silent"]
-
 
 class Progress(Protocol):
     """One who is told how far a campaign is."""
@@ -17,15 +15,11 @@ class Progress(Protocol):
         ...
 
     def begun(self, test: str) -> None:
-        """Work on a test began."""
+        """Work on a test began in this process."""
         ...
 
     def ended(self, test: str, status: TestStatus | None = None) -> None:
         """Work on a test ended in this stage; with its status where nothing more comes."""
-        ...
-
-    def remark(self, text: str) -> None:
-        """Something that a person should know."""
         ...
 
 
@@ -39,7 +33,4 @@ class Silent:
         """Nothing."""
 
     def ended(self, test: str, status: TestStatus | None = None) -> None:
-        """Nothing."""
-
-    def remark(self, text: str) -> None:
         """Nothing."""

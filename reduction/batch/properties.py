@@ -13,9 +13,9 @@ from reduction import __version__
 from reduction.archive.open import Opener, reading
 from reduction.archive.properties import properties_to_dataset
 from reduction.archive.rope_steps import CHANGES_LENGTH, step_of_archive
-from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.write import write_archive
 from reduction.batch.instruments import instruments_of
+from reduction.batch.standing import NOT_REDUCED
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.ingest.source import hash_source
@@ -26,8 +26,6 @@ from reduction.record import Specimen
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.product import Component, InstrumentErrors
 
-__all__ = ["tests_of_ropes", "write_change_in_length"]
-
 _Models = Callable[[Survey], Sequence[StrainModel]]
 
 
@@ -35,8 +33,7 @@ _Models = Callable[[Survey], Sequence[StrainModel]]
 class _Found:
     """What the archives of the tests of one rope give.
 
-    ``is_programme`` where one is a step; ``component`` are the shared errors of each step,
-    ``silent`` those steps whose archives do not say what they share.
+    ``is_programme`` where one is a step; ``component`` are the shared errors of each step.
     """
 
     steps: tuple[StepOfProgramme, ...]
@@ -44,7 +41,6 @@ class _Found:
     missing: tuple[str, ...]
     is_programme: bool
     component: dict[str, tuple[Component, ...]]
-    silent: tuple[str, ...]
 
 
 def tests_of_ropes(campaign: Campaign, surveys: Sequence[Survey]) -> set[str]:
@@ -77,7 +73,7 @@ def write_change_in_length(
     *,
     models: _Models,
     failed: Collection[str],
-    waiting: Mapping[str, str],
+    waiting: Collection[str],
     command: str,
     opener: Opener = reading,
 ) -> Path | None:
@@ -95,8 +91,8 @@ def write_change_in_length(
         How position becomes strain in a test, specimen by specimen.
     failed : collection of str
         Tests that failed; their older archives do not count.
-    waiting : mapping of str to str
-        Tests whose archives are not what they would be now, and why.
+    waiting : collection of str
+        Tests whose archives are not what they would be now.
     command : str
         For the product's ``command`` attribute, without paths.
     opener : Opener
@@ -116,7 +112,6 @@ def write_change_in_length(
     sources: dict[str, Source] = {}
     used: dict[str, list[str]] = {}
     component: dict[tuple[str, str], tuple[Component, ...]] = {}
-    silent: set[tuple[str, str]] = set()
     for name, specimen in campaign.specimens.items():
         if not specimen.is_rope:
             continue
@@ -139,7 +134,6 @@ def write_change_in_length(
         sources |= {source.name: source for source in given.sources}
         used[name] = [one.name for one in given.steps]
         component |= {(name, step): own for step, own in given.component.items()}
-        silent |= {(name, step) for step in given.silent}
     if not found:
         return None
     settings = {
@@ -156,10 +150,7 @@ def write_change_in_length(
         command=command,
     )
     path = folder / "change_in_length.nc"
-    if silent == set(component):
-        # with no other beside them they are as they were kept
-        silent = set()
-    write_archive(properties_to_dataset(found, component, origin=origin, silent=silent), path)
+    write_archive(properties_to_dataset(found, component, origin=origin), path)
     return path
 
 
@@ -197,15 +188,15 @@ def _read(
     known: Mapping[str, tuple[InstrumentErrors, StrainModel] | tuple[None, None]],
     *,
     failed: Collection[str],
-    waiting: Mapping[str, str],
+    waiting: Collection[str],
     opener: Opener,
 ) -> _Found:
     steps, sources, missing, is_programme = [], [], [], False
-    component, silent = {}, []
+    component = {}
     for entry in own:
         test = entry.plan.id
         if test in failed or test in waiting:
-            missing.append(f"{test} {'failed' if test in failed else waiting[test]}")
+            missing.append(f"{test} {'failed' if test in failed else NOT_REDUCED}")
             continue
         path = folder / f"{test}.nc"
         # a test that neither failed nor waits has an archive of this run or as good as one
@@ -213,8 +204,6 @@ def _read(
             found = step_of_archive(archive, specimen, *known[test])
             steps.append(found.step)
             component[found.step.name] = found.component
-            if not says_what_is_shared(archive):
-                silent.append(found.step.name)
             kind = (
                 str(archive.variables["programme_step"].values)
                 if "programme_step" in archive
@@ -222,9 +211,7 @@ def _read(
             )
             is_programme |= kind in CHANGES_LENGTH
         sources.append(hash_source(path, path.name))
-    return _Found(
-        tuple(steps), tuple(sources), tuple(missing), is_programme, component, tuple(silent)
-    )
+    return _Found(tuple(steps), tuple(sources), tuple(missing), is_programme, component)
 
 
 def _instruments(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from reduction.batch.executor import Executor
-from reduction.batch.firstpass import FirstPass, with_record
+from reduction.batch.executor import Task, Workers, work_on
+from reduction.batch.firstpass import FirstPass, with_one_log, with_record
 from reduction.batch.instruments import instruments_of
 from reduction.batch.progress import Progress
 from reduction.batch.survey import Survey, as_reduction_error, located_again
@@ -17,8 +17,6 @@ from reduction.pipeline.rope import PullConditions, pull_specimens
 from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.strain.model import StrainModel
 from reduction.units import parse_quantity
-
-__all__ = ["fit_pulls", "origins_of", "pull_conditions", "pull_tests", "pulls_of"]
 
 Pulls = Mapping[tuple[str, str], SlowPull]
 _Found = tuple[list[SlowPull | None], ReductionError | None]
@@ -57,7 +55,7 @@ def fit_pulls(
     first: FirstPass,
     models: Mapping[tuple[str, str], StrainModel],
     *,
-    executor: Executor,
+    workers: Workers | None = None,
     progress: Progress,
 ) -> tuple[dict[tuple[str, str], SlowPull], dict[str, ReductionError]]:
     """Fit every slow pull that an experiment names.
@@ -70,8 +68,8 @@ def fit_pulls(
         All tests of the campaign, and the records that are kept.
     models : mapping of (test, specimen) to StrainModel
         How position becomes strain.
-    executor : Executor
-        Where it is done.
+    workers : Workers, optional
+        Where it is done; in this process where left out.
     progress : Progress
         Told of each pull.
 
@@ -83,8 +81,8 @@ def fit_pulls(
         Pulls that could not be looked at.
     """
     named = {test for plan in campaign.experiments.values() for test in plan.quasi_static.values()}
-    shared = executor.send(campaign)
-    specimens_of, tasks = {}, []
+    specimens_of: dict[str, tuple[str, ...]] = {}
+    tasks: list[Task] = []
     for survey in first.surveys:
         test = survey.plan.id
         of_test = [models.get((test, name)) for name in survey.plan.specimens]
@@ -93,12 +91,13 @@ def fit_pulls(
             continue
         specimens_of[test] = survey.plan.specimens
         kept = first.kept.get(survey.plan.log)
-        tasks.append(executor.start(_fit, shared, survey, kept, known, stage="pull", test=test))
+        given = (with_one_log(campaign, survey.plan.log), survey, kept, known)
+        tasks.append(Task(test, given, survey.n_rows))
     if tasks:
         progress.stage("slow pulls", len(tasks))
     pulls: dict[tuple[str, str], SlowPull] = {}
     errors: dict[str, ReductionError] = {}
-    for ended in executor.ended(tasks):
+    for ended in work_on(_fit, tasks, workers=workers, begun=progress.begun):
         found, error = ended.value or ([], ended.error)
         if error is not None:
             errors[ended.test] = error

@@ -24,14 +24,11 @@ from reduction.campaign.plan import Campaign
 from reduction.errors import LogError
 from reduction.ingest.source import hash_source
 from reduction.line.product import SlowPull
-from reduction.pipeline.recall import Recall, plainly
 from reduction.pipeline.reduce import reduce_stepwise_test, reduce_test
 from reduction.pipeline.shared.pulls import PullOrigin
 from reduction.pipeline.statedlimits import check_stated_errors
 from reduction.product import History, ReducedTest
 from reduction.strain.model import StrainModel
-
-__all__ = ["bring_up_to_date", "dataset_of", "reduce_survey"]
 
 
 def reduce_survey(
@@ -42,7 +39,6 @@ def reduce_survey(
     settings: str,
     pulls: Sequence[SlowPull | None] | None = None,
     pull_origins: Sequence[PullOrigin | None] = (),
-    recall: Recall = plainly,
 ) -> ReducedTest:
     """Reduce one surveyed test.
 
@@ -62,8 +58,6 @@ def reduce_survey(
         Slow pull of each specimen, where the test is a run of an experiment.
     pull_origins : sequence of PullOrigin or None, optional
         With what each pull was read.
-    recall : Recall
-        As in `reduction.pipeline.reduce.reduce_test`.
 
     Returns
     -------
@@ -105,7 +99,6 @@ def reduce_survey(
         pull_origins=pull_origins,
         pull_conditions=pull_conditions(campaign, survey),
         instruments=instruments,
-        recall=recall,
     )
     return replace(reduced, notes=(*reduced.notes, *notes))
 
@@ -116,7 +109,6 @@ def dataset_of(
     basis: Basis,
     *,
     command: str,
-    recall: Recall = plainly,
 ) -> tuple[xr.Dataset, tuple[tuple[str, str], ...]]:
     """Reduce one surveyed test to all that its archive is to hold.
 
@@ -130,8 +122,6 @@ def dataset_of(
         What its product rests on beside its own log.
     command : str
         For the product's ``command`` attribute, without paths.
-    recall : Recall
-        As in `reduction.pipeline.reduce.reduce_test`.
 
     Returns
     -------
@@ -147,7 +137,7 @@ def dataset_of(
     """
     product = reduce_survey(
         campaign, survey, basis.models, basis.history, basis.settings, basis.pulls,
-        basis.pull_origins, recall,
+        basis.pull_origins,
     )  # fmt: skip
     kept = kept_samples(product, survey.plan.settings)
     of_archive = () if kept is None else (kept.note,)
@@ -199,12 +189,9 @@ def bring_up_to_date(
         when it was read, or the archive cannot be written.
     """
     if not force:
-        standing = standing_product(
-            path, survey, basis.settings, remarks=basis.remarks, failed=basis.failed
-        )
-        if standing is not None:
-            said = filter(None, [standing.remark, note_message(standing.notes)])
-            return "unchanged", "; ".join(said)
+        notes = standing_product(path, survey, basis.settings, remarks=basis.remarks)
+        if notes is not None:
+            return "unchanged", note_message(notes)
     dataset, notes = dataset_of(campaign, survey, basis, command=command)
     _check_raw_files(campaign, survey)
     before_writing()

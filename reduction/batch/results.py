@@ -14,8 +14,6 @@ from reduction.archive.write import write_archive
 from reduction.campaign.plan import Campaign
 from reduction.provenance import Origin, Step
 
-__all__ = ["results_found", "write_outcomes"]
-
 
 def results_found(campaign: Campaign) -> dict[str, Any] | None:
     """What the table of results holds, as `check` prints it.

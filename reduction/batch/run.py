@@ -8,16 +8,15 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from reduction.archive.inmemory import ArchivesInMemory
 from reduction.archive.laboratory import keep_details
-from reduction.archive.open import Opener
+from reduction.archive.open import Opener, read_once
 from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.write import write_whole
 from reduction.batch.asked import products_asked
 from reduction.batch.basis import Basis
 from reduction.batch.check import selected_surveys
 from reduction.batch.comparisons import write_comparisons
-from reduction.batch.executor import Executor, Serial
+from reduction.batch.executor import Workers
 from reduction.batch.experiments import write_experiments
 from reduction.batch.lock import RunLock, run_lock
 from reduction.batch.part import PartStatus
@@ -26,17 +25,17 @@ from reduction.batch.progress import Progress, Silent
 from reduction.batch.properties import tests_of_ropes, write_change_in_length
 from reduction.batch.results import write_outcomes
 from reduction.batch.secondpass import reduce_campaign
+from reduction.batch.standing import waiting_runs
 from reduction.batch.status import TestStatus, read_status, status_csv
 from reduction.batch.survey import Survey
-from reduction.batch.waiting import waiting_runs
 from reduction.batch.wanted import find_wanted
 from reduction.campaign.plan import Campaign
+from reduction.catalogue.file import FILE_NAME
+from reduction.catalogue.read import write_catalogue
 from reduction.errors import ArchiveError
 from reduction.report.page import write_report
 from reduction.tables.write import write_tables
 from reduction.units import UnitSystem
-
-__all__ = ["CampaignResult", "run_campaign"]
 
 
 @dataclass(frozen=True)
@@ -75,11 +74,11 @@ def run_campaign(
     command: str = "",
     units: UnitSystem = "si",
     values_page: str = "",
-    executor: Executor | None = None,
+    workers: Workers | None = None,
     progress: Progress | None = None,
     opener: Opener | None = None,
 ) -> CampaignResult:
-    """Reduce a campaign: archives, tables, status, report.
+    """Reduce a campaign: archives, tables, catalogue, status, report.
 
     No other run may be at work on the same products.  Tests whose archives stand are left as
     they are, so that a run that was ended goes on where it was.
@@ -102,7 +101,7 @@ def run_campaign(
         What the report shows; files are SI.
     values_page : str
         Address of the design-value page from the folder of the report, where one is written.
-    executor : Executor, optional
+    workers : Workers, optional
         Where the tests are worked on; one after another in this process where left out.  No
         product depends on it.
     progress : Progress, optional
@@ -126,13 +125,17 @@ def run_campaign(
         If the workers or their scheduler are lost.
     """
     progress = progress or Silent()
-    with run_lock(processed / campaign.id, remark=progress.remark) as lock:
-        return _run(
-            campaign, processed / campaign.id, reports, lock, clock=clock, tests=tests,
-            force=force, command=command, units=units, values_page=values_page,
-            executor=executor or Serial(), progress=progress,
-            opener=opener or ArchivesInMemory().reading,
-        )  # fmt: skip
+    with run_lock(processed / campaign.id) as lock:
+        try:
+            return _run(
+                campaign, processed / campaign.id, reports, lock, clock=clock, tests=tests,
+                force=force, command=command, units=units, values_page=values_page,
+                workers=workers, progress=progress, opener=opener or read_once(),
+            )  # fmt: skip
+        except BaseException:
+            if workers is not None:  # nobody writes once the lock is given back
+                workers.end()
+            raise
 
 
 def _run(
@@ -147,18 +150,17 @@ def _run(
     command: str,
     units: UnitSystem,
     values_page: str,
-    executor: Executor,
+    workers: Workers | None,
     progress: Progress,
     opener: Opener,
 ) -> CampaignResult:
-    executor.begun = progress.begun
-    wanted = find_wanted(campaign, executor=executor, lock=lock, progress=progress)
+    wanted = find_wanted(campaign, workers=workers, lock=lock, progress=progress)
     first, basis = wanted.first, wanted.basis
     surveys = first.surveys
     chosen = selected_surveys(surveys, tests)
     statuses = reduce_campaign(
         campaign, first, chosen, errors=wanted.errors, basis=basis, folder=folder,
-        executor=executor, lock=lock, progress=progress, clock=clock, force=force,
+        workers=workers, lock=lock, progress=progress, clock=clock, force=force,
         command=command,
     )  # fmt: skip
     lock.confirm()  # before what is made of all tests
@@ -186,6 +188,7 @@ def _run(
     products = products_asked(campaign, folder, has_lengths=parts.has_lengths)
     if archives or products:
         tables = write_tables(archives, folder / "tables", opener=opener, **products)
+        write_catalogue([*archives, *products.values()], folder / FILE_NAME, opener=opener)
     stray = sorted(path.name for path in archives_of_tests(folder) if path not in ours)
     stray += [
         f"{name}.nc"

@@ -11,14 +11,11 @@ import xarray as xr
 
 from reduction.archive.open import Opener, reading
 from reduction.archive.shared import shared_contributions
-from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.stored import stored
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.line.product import REASONS
 from reduction.record import Bools
 from reduction.surface.cautions import MEASURED_SLACK
-
-__all__ = ["LINE", "MEASURED", "Row", "row_of_archive", "rows_of_run"]
 
 LINE = ("storage_spring_constant", "loss_spring_constant", "quasi_static_spring_constant")
 MEASURED = ("frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
@@ -88,7 +85,6 @@ def row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specim
         for name in dict.fromkeys((*MEASURED, *plan.responses))
     }
     settings = json.loads(archive.attrs["settings"])
-    row["keeps_shared"] = says_what_is_shared(archive)
     begin = int(settings["reduction"]["cycles"]["break_in_cycles"])
     if "peak_tension" in archive:
         peak = archive.variables["peak_tension"].values[place, begin:]

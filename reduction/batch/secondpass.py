@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from reduction.batch.basis import Basis
-from reduction.batch.executor import Executor, Task
-from reduction.batch.firstpass import FirstPass, with_record
+from reduction.batch.executor import Task, Workers, work_on
+from reduction.batch.firstpass import FirstPass, with_one_log, with_record
 from reduction.batch.lock import RunLock
 from reduction.batch.outcome import status_row
 from reduction.batch.progress import Progress
@@ -17,8 +18,6 @@ from reduction.batch.status import Status, TestStatus
 from reduction.batch.survey import Survey, as_reduction_error
 from reduction.campaign.plan import Campaign
 from reduction.errors import ReductionError
-
-__all__ = ["reduce_campaign"]
 
 
 @dataclass(frozen=True)
@@ -39,7 +38,7 @@ def reduce_campaign(
     errors: Mapping[str, ReductionError],
     basis: Callable[[Survey], Basis],
     folder: Path,
-    executor: Executor,
+    workers: Workers | None,
     lock: RunLock,
     progress: Progress,
     clock: Callable[[], float],
@@ -62,8 +61,8 @@ def reduce_campaign(
         What the product of a test rests on.
     folder : pathlib.Path
         Of the archives.
-    executor : Executor
-        Where it is done.
+    workers : Workers or None
+        Where it is done; None: in this process.
     lock : RunLock
         That the run holds.
     progress : Progress
@@ -81,8 +80,10 @@ def reduce_campaign(
         In the order of the tests that were asked for.
     """
     progress.stage("reduce", len(chosen))
-    shared = executor.send(campaign)
     known = {survey.plan.id: survey for survey in chosen}
+    of_log = Counter(survey.plan.log for survey in chosen)
+    kept = {log: first.kept[log] for log in of_log if log in first.kept}
+    first.kept.clear()
     statuses: dict[str, TestStatus] = {}
 
     def end(name: str, made: _Made, worker: str = "") -> None:
@@ -92,26 +93,28 @@ def reduce_campaign(
         )  # fmt: skip
         progress.ended(name, statuses[name])
 
-    tasks: list[Task[_Made]] = []
-    for name, survey in known.items():
-        error = survey.error or errors.get(name)
-        try:
-            if error is not None:
-                raise error
-            rests_on = basis(survey)
-        except Exception as failure:
-            # a campaign goes on after a failed test, even where the failure is a defect here
-            end(name, _Made("failed", "", as_reduction_error(failure), 0.0))
-            continue
-        tasks.append(
-            executor.start(
-                _make, shared, survey, first.kept.get(survey.plan.log), rests_on,
-                folder / f"{name}.nc", lock, clock, force, command,
-                stage="reduce", test=name, size=survey.n_rows,
-            )
-        )  # fmt: skip
-    first.kept.clear()  # each record goes with the last task that takes it
-    for ended in executor.ended(tasks):
+    def tasks() -> Iterator[Task]:
+        for name, survey in known.items():
+            log = survey.plan.log
+            of_log[log] -= 1
+            # each record goes with the last task that takes it
+            record = kept.get(log) if of_log[log] else kept.pop(log, None)
+            error = survey.error or errors.get(name)
+            try:
+                if error is not None:
+                    raise error
+                rests_on = basis(survey)
+            except Exception as failure:
+                # a campaign goes on after a failed test, even where the failure is a defect here
+                end(name, _Made("failed", "", as_reduction_error(failure), 0.0))
+                continue
+            given = (
+                with_one_log(campaign, log), survey, record, rests_on, folder / f"{name}.nc",
+                lock, clock, force, command,
+            )  # fmt: skip
+            yield Task(name, given, survey.n_rows)
+
+    for ended in work_on(_make, tasks(), workers=workers, begun=progress.begun):
         made = ended.value or _Made("failed", "", ended.error, 0.0)
         end(ended.test, made, ended.worker)
     return [statuses[name] for name in known]

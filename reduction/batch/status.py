@@ -11,8 +11,6 @@ from typing import Any, Literal, cast
 
 from reduction.visible import bare_cell, safe_cell
 
-__all__ = ["Status", "TestStatus", "read_status", "status_csv"]
-
 Status = Literal["reduced", "reduced_with_notes", "unchanged", "no_work", "failed"]
 _COLUMNS = ("test", "status", "exit_status", "message", "raw_sha256", "seconds")
 

@@ -11,8 +11,6 @@ from reduction.errors import DataError
 from reduction.pipeline.locate import locate
 from reduction.record import Record
 
-__all__ = ["step_plan", "step_record"]
-
 
 def _slice(record: Record, first: int, stop: int) -> Record:
     """The rows from ``first`` up to ``stop``, as a record of its own."""

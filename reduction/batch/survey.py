@@ -25,8 +25,6 @@ from reduction.provenance import Source
 from reduction.record import Floats, Record, SpliceMarks, StepReadings
 from reduction.strain.fit import zero_strain_position
 
-__all__ = ["Reader", "Survey", "as_reduction_error", "located_again", "read_test", "survey_log"]
-
 Reader = Callable[..., tuple[Record, tuple[Source, ...]]]
 """Gives the record of a log, as `reduction.ingest.record_of_test.read_record` does."""
 

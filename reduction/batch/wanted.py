@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from reduction.batch.basis import Basis, basis_of
-from reduction.batch.executor import Executor
+from reduction.batch.executor import Workers
 from reduction.batch.firstpass import FirstPass, survey_campaign
 from reduction.batch.history import past_of
 from reduction.batch.lock import RunLock
@@ -17,8 +17,6 @@ from reduction.batch.pulls import fit_pulls
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.errors import ReductionError
-
-__all__ = ["Wanted", "find_wanted"]
 
 
 @dataclass(frozen=True)
@@ -38,7 +36,7 @@ class Wanted:
 def find_wanted(
     campaign: Campaign,
     *,
-    executor: Executor,
+    workers: Workers | None = None,
     lock: RunLock | None = None,
     progress: Progress,
 ) -> Wanted:
@@ -48,8 +46,8 @@ def find_wanted(
     ----------
     campaign : Campaign
         As loaded.
-    executor : Executor
-        Where it is done.
+    workers : Workers, optional
+        Where it is done; in this process where left out.
     lock : RunLock, optional
         That the run holds.
     progress : Progress
@@ -60,14 +58,21 @@ def find_wanted(
     wanted : Wanted
         A test that fails carries its error; the others are looked at all the same.
     """
-    first = survey_campaign(campaign, executor=executor, lock=lock, progress=progress)
+    first = survey_campaign(campaign, workers=workers, lock=lock, progress=progress)
+    return wanted_of(campaign, first, workers=workers, progress=progress)
+
+
+def wanted_of(
+    campaign: Campaign,
+    first: FirstPass,
+    *,
+    workers: Workers | None = None,
+    progress: Progress,
+) -> Wanted:
+    """Fit what tests share whose logs are read."""
     models, errors = fit_strain_models(campaign, first.surveys)
-    pulls, errors_of_pulls = fit_pulls(
-        campaign, first, models, executor=executor, progress=progress
-    )
+    pulls, errors_of_pulls = fit_pulls(campaign, first, models, workers=workers, progress=progress)
     errors |= errors_of_pulls
     failed = [entry.plan.id for entry in first.surveys if entry.error or entry.plan.id in errors]
-    basis = partial(
-        basis_of, campaign, past=past_of(first.surveys, models), pulls=pulls, failed=failed
-    )
+    basis = partial(basis_of, campaign, past=past_of(first.surveys, models), pulls=pulls)
     return Wanted(first, errors, tuple(failed), basis)

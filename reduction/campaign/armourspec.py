@@ -17,8 +17,6 @@ from reduction.predict.armourdesign import ArmourDesign
 from reduction.predict.armourlayers import ArmourLayers
 from reduction.record import Floats
 
-__all__ = ["ArmourCase", "ArmourFile", "ArmourKeys", "ArmourLayerKeys", "load_armour_case"]
-
 
 class _Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)

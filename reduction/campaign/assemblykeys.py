@@ -7,8 +7,6 @@ from pydantic import BaseModel, ConfigDict, Field
 from reduction.campaign.quantities import Number
 from reduction.lookup.pieces import PieceBranch, PieceKind
 
-__all__ = ["AssemblyFile", "AssemblyKeys", "CurveKeys", "PartKeys", "SpliceKeys", "WorkingKeys"]
-
 _MOST_TETHERS = 100
 
 

@@ -25,8 +25,6 @@ from reduction.lookup.splices import StatedSplices
 from reduction.lookup.tethers import SeriesPart
 from reduction.pipeline.deployed import WorkingLevel
 
-__all__ = ["AssemblyCase", "load_assembly_case"]
-
 
 @dataclass(frozen=True)
 class AssemblyCase:

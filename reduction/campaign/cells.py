@@ -17,8 +17,6 @@ from reduction.errors import LogError
 from reduction.record import Floats
 from reduction.visible import cut
 
-__all__ = ["CODED", "CellColumn", "CellSheet", "read_cells"]
-
 CODED = "coded"
 """In the place of a unit: the column holds coded levels."""
 _HEADER = re.compile(r"^(.*?)\s*(?:\[([^\]]*)\])?$")

@@ -10,8 +10,6 @@ from reduction.campaign.hosemodel import ComparisonSection
 from reduction.campaign.plan import ComparisonPlan, TestPlan, product_of
 from reduction.record import Specimen
 
-__all__ = ["plan_comparison"]
-
 _HAVE_CURVE = ("cyclic", "fatigue", "quasi-static", "tensile")
 
 

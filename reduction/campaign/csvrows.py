@@ -10,8 +10,6 @@ from reduction.campaign.textfiles import read_small_text
 from reduction.errors import LogError, ReductionError
 from reduction.visible import bare_cell, cut
 
-__all__ = ["read_csv_rows", "split_row", "split_rows"]
-
 
 def read_csv_rows(
     path: Path, what: str, *, fault: Callable[..., ReductionError] = LogError

@@ -14,8 +14,6 @@ from reduction.record import Specimen
 from reduction.surface.levels import FactorLevels, LevelBasis
 from reduction.units import Dimension, parse_quantity
 
-__all__ = ["NEED_PULL", "agree_on_pulls", "parse_factor", "plan_experiment"]
-
 NEED_PULL = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
 """Responses that rest on the quasi-static spring constant."""
 

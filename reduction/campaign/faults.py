@@ -16,16 +16,6 @@ from reduction.errors import ReductionError, SettingsError
 from reduction.ingest.sniff_channels import UNKNOWN
 from reduction.units import Dimension, parse_quantity
 
-__all__ = [
-    "Fault",
-    "faults_of",
-    "in_toml",
-    "listed",
-    "named_tables",
-    "open_questions",
-    "quantity_of",
-]
-
 _SHOWN = 10
 _LONGEST_FOUND = 60
 _DEEPEST = 12  # more keys below each other than any setting has

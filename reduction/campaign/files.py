@@ -11,8 +11,6 @@ from reduction.errors import LogError, SettingsError
 from reduction.ingest.limits import check_regular
 from reduction.visible import cut
 
-__all__ = ["DEVICE", "file_inside"]
-
 DEVICE = re.compile(
     r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³]) *(\..*)?", re.IGNORECASE
 )

@@ -10,8 +10,6 @@ from reduction.archive.products import archives_of_tests
 from reduction.campaign.textfiles import read_small_text
 from reduction.errors import ArchiveError, SettingsError
 
-__all__ = ["find_campaign", "id_of_products"]
-
 
 def id_of_products(processed: Path) -> str:
     """Id of the campaign whose archives lie in a folder.

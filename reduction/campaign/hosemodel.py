@@ -9,8 +9,6 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 from reduction.campaign.quantities import Number
 from reduction.predict.product import RubberLaw
 
-__all__ = ["ComparisonSection", "CordSection", "HoseSection", "HoseSpecFile"]
-
 _Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_ \-]{0,99}$")]
 Calibrated = Literal[
     "wrap_angle",

@@ -22,8 +22,6 @@ from reduction.predict.product import HoseDesign
 from reduction.prediction import HelicalLayer, HosePlan, HoseTarget
 from reduction.units import Dimension
 
-__all__ = ["hose_of", "load_hose", "target_of"]
-
 _DIMENSIONS: dict[str, Dimension] = {
     "wrap_angle": "angle",
     "wrap_diameter": "length",

@@ -11,8 +11,6 @@ from reduction.campaign.quantities import TableReader
 from reduction.errors import SettingsError
 from reduction.settings import Limits
 
-__all__ = ["LimitsSection", "stated_limits"]
-
 # of pint's many plain numbers, a turn and a percent among them, those that count bytes
 _BYTES = re.compile(r"[\d.+\-eE\s]*([kMGT]i?B|B|bytes?)\s*")
 _SIZES: dict[str, tuple[float, float, str]] = {

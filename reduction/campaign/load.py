@@ -28,8 +28,6 @@ from reduction.campaign.testtable import merge_tests, read_test_table
 from reduction.campaign.toml import read_toml
 from reduction.campaign.uncertaintyspec import stated_errors
 
-__all__ = ["load_campaign"]
-
 
 def _hint(path: Path) -> str | None:
     """What to do about a name that TOML does not allow twice."""

@@ -17,8 +17,6 @@ from reduction.record import SpliceMarks
 from reduction.units import scale_to_si
 from reduction.visible import cut
 
-__all__ = ["pooled_marks", "read_marks"]
-
 _LENGTHS = ("near_toe", "far_toe", "far_thimble")
 _SUFFIXES = {"ft": "ft", "in": "inch", "m": "m", "mm": "mm", "cm": "cm"}
 # as a person reads a tape: the digits behind the point say how finely

@@ -18,20 +18,6 @@ from reduction.errors import SettingsError
 from reduction.ingest.layout import Layout
 from reduction.settings import StrainMethod
 
-__all__ = [
-    "CampaignFile",
-    "CampaignSection",
-    "Defaults",
-    "ExperimentSection",
-    "FilePiece",
-    "Identifier",
-    "SpecimenSection",
-    "StepSection",
-    "StrainSection",
-    "TestKind",
-    "TestSection",
-]
-
 TestKind = Literal[
     "cyclic",
     "fatigue",

@@ -10,8 +10,6 @@ from reduction.campaign.faults import in_toml
 from reduction.campaign.files import DEVICE
 from reduction.campaign.plan import TestPlan
 
-__all__ = ["check_names"]
-
 
 def check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> None:
     """Refuse names under which two products would be one file somewhere.

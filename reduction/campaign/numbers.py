@@ -15,8 +15,6 @@ from reduction.errors import SettingsError
 from reduction.settings import ReductionSettings, StoredSamples
 from reduction.units import Dimension, parse_quantity
 
-__all__ = ["apply_numbers", "dimension_of", "limits_of"]
-
 _DIMENSION: dict[tuple[str, str], Dimension] = {
     ("phases", "minimum_duration"): "time",
     ("phases", "position_tolerance"): "length",

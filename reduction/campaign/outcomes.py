@@ -13,8 +13,6 @@ from reduction.outcomes.product import Outcome
 from reduction.provenance import Source
 from reduction.record import Specimen
 
-__all__ = ["outcomes_of"]
-
 
 def outcomes_of(
     path: Path, name: str, specimens: Mapping[str, Specimen]

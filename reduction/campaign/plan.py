@@ -8,26 +8,17 @@ from pathlib import Path
 from typing import Literal
 
 from reduction.address import is_address
+from reduction.archive.laboratory import ReportDetails
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
-from reduction.laboratory import ReportDetails
 from reduction.outcomes.product import Outcome
 from reduction.prediction import HosePlan
 from reduction.provenance import Source
 from reduction.record import Specimen, SpliceMarks
-from reduction.remote.scratch import in_words
+from reduction.remote import in_words
 from reduction.settings import Limits, ReductionSettings
 from reduction.surface.levels import FactorLevels
 from reduction.uncertainty.stated import StatedErrors
-
-__all__ = [
-    "Campaign",
-    "ComparisonPlan",
-    "ExperimentPlan",
-    "StepPlan",
-    "TestPlan",
-    "product_of",
-]
 
 
 @dataclass(frozen=True)

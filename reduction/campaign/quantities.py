@@ -11,8 +11,6 @@ from reduction.campaign.faults import in_toml
 from reduction.errors import SettingsError
 from reduction.units import Dimension, parse_quantity
 
-__all__ = ["Number", "TableReader"]
-
 Number = str | Annotated[float, Strict()]
 """A number of TOML or text with a unit; true and false are neither."""
 _GREATEST = 1e15

@@ -2,90 +2,21 @@
 
 from __future__ import annotations
 
-import datetime
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Annotated
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
+from pydantic import Field
 
 from reduction.archive.budgetplaces import parse_place
+from reduction.archive.laboratory import Limit, ReportDetails, Section, Statement, Text
 from reduction.campaign.faults import in_toml
 from reduction.campaign.plan import TestPlan, product_of
 from reduction.errors import SettingsError
-from reduction.laboratory import DecisionRule, Instrument, Item, Limit, Paper, Party, ReportDetails
 from reduction.units import parse_in_unit
 from reduction.vocabulary import QUANTITIES, quantity
 
-__all__ = ["ReportSection", "report_details"]
 
-Text = Annotated[str, StringConstraints(max_length=4000, strip_whitespace=True)]
-
-
-def _as_text(value: object) -> object:
-    """A date of TOML as it is written there."""
-    return value.isoformat() if isinstance(value, datetime.date) else value
-
-
-Date = Annotated[Text, BeforeValidator(_as_text)]
-"""A date of TOML, or text: ``2026-03-05``, ``"2 to 5 March 2026"``."""
-
-
-class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class LaboratorySection(_Section):
-    """``[report.laboratory]``."""
-
-    name: Text = ""
-    address: Text = ""
-    contact: Text = ""
-    location: Text = ""
-    """Where the tests were made, where that is not the address."""
-    accreditation: Text = ""
-
-
-class ClientSection(_Section):
-    """``[report.client]``."""
-
-    name: Text = ""
-    address: Text = ""
-    contact: Text = ""
-    order: Text = ""
-
-
-class ItemSection(_Section):
-    """``[report.items.SPECIMEN]``: what came in."""
-
-    identification: Text = ""
-    """What is written on it: a serial number, a tag."""
-    description: Text = ""
-    condition: Text = ""
-    """On receipt."""
-    received: Date = ""
-
-
-class AuthorisedSection(_Section):
-    """``[report.authorised]``."""
-
-    by: Text = ""
-    function: Text = ""
-    on: Date = ""
-
-
-class InstrumentSection(_Section):
-    """``[[report.instruments]]``."""
-
-    name: Text
-    identification: Text = ""
-    certificate: Text = ""
-    traceable_to: Text = ""
-    calibrated: Date = ""
-    due: Date = ""
-
-
-class LimitSection(_Section):
+class LimitSection(Section):
     """``[[report.limits]]``: a number that is held against a limit."""
 
     quantity: Text
@@ -99,33 +30,8 @@ class LimitSection(_Section):
     source: Text = ""
 
 
-class ReportSection(_Section):
+class ReportSection(Statement[LimitSection]):
     """``[report]``: every key may be left out; the report then says that it is not stated."""
-
-    number: Text = ""
-    revision: int = Field(default=0, ge=0)
-    amendment: Text = ""
-    """What this revision changed, and which report it replaces."""
-    issued: Date = ""
-    received: Date = ""
-    """When the items came in, where they came together."""
-    tested: Date = ""
-    method: Text = ""
-    deviations: Text = ""
-    """From the method: ``"none"`` where there were none."""
-    sampling: Text = ""
-    environment: Text = ""
-    opinions: Text = ""
-    """Opinions and interpretations, which the report marks as such."""
-    decision_rule: DecisionRule | None = None
-    """Required where a limit is given."""
-    paper: Paper = "A4"
-    laboratory: LaboratorySection = LaboratorySection()
-    client: ClientSection = ClientSection()
-    authorised: AuthorisedSection = AuthorisedSection()
-    items: dict[str, ItemSection] = Field(default_factory=dict)
-    instruments: tuple[InstrumentSection, ...] = ()
-    limits: tuple[LimitSection, ...] = ()
 
 
 def report_details(
@@ -172,18 +78,8 @@ def report_details(
             path, "report.limits are given, but no rule by which conformity is decided",
             needed='report.decision_rule = "simple acceptance" or "guard band"',
         )  # fmt: skip
-    plain = section.model_dump(
-        exclude={"laboratory", "client", "authorised", "items", "instruments", "limits"}
-    )
     return ReportDetails(
-        **plain,
-        laboratory=Party(**section.laboratory.model_dump()),
-        client=Party(**section.client.model_dump()),
-        authorised_by=section.authorised.by,
-        authorised_function=section.authorised.function,
-        authorised_on=section.authorised.on,
-        items=tuple(Item(name, **one.model_dump()) for name, one in section.items.items()),
-        instruments=tuple(Instrument(**one.model_dump()) for one in section.instruments),
+        **{name: value for name, value in section if name != "limits"},
         limits=tuple(
             _limit(path, f"report.limits.{number}", one, tests)
             for number, one in enumerate(section.limits)
@@ -221,4 +117,6 @@ def _limit(path: Path, place: str, one: LimitSection, tests: Mapping[str, TestPl
             path, f"{place}: the lower limit is not below the upper one",
             found=f"{one.lower} and {one.upper}",
         )  # fmt: skip
-    return Limit(one.quantity, product[0], at, lower, upper, one.source)
+    return Limit(
+        quantity=one.quantity, test=product[0], at=at, lower=lower, upper=upper, source=one.source
+    )

@@ -15,8 +15,6 @@ from reduction.errors import LogError, SettingsError
 from reduction.outcomes.product import IN_THE_TERMINATION, Outcome, OutcomeQuantity, Place
 from reduction.units import Dimension, scale_to_si
 
-__all__ = ["read_results"]
-
 _TEXTS = ("test", "specimen", "line", "material", "construction", "condition", "mode", "note")
 _SUSPENDED = ("run_out", "suspended")
 _WORDS = (*_TEXTS, "id", "quantity", "unit", "place", "valid", *_SUSPENDED)

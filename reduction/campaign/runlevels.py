@@ -13,8 +13,6 @@ from reduction.errors import DataError, SettingsError
 from reduction.record import Floats
 from reduction.units import scale_of_unit
 
-__all__ = ["check_levels", "is_of_mean", "levels_of_factor"]
-
 _SHARE = re.compile(r"%\s*(RBS|MBS|MBL|of mean)")
 _OFF_PLAN = 1.0
 """Coded distance of the mean of all runs from the centre of the plan, beyond which the

@@ -15,15 +15,14 @@ from reduction.campaign.cells import CellSheet, read_cells
 from reduction.campaign.runlevels import check_levels, is_of_mean, levels_of_factor
 from reduction.campaign.spec import ExperimentSpec, FactorSpec, ResponseSpec, response_unit
 from reduction.errors import DataError, LogError, SettingsError
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["RunSeries", "read_runs"]
+from reduction.record import Floats, read_only_arrays
 
 _LABELS = ("run", "run_order", "block", "specimen")
 _DUMMY = re.compile(r"dummy_\d+")
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class RunSeries:
     """Runs as they were done.
 
@@ -66,10 +65,6 @@ class RunSeries:
     run_order: Floats
     blocks: tuple[str, ...] | None
     notes: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def _declared(

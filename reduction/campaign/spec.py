@@ -21,8 +21,6 @@ from reduction.surface.transform import Transform
 from reduction.units import parse_quantity, scale_of_unit
 from reduction.vocabulary import QUANTITIES, quantity
 
-__all__ = ["ExperimentSpec", "FactorSpec", "ResponseSpec", "SpecFile", "load_spec", "response_unit"]
-
 # stands in a header of the run sheet and in the name of a term
 ColumnName = Annotated[
     str, StringConstraints(pattern=r"^[^\s\[\]*^,;#][^\[\]*^,;]{0,99}$", strip_whitespace=True)

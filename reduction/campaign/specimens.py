@@ -8,8 +8,6 @@ from reduction.campaign.faults import in_toml, quantity_of
 from reduction.campaign.model import SpecimenSection
 from reduction.record import Specimen
 
-__all__ = ["specimen_of"]
-
 
 def _length(text: str, where: str, path: Path) -> float:
     value = quantity_of(path, where, text, "length")

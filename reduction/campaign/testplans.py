@@ -17,10 +17,8 @@ from reduction.campaign.model import (
 from reduction.campaign.numbers import apply_numbers
 from reduction.campaign.plan import StepPlan, TestPlan
 from reduction.errors import SettingsError
-from reduction.remote.place import allowed
+from reduction.remote import allowed
 from reduction.settings import CycleSettings, ReductionSettings, StrainSettings
-
-__all__ = ["plan_test"]
 
 _KEPT = (
     "rate", "medium", "soak", "temperature", "machine", "load_cell", "calibration_due",

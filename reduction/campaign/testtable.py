@@ -14,8 +14,6 @@ from reduction.campaign.model import Identifier, TestSection
 from reduction.errors import SettingsError
 from reduction.visible import cut
 
-__all__ = ["merge_tests", "read_test_table"]
-
 _LISTS = ("specimens", "target_strain")
 _WHOLE = ("order", "n_cycles", "unlogged_cycles", "n_flex_cycles")
 # as many digits as a netCDF integer holds

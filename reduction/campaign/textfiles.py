@@ -7,8 +7,6 @@ from pathlib import Path
 from reduction.errors import LogError
 from reduction.ingest.limits import check_regular
 
-__all__ = ["read_small_text"]
-
 _LARGEST = 16_000_000  # bytes; a campaign of 10^5 tests has a third of it
 
 

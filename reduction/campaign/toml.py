@@ -14,8 +14,6 @@ from reduction.campaign.faults import faults_of, in_toml, listed, open_questions
 from reduction.campaign.textfiles import read_small_text
 from reduction.errors import LogError
 
-__all__ = ["read_toml"]
-
 # what the parser takes minutes or gigabytes for, and no setting has
 _DEEP = re.compile(r"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){40}""")
 _MOST_LINES = 500_000

@@ -19,8 +19,6 @@ from reduction.uncertainty.stated import (
 )
 from reduction.units import Dimension
 
-__all__ = ["UncertaintySection", "stated_errors"]
-
 _HALF = 0.5
 """Relative errors beyond this are no first-order ones: nothing that is carried would hold."""
 _OF_DIAMETER = 0.2

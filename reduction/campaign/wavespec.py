@@ -18,8 +18,6 @@ from reduction.predict.environment import AIR_DENSITY
 from reduction.predict.morison import SEAWATER_DENSITY, VerticalWidth
 from reduction.record import Floats
 
-__all__ = ["WaveLoadCase", "WaveLoadFile", "WaveLoadKeys", "load_wave_case"]
-
 _MAY_FOLLOW = ("wave_length", "hose_length")
 _MOST_TIMES = 1_000_000
 _STEPS_A_PERIOD = 200

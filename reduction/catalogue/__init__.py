@@ -1,1 +1,1 @@
-"""Edge: the tests of all campaigns of a folder in one index, and questions to it."""
+"""Edge: the tests of each campaign in a file beside them, and questions to all of these files."""

@@ -1,4 +1,4 @@
-"""Columns of the index: what is known of a test, and what is kept beside it."""
+"""Columns of a catalogue: what is known of a test, and what a number is."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from typing import Any, Final
 import pyarrow  # type: ignore[import-untyped]
 
 from reduction.vocabulary import QUANTITIES
-
-__all__ = ["ABOUT", "CONDITIONS", "LEFT_OUT", "NUMBERS", "TEXTS", "column_type", "standing_for"]
 
 TEXTS: Final = (
     "campaign", "test", "specimen", "test_kind", "medium", "control", "waveform",
@@ -27,8 +25,8 @@ NUMBERS: Final = (
 CONDITIONS: Final = (*TEXTS[:-2], *NUMBERS, *TEXTS[-2:])
 """Columns of a table of tests, in order."""
 
-ABOUT: Final = ("size", "modified", "changed", "identity", "fault", "is_whole")
-"""What the index keeps for itself: the state of the file, and if a row is of the whole test."""
+NUMBER: Final = ("quantity", "value", "standard_uncertainty")
+"""Columns of a number; a row of a test has none."""
 
 LEFT_OUT: Final = frozenset(
     {"sample", "selected_cycle", "bound", "uncertainty_component", "uncertainty_source"}
@@ -38,6 +36,8 @@ LEFT_OUT: Final = frozenset(
 
 def column_type(name: str) -> Any:
     """Arrow type of a column by its row in the vocabulary: text where it has no unit."""
+    if name == "quantity":
+        return pyarrow.string()
     row = QUANTITIES.get(name)
     return pyarrow.float64() if row is None or row.unit else pyarrow.string()
 

@@ -10,8 +10,6 @@ from reduction.errors import SettingsError
 from reduction.units import DIMENSIONS, parse_quantity, scale_of_unit
 from reduction.vocabulary import QUANTITIES
 
-__all__ = ["Condition", "condition_of"]
-
 _FORM = re.compile(r"\s*(\w+)\s*(<=|>=|==|!=|<|>|=)\s*(.*?)\s*", re.DOTALL)
 _SHARE = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*%\s*(?:RBS|MBS|MBL)")
 _VALUE = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*)?")

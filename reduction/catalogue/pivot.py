@@ -3,64 +3,66 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-import pyarrow  # type: ignore[import-untyped]
+import pandas as pd
 from numpy.typing import NDArray
 
-from reduction.catalogue.columns import CONDITIONS
-from reduction.catalogue.index import Index
+from reduction.catalogue.columns import CONDITIONS, NUMBER
+from reduction.catalogue.file import Catalogue
 from reduction.errors import SettingsError
 
-__all__ = ["rows_with", "with_quantity"]
-
-_OF_VALUES = ("quantity", "row", "value", "standard_uncertainty")
+_OWN = ("row", *NUMBER)
 
 
-def rows_with(index: Index, fits: NDArray[np.bool_], asked: Sequence[str]) -> Any:
+def rows_with(catalogue: Catalogue, tests: pd.DataFrame, asked: Sequence[str]) -> pd.DataFrame:
     """Rows of tests with the numbers that are asked for.
 
     Parameters
     ----------
-    index : Index
+    catalogue : Catalogue
         With those numbers.
-    fits : NDArray of bool
-        Which rows of ``index.tests`` count, shape (n_rows,).
+    tests : pandas.DataFrame
+        Rows of ``catalogue.tests`` that count.
     asked : sequence of str
         Quantities; without one each specimen of each test is a row.
 
     Returns
     -------
-    table : pyarrow.Table
+    table : pandas.DataFrame
         `CONDITIONS`, a column for each dimension, each quantity and its standard uncertainty, and
-        ``row`` of ``index.tests``; in the order of tests, places as in their archives.
+        ``row`` of ``catalogue.tests``; in the order of tests, places as in their archives.
     """
-    parts = {name: _numbers_of(index, name, fits) for name in asked}
-    of_tests = [name for name, part in parts.items() if not _places(part)]
-    parts |= {name: parts[name].filter(parts[name]["value"].is_valid()) for name in of_tests}
-    placed = [name for name in asked if name not in of_tests]
-    if not asked:
-        rows = pyarrow.table({"row": np.flatnonzero(fits & _is_listed(index.tests))})
-    else:
-        rows = _pivoted([_named(parts[name], name) for name in placed], of_tests, parts)
-    for name in of_tests:
-        rows = _beside(rows, parts[name], name)
-    places = [name for name in rows.column_names if name != "row" and not _is_number(name, asked)]
+    values = catalogue.numbers[catalogue.numbers["row"].isin(tests.index)]
+    parts = {name: _numbers_of(values, name) for name in asked}
+    of_tests = {name: part for name, part in parts.items() if not _places(part, name)}
+    placed = [part for name, part in parts.items() if name not in of_tests]
+    listed = catalogue.tests.index[_is_listed(catalogue.tests)].intersection(tests.index)
+    rows = pd.DataFrame({"row": [] if asked else listed}, dtype=np.int64)
+    if placed:
+        together = pd.concat(placed, ignore_index=True)
+        numbers = [name for one in asked for name in _columns_of(one) if name in together]
+        keys = [name for name in together.columns if name not in numbers]
+        rows = together.groupby(keys, sort=False, dropna=False)[numbers].max().reset_index()
+    places = [name for name in rows.columns if name != "row" and not _is_number(name, asked)]
+    if of_tests:
+        # one row without place for tests that have none
+        known = pd.concat([one.dropna(subset=name)["row"] for name, one in of_tests.items()])
+        others = pd.DataFrame({"row": sorted(set(known) - set(rows["row"]))}, dtype=np.int64)
+        rows = pd.concat([rows, others], ignore_index=True) if len(rows) else others
+    for name, part in of_tests.items():
+        rows = _beside(rows, part, name)
     if asked:
-        known = [rows[name].is_valid().to_numpy() for name in asked]
-        rows = rows.filter(pyarrow.array(np.any(known, axis=0)))
-    rows = rows.sort_by("row")  # stable
-    tests = index.tests.take(rows["row"])
+        rows = rows.dropna(subset=list(asked), how="all")
+    rows = rows.reindex(columns=["row", *places, *(n for name in asked for n in _columns_of(name))])
+    rows = rows.sort_values("row", kind="stable", ignore_index=True)
     # a condition that is asked for as a quantity stands once, with its uncertainty
-    columns = {name: tests[name] for name in CONDITIONS if name not in asked}
-    columns |= {name: rows[name] for name in places}
-    for name in asked:
-        columns |= {one: rows[one] for one in _columns_of(name)}
-    return pyarrow.table(columns | {"row": rows["row"]})
+    names = [name for name in CONDITIONS if name not in asked]
+    about = tests.loc[rows["row"], names].reset_index(drop=True)
+    return pd.concat([about, rows], axis=1)
 
 
-def with_quantity(table: Any, index: Index, name: str) -> Any:
+def with_quantity(table: pd.DataFrame, catalogue: Catalogue, name: str) -> pd.DataFrame:
     """The same rows with a quantity of their tests.
 
     Raises
@@ -68,8 +70,8 @@ def with_quantity(table: Any, index: Index, name: str) -> Any:
     SettingsError
         If the quantity stands in several places of a test.
     """
-    part = _numbers_of(index, name, np.ones(index.tests.num_rows, bool))
-    places = _places(part)
+    part = _numbers_of(catalogue.numbers, name)
+    places = _places(part, name)
     if places:
         raise SettingsError(
             f"'{name}' stands in several places of a test",
@@ -79,16 +81,17 @@ def with_quantity(table: Any, index: Index, name: str) -> Any:
     return _beside(table, part, name)
 
 
-def _numbers_of(index: Index, name: str, fits: NDArray[np.bool_]) -> Any:
-    """Rows of the numbers of a quantity in tests that count."""
-    part = index.numbers_of(name)
-    return part.filter(pyarrow.array(fits[part["row"].to_numpy()]))
+def _numbers_of(values: pd.DataFrame, name: str) -> pd.DataFrame:
+    """Numbers of a quantity with their places, under its names."""
+    part = values[values["quantity"] == name]
+    places = [one for one in part.columns if one not in _OWN and part[one].notna().any()]
+    part = part[["row", *places, "value", "standard_uncertainty"]]
+    return part.rename(columns=dict(zip(NUMBER[1:], _columns_of(name), strict=True)))
 
 
-def _places(part: Any) -> list[str]:
+def _places(part: pd.DataFrame, name: str) -> list[str]:
     """Dimensions along which the numbers stand."""
-    names = [name for name in part.column_names if name not in _OF_VALUES]
-    return [name for name in names if part[name].null_count < part.num_rows]
+    return [one for one in part.columns if one not in ("row", *_columns_of(name))]
 
 
 def _columns_of(name: str) -> tuple[str, str]:
@@ -99,49 +102,15 @@ def _is_number(name: str, asked: Sequence[str]) -> bool:
     return any(name in _columns_of(one) for one in asked)
 
 
-def _is_listed(tests: Any) -> NDArray[np.bool_]:
+def _is_listed(tests: pd.DataFrame) -> NDArray[np.bool_]:
     """A row for each specimen, and for each archive that has none."""
-    is_whole = tests["is_whole"].to_numpy()
+    is_whole = tests["is_whole"].to_numpy(bool)
     # the row of the whole stands before those of its specimens
-    is_alone = is_whole & np.append(is_whole[1:], True)
-    listed: NDArray[np.bool_] = ~is_whole | is_alone
+    listed: NDArray[np.bool_] = ~is_whole | np.append(is_whole[1:], True)[: is_whole.size]
     return listed
 
 
-def _named(part: Any, name: str) -> Any:
-    """Numbers with their places, under the names of the quantity."""
-    value, spread = _columns_of(name)
-    columns = {one: part[one] for one in ("row", *_places(part))}
-    return pyarrow.table(columns | {value: part["value"], spread: part["standard_uncertainty"]})
-
-
-def _pivoted(placed: Sequence[Any], of_tests: Sequence[str], parts: dict[str, Any]) -> Any:
-    """One row for each place of each test; one without place for tests that have none."""
-    rows = pyarrow.table({"row": pyarrow.array([], pyarrow.int32())})
-    if placed:
-        together = pyarrow.concat_tables(placed, promote_options="default")
-        numbers = {name for one in placed for name in one.column_names[-2:]}
-        keys = [name for name in together.column_names if name not in numbers]
-        names = [name for name in together.column_names if name in numbers]
-        grouped = together.group_by(keys, use_threads=False)
-        rows = grouped.aggregate([(name, "max") for name in names]).select(
-            [*keys, *(f"{name}_max" for name in names)]
-        )
-        rows = rows.rename_columns([*keys, *names])
-    known = set(rows["row"].to_pylist())
-    others = {row for name in of_tests for row in parts[name]["row"].to_pylist()} - known
-    more = pyarrow.table({"row": pyarrow.array(sorted(others), pyarrow.int32())})
-    return pyarrow.concat_tables([rows, more], promote_options="default")
-
-
-def _beside(rows: Any, part: Any, name: str) -> Any:
+def _beside(rows: pd.DataFrame, part: pd.DataFrame, name: str) -> pd.DataFrame:
     """Numbers of tests beside each of their rows."""
-    size = 1 + max([*rows["row"].to_pylist(), *part["row"].to_pylist()], default=-1)
-    at = rows["row"].to_numpy()
-    for column, of_index in zip(_columns_of(name), _OF_VALUES[2:], strict=True):
-        values = np.full(size, np.nan)
-        values[part["row"].to_numpy()] = part[of_index].to_numpy()
-        rows = rows.append_column(
-            column, pyarrow.array(values[at], pyarrow.float64(), from_pandas=True)
-        )
-    return rows
+    of_row = part.set_index("row")
+    return rows.assign(**{one: rows["row"].map(of_row[one]) for one in _columns_of(name)})

@@ -1,4 +1,4 @@
-"""A question to the index: which tests, under which conditions, which numbers."""
+"""A question to the catalogue: which tests, under which conditions, which numbers."""
 
 from __future__ import annotations
 
@@ -9,18 +9,16 @@ from fnmatch import fnmatchcase
 from typing import Any, Final
 
 import numpy as np
+import pandas as pd
 import pyarrow  # type: ignore[import-untyped]
-import pyarrow.compute  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from reduction.catalogue.columns import standing_for
+from reduction.catalogue.columns import column_type, standing_for
 from reduction.catalogue.condition import Condition
-from reduction.catalogue.index import Index
+from reduction.catalogue.file import Catalogue
 from reduction.catalogue.pivot import rows_with, with_quantity
 from reduction.errors import SettingsError
 from reduction.vocabulary import QUANTITIES
-
-__all__ = ["Query", "answer", "needed_quantities", "quantities_there"]
 
 _WORD = re.compile(r"[\w.]+")
 # a value that came by way of another unit is not the same to the last bit
@@ -75,7 +73,7 @@ class Query:
 
     @property
     def asked(self) -> tuple[str, ...]:
-        """Quantities by the names of the index."""
+        """Quantities by the names of the catalogue."""
         names = self.quantity if self.by_cycle else map(standing_for, self.quantity)
         return tuple(dict.fromkeys(names))
 
@@ -105,12 +103,12 @@ def needed_quantities(query: Query) -> tuple[str, ...]:
     return (*query.asked, *(name for name in dict.fromkeys(others) if name not in query.asked))
 
 
-def answer(index: Index, query: Query) -> Any:
+def answer(catalogue: Catalogue, query: Query) -> Any:
     """Rows that fit a question.
 
     Parameters
     ----------
-    index : Index
+    catalogue : Catalogue
         With the numbers of `needed_quantities`.
     query : Query
         What is asked.
@@ -128,33 +126,32 @@ def answer(index: Index, query: Query) -> Any:
         several places of a test and are not asked for.
     """
     others = [name for name in needed_quantities(query) if name not in query.asked]
-    fits = _fits(index.tests, query)
-    table = rows_with(index, fits, query.asked)
+    table = rows_with(catalogue, catalogue.tests[_fits(catalogue.tests, query)], query.asked)
     for name in others:
-        if name not in table.column_names:
-            table = with_quantity(table, index, name)
+        if name not in table:
+            table = with_quantity(table, catalogue, name)
     for condition in query.where:
-        table = table.filter(_holds(table, query.column(condition.name), condition))
-    direction = "descending" if query.descending else "ascending"
+        table = table[_holds(table, query.column(condition.name), condition)]
     if query.sort:  # stable: rows that are alike stay in the order of their tests
-        table = table.sort_by([(query.column(name), direction) for name in query.sort])
-    table = table.drop_columns(["row"])
-    return table if query.limit is None else table.slice(0, query.limit)
+        names = [query.column(name) for name in query.sort]
+        table = _sorted(table, names, descending=query.descending)
+    table = table.drop(columns="row").iloc[: query.limit]
+    columns = {
+        str(name): pyarrow.array(table[name], column_type(str(name)), from_pandas=True)
+        for name in table
+    }
+    return pyarrow.table(columns)
 
 
-def quantities_there(index: Index) -> dict[str, int]:
-    """Quantities of an index with all its numbers, and how many numbers each has, by name."""
-    found: dict[str, int] = {}
-    for part in index.values:
-        known = part.filter(part["value"].is_valid())
-        for one in known["quantity"].value_counts().to_pylist():
-            found[one["values"]] = found.get(one["values"], 0) + one["counts"]
-    return dict(sorted(found.items()))
+def quantities_there(catalogue: Catalogue) -> dict[str, int]:
+    """Quantities of a catalogue with all its numbers, and how many numbers each has, by name."""
+    known = catalogue.numbers.dropna(subset="value")
+    return {str(name): int(n) for name, n in known["quantity"].value_counts().sort_index().items()}
 
 
-def _fits(tests: Any, query: Query) -> NDArray[np.bool_]:
+def _fits(tests: pd.DataFrame, query: Query) -> NDArray[np.bool_]:
     """Rows of tests that fit names and words."""
-    fits: NDArray[np.bool_] = pyarrow.compute.equal(tests["fault"], "").to_numpy()
+    fits = np.ones(len(tests), np.bool_)
     for column, patterns in query.names.items():
         wanted = [pattern.casefold() for pattern in patterns]
 
@@ -171,32 +168,34 @@ def _fits(tests: Any, query: Query) -> NDArray[np.bool_]:
 
         fits &= _texts_that(tests[column], has_words)
     if query.synthetic is not None:
-        is_synthetic = pyarrow.compute.equal(tests["synthetic"], "yes").to_numpy()
-        fits &= is_synthetic == query.synthetic
+        fits &= (tests["synthetic"] == "yes").to_numpy() == query.synthetic
     return fits
 
 
-def _texts_that(column: Any, fits: Callable[[str], bool]) -> NDArray[np.bool_]:
+def _texts_that(column: pd.Series[Any], fits: Callable[[str], bool]) -> NDArray[np.bool_]:
     """Entries of a column whose text fits; each text is asked once."""
-    texts = [text for text in column.unique().to_pylist() if text is not None and fits(text)]
-    wanted = pyarrow.array(texts, pyarrow.string())
-    found: NDArray[np.bool_] = pyarrow.compute.is_in(column, wanted).to_numpy()
-    return found
+    return column.isin([text for text in column.dropna().unique() if fits(text)]).to_numpy()
 
 
-def _holds(table: Any, name: str, condition: Condition) -> Any:
+def _holds(table: pd.DataFrame, name: str, condition: Condition) -> NDArray[np.bool_]:
     """Rows of which a condition holds; a number or text that is missing fits none."""
     column = table[name]
+    holds: NDArray[np.bool_]
     if isinstance(condition.value, str):
-        column = pyarrow.compute.utf8_lower(column)
-        is_same = pyarrow.compute.equal(column, condition.value.lower())
-        holds = is_same if condition.operator == "=" else pyarrow.compute.invert(is_same)
-    else:
-        numbers = column.cast(pyarrow.float64())
-        if condition.is_share:
-            numbers = pyarrow.compute.divide(numbers, table["rated_break_strength"])
-        values = numbers.to_numpy()
-        with np.errstate(invalid="ignore"):
-            holds = pyarrow.array(_COMPARE[condition.operator](values, condition.value))
-        holds = pyarrow.compute.and_(holds, pyarrow.array(np.isfinite(values)))
-    return pyarrow.compute.fill_null(holds, False)
+        holds = (column.str.lower() == condition.value.lower()).to_numpy(np.bool_)
+        holds = holds == (condition.operator == "=")
+        return np.logical_and(holds, column.notna().to_numpy(np.bool_))
+    values = column.to_numpy(np.float64)
+    if condition.is_share:
+        values = values / table["rated_break_strength"].to_numpy(np.float64)
+    with np.errstate(invalid="ignore"):
+        holds = _COMPARE[condition.operator](values, condition.value)
+    holds &= np.isfinite(values)
+    return holds
+
+
+def _sorted(table: pd.DataFrame, names: list[str], *, descending: bool) -> pd.DataFrame:
+    """Rows in an order; those without the number last."""
+    for name in reversed(names):
+        table = table.sort_values(name, ascending=not descending, kind="stable")
+    return table

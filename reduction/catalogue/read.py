@@ -1,60 +1,145 @@
-"""One archive as the index keeps it: conditions of its specimens, and numbers with their places."""
+"""The catalogue of a campaign, written from its archives: conditions and numbers."""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow  # type: ignore[import-untyped]
+import pyarrow.parquet  # type: ignore[import-untyped]
 import xarray as xr
 from numpy.typing import NDArray
 
-from reduction.archive.open import reading
+from reduction.archive.open import Opener, reading
 from reduction.archive.products import OF_CAMPAIGN
-from reduction.catalogue.columns import LEFT_OUT, NUMBERS, TEXTS, column_type
-from reduction.catalogue.entry import WHOLE, ArchiveEntry, Block
-from reduction.catalogue.files import shown_path
+from reduction.archive.whole import remove_abandoned, whole_file
+from reduction.catalogue.columns import CONDITIONS, LEFT_OUT, NUMBER, NUMBERS, TEXTS, column_type
+from reduction.catalogue.file import FILE_NAME, MARK, archives_of, campaigns_below, mark, shown_path
 from reduction.errors import ArchiveError
 from reduction.record import Floats
 from reduction.vocabulary import QUANTITIES
 
-__all__ = ["identity_of", "kept_cycles", "read_entry"]
-
 _SAMPLES_AT_ONCE = 1_000_000
+_ROWS_AT_ONCE = 65_536
+_WHOLE = -1
+_TESTS = pyarrow.schema(
+    [("row", pyarrow.int32()), ("is_whole", pyarrow.bool_())]
+    + [(name, column_type(name)) for name in (*CONDITIONS, *NUMBER)]
+)
 
 
-def identity_of(path: Path) -> str:
-    """What an archive says of itself; it differs where raw file, settings or version do.
+@dataclass(frozen=True)
+class Entry:
+    """What a catalogue keeps of one archive.
 
     Parameters
     ----------
-    path : pathlib.Path
-        An archive.
+    rows : list of dict
+        Conditions: of the whole test, then of each specimen.
+    numbers : list of pyarrow.Table
+        Numbers that stand on the same dimensions, with which of the rows each is of.
+    """
 
-    Returns
-    -------
-    identity : str
-        Of its global attributes, which name the raw files with their hashes, the settings and the
-        version: equal ones give equal products.
+    rows: list[dict[str, Any]]
+    numbers: list[Any]
+
+
+def write_catalogue(archives: Sequence[Path], path: Path, *, opener: Opener = reading) -> None:
+    """Write the catalogue of a campaign, whole or not at all.
+
+    Parameters
+    ----------
+    archives : sequence of pathlib.Path
+        Of the campaign.
+    path : pathlib.Path
+        Of the catalogue; equal archives give equal bytes.
+    opener : Opener
+        How archives are opened.
 
     Raises
     ------
     ArchiveError
-        If the file cannot be read.
+        If an archive cannot be read, or the disk refuses.
     """
-    with reading(path) as archive:
-        return _identity(archive.attrs)
+    _write([entry_of(one, opener=opener) for one in sorted(archives)], path)
 
 
-def _identity(attributes: Mapping[str, Any]) -> str:
-    text = "\0".join(f"{name}={attributes[name]}" for name in sorted(attributes))
-    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()[:32]
+def rebuild(folder: Path) -> dict[str, str]:
+    """Write the catalogue of every campaign of a folder from the archives that are there.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Holds a folder for each campaign.
+
+    Returns
+    -------
+    left_out : dict of str to str
+        Archives that cannot be read and folders that take no file, each with the reason.
+    """
+    left_out = {}
+    for campaign in campaigns_below(folder):
+        shown = shown_path(campaign.name)
+        entries = []
+        try:
+            for path in archives_of(campaign):
+                try:
+                    entries.append(entry_of(path))
+                except (ArchiveError, OSError, RuntimeError, ValueError, LookupError) as error:
+                    # one that opens may have parts that are damaged, or not those of an archive
+                    words = (str(error) or type(error).__name__).splitlines()[0]
+                    left_out[f"{shown}/{shown_path(path.name)}"] = shown_path(words)
+            if entries:
+                _write(entries, campaign / FILE_NAME)
+        except OSError as error:
+            left_out[shown] = shown_path(str(error))
+    return left_out
+
+
+def _write(entries: Sequence[Entry], path: Path) -> None:
+    rows: list[dict[str, Any]] = []
+    numbers = []
+    for entry in entries:
+        for one in entry.numbers:
+            row = pyarrow.array(one["row"].to_numpy() + len(rows), pyarrow.int32())
+            numbers.append(one.set_column(0, "row", row))
+        rows += entry.rows
+    tests = pyarrow.Table.from_pylist(
+        [row | {"row": place} for place, row in enumerate(rows)], schema=_TESTS
+    )
+    table = pyarrow.concat_tables([tests.schema.empty_table(), *numbers], promote_options="default")
+    # each number with the conditions of its test: the file can be read by itself
+    for name in ("is_whole", *CONDITIONS):
+        place = table.schema.get_field_index(name)
+        table = table.set_column(place, name, tests[name].take(table["row"]))
+    table = table.sort_by("quantity")
+    schema = table.schema.with_metadata({MARK: mark()})
+    tests = pyarrow.concat_tables([schema.empty_table(), tests], promote_options="default")
+    try:
+        remove_abandoned(path)
+        with whole_file(path) as part:
+            # opened here: a path may be no text
+            with (
+                part.open("wb") as file,
+                pyarrow.parquet.ParquetWriter(file, schema, compression="zstd") as writer,
+            ):
+                writer.write_table(tests, max(1, tests.num_rows))  # the first group are the tests
+                writer.write_table(table, _ROWS_AT_ONCE)
+    except ArchiveError:
+        raise
+    except OSError as error:
+        raise ArchiveError(
+            f"{path} cannot be written",
+            found=getattr(error, "strerror", None) or str(error),
+            hint="What was there before is kept.",
+        ) from error
 
 
 def kept_cycles(n_cycles: int) -> NDArray[np.intp]:
-    """Index of the cycles whose numbers the index keeps: 1, 2, 5, 10, 20, 50, ... and the last.
+    """Index of the cycles whose numbers a catalogue keeps: 1, 2, 5, 10, 20, 50, ... and the last.
 
     Examples
     --------
@@ -65,58 +150,32 @@ def kept_cycles(n_cycles: int) -> NDArray[np.intp]:
     return np.array(sorted({n for n in numbers if n < n_cycles} | {n_cycles}), dtype=np.intp) - 1
 
 
-def read_entry(path: Path, name: str) -> ArchiveEntry:
-    """Read what the index keeps of an archive.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The archive.
-    name : str
-        What is shown of its path.
-
-    Returns
-    -------
-    entry : ArchiveEntry
-        With the ``fault`` where the file cannot be read; nothing is raised then, so that one
-        broken archive does not hide the others.
-    """
-    # campaign and test of a broken archive are those of its path
-    folder, _, stem = name.rpartition("/")
-    known = {"archive": name, "campaign": folder, "test": stem.removesuffix(".nc")}
-    if path.is_dir():
-        fault = f"{name} is a folder that is no archive, or one that this user may not look into"
-        return ArchiveEntry("", dict(known), fault=fault)
-    try:
-        with reading(path) as archive:
-            return _entry(archive, known)
-    except ArchiveError as error:
-        return ArchiveEntry("", dict(known), fault=shown_path(str(error)))
-    except (OSError, RuntimeError, ValueError, KeyError, IndexError) as error:
-        # a file that opens and whose parts are damaged or not those of an archive
-        words = (str(error) or type(error).__name__).splitlines()[0]
-        return ArchiveEntry(
-            "", dict(known), fault=shown_path(f"{name} cannot be read; found {words}")
-        )
-
-
-def _entry(archive: xr.Dataset, known: Mapping[str, str]) -> ArchiveEntry:
-    attributes = archive.attrs
-    whole: dict[str, str | float] = {
-        name: str(attributes[name]) for name in TEXTS if name in attributes
-    }
-    whole = {"synthetic": "no"} | dict(known) | whole | {"archive": known["archive"]}
-    part = known["test"] if known["test"] in OF_CAMPAIGN else ""
-    whole["test_kind"] = part or str(attributes.get("test_kind", ""))
-    if "cycle" in archive.sizes:
-        whole["n_cycles"] = float(archive.sizes["cycle"])
-    names = archive.variables["specimen"].values.tolist() if "specimen" in archive.sizes else []
-    ends = _strain_ends(archive) if names else []
-    specimens = tuple(
-        whole | {"specimen": str(name)} | _conditions(archive, place) | ends[place]
-        for place, name in enumerate(names)
-    )
-    return ArchiveEntry(_identity(attributes), whole, specimens, tuple(_blocks(archive, names)))
+def entry_of(path: Path, *, opener: Opener = reading) -> Entry:
+    """Read what a catalogue keeps of an archive; `ArchiveError` where it cannot be read."""
+    with opener(path) as archive:
+        attributes = archive.attrs
+        stem = path.stem
+        whole: dict[str, Any] = {"synthetic": "no", "campaign": path.parent.name, "test": stem}
+        whole |= {name: str(attributes[name]) for name in TEXTS if name in attributes}
+        whole |= {"archive": path.name, "is_whole": True}
+        part = stem if stem in OF_CAMPAIGN else ""
+        whole["test_kind"] = part or str(attributes.get("test_kind", ""))
+        if "cycle" in archive.sizes:
+            whole["n_cycles"] = float(archive.sizes["cycle"])
+        names = archive.variables["specimen"].values.tolist() if "specimen" in archive.sizes else []
+        ends = _strain_ends(archive) if names else []
+        of_specimens = [
+            whole
+            | {"specimen": str(name), "is_whole": False}
+            | _conditions(archive, place)
+            | ends[place]
+            for place, name in enumerate(names)
+        ]
+        rows = [
+            {name: shown_path(one) if isinstance(one, str) else one for name, one in row.items()}
+            for row in (whole, *of_specimens)
+        ]
+        return Entry(rows, list(_blocks(archive, names)))
 
 
 def _conditions(archive: xr.Dataset, place: int) -> dict[str, str | float]:
@@ -167,7 +226,7 @@ def _widened(low: Floats, high: Floats, strain: Floats) -> tuple[Floats, Floats]
     )
 
 
-def _blocks(archive: xr.Dataset, names: list[str]) -> list[Block]:
+def _blocks(archive: xr.Dataset, names: list[str]) -> Iterator[Any]:
     """Numbers of an archive, those on the same dimensions together."""
     groups: dict[tuple[Hashable, ...], list[str]] = {}
     for name, variable in archive.variables.items():
@@ -177,12 +236,13 @@ def _blocks(archive: xr.Dataset, names: list[str]) -> list[Block]:
         )
         if is_number and not stays and name in QUANTITIES and name not in archive.sizes:
             groups.setdefault(variable.dims, []).append(str(name))
-    return [_block(archive, dims, group, names) for dims, group in groups.items()]
+    for dims, group in groups.items():
+        yield _block(archive, dims, group, names)
 
 
 def _block(
     archive: xr.Dataset, dims: tuple[Hashable, ...], group: list[str], specimens: list[str]
-) -> Block:
+) -> Any:
     axes = [np.arange(archive.sizes[dim]) for dim in dims]
     cycles: dict[str, NDArray[np.intp]] = {}
     if "cycle" in dims and archive.sizes["cycle"]:
@@ -215,7 +275,7 @@ def _block(
         for dim, index in at.items()
         if dim != "specimen"
     }
-    only = 0 if len(specimens) == 1 else WHOLE
+    only = 0 if len(specimens) == 1 else _WHOLE
     specimen = np.full(n_values, only, np.int32)
     if "specimen" in at:
         specimen = at["specimen"].astype(np.int32)
@@ -224,9 +284,22 @@ def _block(
             whose = f"{dim}_specimen"
             if whose in archive and archive.variables[whose].dims == (dim,) and specimens:
                 number = {name: place for place, name in enumerate(specimens)}
-                of_row = [number.get(str(name), WHOLE) for name in archive.variables[whose].values]
+                of_row = [number.get(str(name), _WHOLE) for name in archive.variables[whose].values]
                 specimen = np.array(of_row, np.int32)[index]
-    return Block(np.array(group, object)[found[0]], specimen, values[found], spread[found], place)
+    columns = {
+        # the row of the whole test stands before those of its specimens
+        "row": 1 + specimen,
+        "quantity": np.array(group, object)[found[0]],
+        "value": values[found],
+        "standard_uncertainty": spread[found],
+    } | place
+    types = {"row": pyarrow.int32()}
+    return pyarrow.table(
+        {
+            name: pyarrow.array(column, types.get(name) or column_type(name), from_pandas=True)
+            for name, column in columns.items()
+        }
+    )
 
 
 def _labels(archive: xr.Dataset, dim: str) -> NDArray[Any]:

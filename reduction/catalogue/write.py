@@ -14,8 +14,6 @@ from reduction.errors import ArchiveError, SettingsError
 from reduction.visible import safe_cell
 from reduction.vocabulary import QUANTITIES
 
-__all__ = ["check_ending", "meaning_of", "unit_of", "write_answer"]
-
 _SPREAD = "_standard_uncertainty"
 
 

@@ -18,8 +18,6 @@ from reduction.report.predictionpage import write_armour_page
 from reduction.tables.column import Cell, csv_text
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["predict_cable"]
-
 _OF_WIRE = {
     "axial_force": "N", "shear_force": "N", "bending_moment": "N m", "torsion_moment": "N m",
     "axial_stress": "Pa", "bending_stress": "Pa", "torsion_stress": "Pa",

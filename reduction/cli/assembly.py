@@ -26,8 +26,6 @@ from reduction.strain.model import StrainModel
 from reduction.uncertainty.combine import coverage_factor
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["assemble_spec", "deployed_line"]
-
 _ROWS = 16
 _KNOWN = float(coverage_factor(np.inf))
 """Coverage factor of a curve of many tests, whose degrees of freedom are not counted. [1]"""

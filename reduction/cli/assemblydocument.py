@@ -10,8 +10,6 @@ from reduction.cli.composite import contributions
 from reduction.cli.numbers import plain
 from reduction.pipeline.deployed import DeployedLine, WorkingState
 
-__all__ = ["assembly_document"]
-
 
 def assembly_document(line: DeployedLine) -> dict[str, Any]:
     """What ``--json`` says, in SI."""

@@ -22,8 +22,6 @@ from reduction.uncertainty.montecarlo import PARAMETERS
 from reduction.uncertainty.product import LINE_METHODS
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["list_budgets", "show_budget"]
-
 # what a look-up calls a curve of a slow pull
 _OVER_TENSION = {"strain": "quasi_static_strain"}
 
@@ -39,8 +37,8 @@ def list_budgets(path: Path, *, output: CommandOutput) -> None:
         output.show(table)
     else:
         output.say(
-            f"{path.name} keeps no errors that its numbers share, and has no budgets: what it has "
-            "is of scatter alone, or was made by an earlier version"
+            f"{path.name} has no errors that its numbers share, and no budgets: what it has is of "
+            "scatter alone"
         )
     output.answer(
         {"quantities": {name: [str(dim) for dim in dims] for name, dims in names.items()}}

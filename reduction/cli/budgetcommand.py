@@ -10,8 +10,6 @@ import typer
 from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import AllowRemote, Json, Quiet, Units
 
-__all__ = ["budget"]
-
 
 def budget(
     product: Annotated[

@@ -8,10 +8,16 @@ from typing import Annotated
 import typer
 
 from reduction.cli.commandoutput import CommandOutput, guarded
-from reduction.cli.options import AllowRemote, CampaignPath, Json, Quiet, Units
+from reduction.cli.options import (
+    AllowRemote,
+    CampaignPath,
+    Json,
+    ProcessedOut,
+    Quiet,
+    ReportsOut,
+    Units,
+)
 from reduction.cli.usage import here
-
-__all__ = ["check", "init", "report", "run", "schema", "sniff"]
 
 
 def init(
@@ -63,8 +69,8 @@ def check(
 
 def run(
     campaign: CampaignPath,
-    processed: Annotated[str, typer.Option(help="Where products go.")] = "processed",
-    reports: Annotated[str, typer.Option(help="Where the report goes.")] = "reports",
+    processed: ProcessedOut = Path("processed"),
+    reports: ReportsOut = Path("reports"),
     jobs: Annotated[
         int | None,
         typer.Option(min=1, help="Worker processes on this machine; 1 where left out."),
@@ -92,7 +98,6 @@ def run(
                 loaded,
                 processed=processed,
                 reports=reports,
-                allow_remote=allow_remote,
                 tests=tuple(test or ()),
                 force=force,
                 jobs=jobs,
@@ -103,27 +108,26 @@ def run(
 
 def report(
     processed_dir: Annotated[
-        str, typer.Argument(help="processed/CAMPAIGN, or processed/ for all.", show_default=False)
+        Path,
+        typer.Argument(
+            help="processed/CAMPAIGN, or processed/ for all.", show_default=False, callback=here
+        ),
     ],
-    reports: Annotated[str, typer.Option(help="Where the report goes.")] = "reports",
+    reports: ReportsOut = Path("reports"),
     pdf: Annotated[
         bool, typer.Option("--pdf", help="Print the report to the client to PDF, by a browser.")
     ] = False,
-    allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
     """Make the reports again, from the archives alone."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
-        from reduction.cli.remote import local_sources, report_folder
+        from reduction.cli.remote import in_order
         from reduction.cli.runs import report_again
 
-        with (
-            local_sources([processed_dir], allow_remote=allow_remote, output=output) as (here,),
-            report_folder(reports, allow_remote=allow_remote, output=output) as pages,
-        ):
-            report_again(Path(here), reports=pages, is_printed=pdf, output=output)
+        with in_order():
+            report_again(processed_dir, reports=reports, is_printed=pdf, output=output)
 
 
 def schema(

@@ -1,18 +1,18 @@
-"""The command ``catalogue``: a question to the index of a folder of products, and its answer."""
+"""The command ``catalogue``: a question to the campaigns of a folder, and its answer."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
 from rich.markup import escape
 
-from reduction.catalogue.changes import changes_since
 from reduction.catalogue.columns import NUMBERS
 from reduction.catalogue.condition import condition_of
-from reduction.catalogue.index import INDEX_NAME, Index, load_index
+from reduction.catalogue.file import Catalogue, load_catalogue
 from reduction.catalogue.query import Query, answer, needed_quantities, quantities_there
 from reduction.catalogue.write import check_ending, meaning_of, unit_of, write_answer
 from reduction.cli.commandoutput import CommandOutput
@@ -20,8 +20,6 @@ from reduction.cli.numbers import plain, short, table_of
 from reduction.cli.plaintable import plain_table
 from reduction.units import UnitSystem, display_unit
 from reduction.vocabulary import QUANTITIES
-
-__all__ = ["list_quantities", "query_of", "show_catalogue"]
 
 _SPREAD = "_standard_uncertainty"
 # what a terminal has room for; JSON and files have every column
@@ -64,27 +62,19 @@ def _named(text: str) -> str:
 
 
 def show_catalogue(
-    folder: Path,
-    query: Query,
-    *,
-    export: Path | None,
-    rebuild: bool,
-    jobs: int,
-    output: CommandOutput,
+    folder: Path, query: Query, *, export: Path | None, rebuild: bool, output: CommandOutput
 ) -> None:
     """Answer a question: a table, JSON, and a file where one is asked for."""
     if export is not None:
         check_ending(export)
-    index = _index(folder, needed_quantities(query), rebuild=rebuild, jobs=jobs, output=output)
-    table = answer(index, query)
+    catalogue = _catalogue(folder, needed_quantities(query), rebuild=rebuild)
+    table = answer(catalogue, query)
     if export is not None:
         write_answer(table, export)
     _show(table, query, output)
-    unreadable = index.unreadable()
     n_rows = table.num_rows
     output.say(f"{n_rows} row{'' if n_rows == 1 else 's'}" + (f", {export}" if export else ""))
-    for fault in unreadable.values():
-        output.error(f"left out: {fault}")
+    _say_what_is_left_out(catalogue, output)
     if output.json:
         output.answer(
             {
@@ -93,59 +83,45 @@ def show_catalogue(
                     {name: _plain(value) for name, value in row.items()}
                     for row in table.to_pylist()
                 ],
-                "unreadable": unreadable,
+                "unreadable": catalogue.unreadable,
             }
         )
 
 
-def list_quantities(folder: Path, *, rebuild: bool, jobs: int, output: CommandOutput) -> None:
+def list_quantities(folder: Path, *, rebuild: bool, output: CommandOutput) -> None:
     """Print which quantities the catalogue has."""
-    index = _index(folder, None, rebuild=rebuild, jobs=jobs, output=output)
-    found = quantities_there(index)
+    catalogue = _catalogue(folder, None, rebuild=rebuild)
+    found = quantities_there(catalogue)
     table = table_of("quantity", "unit", "meaning", "numbers", texts=3)
     for name, count in found.items():
         table.add_row(name, unit_of(name), escape(meaning_of(name)), str(count))
     output.show(table)
-    unreadable = index.unreadable()
-    for fault in unreadable.values():
-        output.error(f"left out: {fault}")
+    _say_what_is_left_out(catalogue, output)
     output.answer(
         {
             "quantities": {
                 name: {"unit": unit_of(name), "numbers": count} for name, count in found.items()
             },
-            "unreadable": unreadable,
+            "unreadable": catalogue.unreadable,
         }
     )
 
 
-def _index(
-    folder: Path,
-    quantities: Sequence[str] | None,
-    *,
-    rebuild: bool,
-    jobs: int,
-    output: CommandOutput,
-) -> Index:
-    """The index as it is now, with the numbers that are asked for."""
-    path = folder / INDEX_NAME
-    known = None if rebuild else load_index(path, quantities)
-    changes = changes_since(known, folder)
-    if known is not None and changes.is_none:
-        return known
-    # a question that the index answers does without the libraries that read archives
-    from reduction.catalogue.refresh import refresh
+def _catalogue(folder: Path, quantities: Sequence[str] | None, *, rebuild: bool) -> Catalogue:
+    """What the campaigns of a folder have, with the numbers that are asked for."""
+    if not rebuild:
+        return load_catalogue(folder, quantities)
+    # a question does without the libraries that read archives
+    from reduction.catalogue.read import rebuild as write_again
 
-    old = load_index(path) if known is not None else None
-    if old is not None:
-        # another run may have written it since
-        changes = changes_since(old, folder)
-    done = refresh(old, changes, path, jobs=jobs)
-    gone = f", {len(changes.gone)} gone" if changes.gone else ""
-    output.say(f"index: {done.n_read} of {len(changes.states)} archives read{gone}")
-    if done.not_kept:
-        output.error(f"the index is not kept, and is made again each time: {done.not_kept}")
-    return done.index
+    left_out = write_again(folder)
+    catalogue = load_catalogue(folder, quantities)
+    return replace(catalogue, unreadable=catalogue.unreadable | left_out)
+
+
+def _say_what_is_left_out(catalogue: Catalogue, output: CommandOutput) -> None:
+    for reason in catalogue.unreadable.values():
+        output.error(f"left out: {reason}")
 
 
 def _show(table: Any, query: Query, output: CommandOutput) -> None:

@@ -11,8 +11,6 @@ from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, Quiet, Units
 from reduction.cli.usage import here, written_here
 
-__all__ = ["catalogue"]
-
 Names = list[str] | None
 
 
@@ -57,8 +55,9 @@ def catalogue(
     what_there_is: Annotated[
         bool, typer.Option("--list", help="Which quantities there are, and how many numbers.")
     ] = False,
-    rebuild: Annotated[bool, typer.Option("--rebuild", help="Read every archive again.")] = False,
-    jobs: Annotated[int, typer.Option(min=1, help="Processes that read archives.")] = 1,
+    rebuild: Annotated[
+        bool, typer.Option("--rebuild", help="First make the catalogues again, from the archives.")
+    ] = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
@@ -68,7 +67,7 @@ def catalogue(
         from reduction.cli.catalogue import list_quantities, query_of, show_catalogue
 
         if what_there_is:
-            list_quantities(processed, rebuild=rebuild, jobs=jobs, output=output)
+            list_quantities(processed, rebuild=rebuild, output=output)
             return
         query = query_of(
             names={"campaign": campaign, "test": test, "test_kind": kind, "specimen": specimen},
@@ -86,4 +85,4 @@ def catalogue(
             descending=descending,
             limit=limit,
         )
-        show_catalogue(processed, query, export=export, rebuild=rebuild, jobs=jobs, output=output)
+        show_catalogue(processed, query, export=export, rebuild=rebuild, output=output)

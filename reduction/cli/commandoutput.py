@@ -27,12 +27,11 @@ from reduction.address import without_secrets
 from reduction.cli.plaintable import plain_table
 from reduction.cli.thousands import grouped
 from reduction.errors import ReductionError, SettingsError, refused_by_system
-from reduction.remote.scratch import in_words
+from reduction.remote import in_words
 from reduction.visible import visible
 
-__all__ = ["INTERRUPTED", "CommandOutput", "guarded"]
-
 INTERRUPTED = 130
+_LEAST_WORDS = 20
 
 
 @dataclass
@@ -65,8 +64,7 @@ class CommandOutput:
     def show(self, table: Table) -> None:
         """A table on standard output, where text is said, with every digit of its numbers.
 
-        Where no terminal is, one line a row; where a terminal has too few columns, words of the
-        last one below each row, or all row by row.
+        Where no terminal is, one line a row; where a terminal has too few columns, row by row.
         """
         if not self.is_text:
             return
@@ -77,14 +75,8 @@ class CommandOutput:
         # for eyes alone: what reads a pipe has no use for a blank in a number
         table = _changed(table, lambda cell, is_right: grouped(cell) if is_right else cell)
         console = Console(highlight=False)
-        if _least_width(table, console, words=30) <= console.width:
-            console.print(table)
-        elif _ends_in_words(table) and _width_before_last(table) <= console.width:
-            typer.echo(_with_last_below(table, console.width))
-        elif _least_width(table, console, words=10) <= console.width:
-            console.print(table)
-        else:
-            typer.echo(_row_by_row(table))
+        has_room = _least_width(table, console) <= console.width
+        console.print(table if has_room else _row_by_row(table))
 
     def answer(self, document: object) -> None:
         """The JSON object of ``--json``; the only thing on standard output then."""
@@ -138,8 +130,8 @@ def _between_words(text: str, stream: TextIO) -> str:
     return "\n".join(lines)
 
 
-def _least_width(table: Table, console: Console, *, words: int) -> int:
-    """Columns in which no number is cut, and a column of words has as many as that at most."""
+def _least_width(table: Table, console: Console) -> int:
+    """Columns in which no number is cut, and a column of words has twenty at most."""
     options = console.options.update(max_width=10_000)
     total = 0
     for column in table.columns:
@@ -147,7 +139,7 @@ def _least_width(table: Table, console: Console, *, words: int) -> int:
         if column.no_wrap:
             total += max(size.maximum for size in sizes)
         else:
-            least = max(words, column.min_width or 0)
+            least = max(_LEAST_WORDS, column.min_width or 0)
             total += min(least, max(size.maximum for size in sizes))
     return total + 2 * len(table.columns)
 
@@ -167,52 +159,17 @@ def _line_by_line(table: Table) -> str:
     return f"{_words(table.title)}\n{plain}" if table.title else plain
 
 
-def _ends_in_words(table: Table) -> bool:
-    """Whether the last of several columns is a message, and no number or name."""
-    last = table.columns[-1]
-    return len(table.columns) > 2 and last.justify == "left" and not last.no_wrap
-
-
-def _width_before_last(table: Table) -> int:
-    """Columns that all but the last column need, in which nothing is broken, no heading either."""
-    return sum(
-        max(cell_len(_words(cell)) for cell in (one.header, *one.cells)) + 2
-        for one in table.columns[:-1]
-    )
-
-
-def _with_last_below(table: Table, width: int) -> str:
-    """A table whose last column stands below each row, over the whole width."""
-    cells = [[_words(cell) for cell in column.cells] for column in table.columns[:-1]]
-    heads, *rows = plain_table(
-        [_words(column.header) for column in table.columns[:-1]],
-        cells,
-        is_number=[column.justify == "right" for column in table.columns[:-1]],
-    ).split("\n")
-    lines = [*([_words(table.title)] if table.title else []), heads]
-    for row, cell in zip(rows, table.columns[-1].cells, strict=True):
-        lines += [row, *_indented(_words(cell), width)]
-    return "\n".join(lines)
-
-
-def _indented(text: str, width: int) -> list[str]:
-    margin = "    "
-    return textwrap.wrap(text, width - 1, initial_indent=margin, subsequent_indent=margin)
-
-
-def _row_by_row(table: Table) -> str:
-    """A table as lines of a heading and a cell, rows parted by an empty line."""
-    heads = [_words(column.header) for column in table.columns]
-    size = max(map(len, heads), default=0)
-    rows = zip(*(list(column.cells) for column in table.columns), strict=True)
-    blocks = [
-        "\n".join(
-            f"{head:{size}}  {_words(cell)}".rstrip() for head, cell in zip(heads, row, strict=True)
-        )
-        for row in rows
-    ]
-    title = [_words(table.title)] if table.title else []
-    return "\n\n".join([*title, *blocks])
+def _row_by_row(table: Table) -> Table:
+    """A table of a heading and a cell a line, rows parted by an empty line."""
+    found = Table.grid(padding=(0, 2, 0, 0))
+    found.title, found.title_style, found.title_justify = table.title, "bold", "left"
+    heads = [" ".join(str(column.header).split()) for column in table.columns]
+    for place, row in enumerate(zip(*(column.cells for column in table.columns), strict=True)):
+        if place:
+            found.add_row()
+        for head, cell in zip(heads, row, strict=True):
+            found.add_row(head, cell)
+    return found
 
 
 @contextmanager

@@ -21,8 +21,6 @@ from reduction.tables.write import write_tables
 from reduction.units import UnitSystem, display_unit
 from reduction.vocabulary import quantity
 
-__all__ = ["compare_test"]
-
 _EVENTS = {"pick_up": "cords pick up", "working": "working load", "break": "cords break"}
 
 

@@ -23,8 +23,6 @@ from reduction.report.curvepage import write_composite_page
 from reduction.uncertainty.product import Component
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["PAGE", "compose_tests", "contributions", "table_format"]
-
 _ROWS = 24
 _SHOWN = 1e-3
 """Share of the tension above which a row says that it was moved."""

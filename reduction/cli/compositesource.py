@@ -19,8 +19,6 @@ from reduction.lookup.source import PieceSource
 from reduction.published.linesource import published_sources
 from reduction.published.piecesource import published_piece_sources
 
-__all__ = ["is_of_pieces", "piece_source", "rule_of"]
-
 
 def is_of_pieces(sources: Sequence[str]) -> bool:
     """Whether SOURCE names several tests: archives, a folder, a published tether."""

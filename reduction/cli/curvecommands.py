@@ -12,8 +12,6 @@ from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import AllowRemote, Json, Quiet, SpecPath, Units
 from reduction.cli.usage import written_here
 
-__all__ = ["assembly", "composite"]
-
 
 class CurveName(StrEnum):
     """What of a cycle becomes one curve."""

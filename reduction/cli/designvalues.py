@@ -9,8 +9,6 @@ from reduction.cli.commandoutput import CommandOutput
 from reduction.designpage.page import PAGE_NAME, write_design_page
 from reduction.errors import ArchiveError
 
-__all__ = ["address_of_design_page", "refresh_design_page"]
-
 
 def address_of_design_page(processed: Path, reports: Path, output: CommandOutput) -> str:
     """Address of the design-value page from the folder of a report; empty where none is written."""

@@ -12,8 +12,6 @@ from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, Quiet, SpecPath, Units
 from reduction.cli.usage import here, written_here
 
-__all__ = ["experiment", "surface"]
-
 OptionalSpecPath = Annotated[
     Path | None, typer.Argument(metavar="[SPEC.toml]", show_default=False, callback=here)
 ]

@@ -21,8 +21,6 @@ from reduction.surface.smallest import smallest_effect
 from reduction.tables.column import csv_text
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["plan_runs"]
-
 _ROUNDING = 1e-9
 
 

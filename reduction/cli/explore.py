@@ -14,13 +14,9 @@ from reduction.cli.commandoutput import INTERRUPTED, CommandOutput
 from reduction.cli.progress import campaign_progress
 from reduction.cli.remote import in_order
 from reduction.errors import SettingsError
-from reduction.explore.routes import Routes
 from reduction.explore.server import ExploreServer
 from reduction.explore.session import Session
-from reduction.explore.work import Work
 from reduction.units import UnitSystem
-
-__all__ = ["serve"]
 
 
 def serve(
@@ -45,9 +41,8 @@ def serve(
             "Set REDUCTION_DEBUG=1 to see where, and please report it."
         )
 
-    work = Work(told_of_defect)
     units = cast("UnitSystem", output.units)
-    with in_order(), ExploreServer(Routes(session, work, units), port, told_of_defect) as server:
+    with in_order(), ExploreServer(session, units, port, told_of_defect) as server:
         output.say(f"{path}: {len(session.surveys)} tests")
         output.say(f"Open {server.address}")
         output.say("Ctrl-C ends it. Only this machine is answered, and only with this address.")
@@ -62,5 +57,3 @@ def serve(
         except KeyboardInterrupt:
             output.say("Ended.")
             output.raise_status(INTERRUPTED)
-        finally:
-            work.close()

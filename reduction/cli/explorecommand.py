@@ -11,8 +11,6 @@ from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import Json, OwnCampaign, Quiet, Units
 from reduction.cli.usage import here
 
-__all__ = ["explore"]
-
 
 def explore(
     processed_dir: Annotated[

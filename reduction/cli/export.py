@@ -27,8 +27,6 @@ from reduction.lookup.source import compose
 from reduction.published.linesource import published_sources
 from reduction.units import Dimension, UnitSystem, parse_quantity
 
-__all__ = ["export_source"]
-
 _DIMENSIONS: dict[str, Dimension] = {
     "diameter": "length",
     "linear_density": "linear_density",

@@ -13,8 +13,6 @@ from reduction.pipeline.hosedesigns import DesignedHose
 from reduction.prediction import HoseTarget
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["designed", "show_designs"]
-
 
 def show_designs(
     designs: Sequence[DesignedHose], target: HoseTarget, output: CommandOutput, system: UnitSystem

@@ -8,8 +8,6 @@ from reduction.errors import SettingsError
 from reduction.export.product import CYLINDER, Hydrodynamics
 from reduction.units import parse_quantity
 
-__all__ = ["stated_hydrodynamics"]
-
 _NEEDED = 'two numbers, "1.6, 0.02": across the line, along it'
 
 

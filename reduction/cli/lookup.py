@@ -23,16 +23,6 @@ from reduction.record import Floats
 from reduction.units import UnitSystem, display_unit
 from reduction.vocabulary import quantity as quantity_of
 
-__all__ = [
-    "fold_last",
-    "list_sources",
-    "look_up_values",
-    "said_of_lines",
-    "shown_levels",
-    "span",
-    "write_table",
-]
-
 
 def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutput) -> None:
     """Print what SOURCE holds: each line, its quantities, and over which range."""

@@ -23,8 +23,6 @@ from reduction.record import Bools, Floats
 from reduction.units import UnitSystem, display_unit
 from reduction.vocabulary import quantity as quantity_of
 
-__all__ = ["look_up_against"]
-
 
 def look_up_against(source: str, other: str, wanted: Wanted, *, output: CommandOutput) -> None:
     """Print values of two lines, their difference and ratio, and whether the intervals allow it."""

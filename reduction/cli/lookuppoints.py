@@ -16,8 +16,6 @@ from reduction.lookup.product import LineSource
 from reduction.record import Floats
 from reduction.units import Dimension, parse_quantity
 
-__all__ = ["MOST_POINTS", "Wanted", "parsed_search", "points_of"]
-
 _DIMENSIONS: dict[str, Dimension] = {
     "frequency": "frequency",
     "mean_tension": "force",

@@ -11,8 +11,6 @@ from reduction.lookup.product import LineSource
 from reduction.published.linesource import published_sources
 from reduction.vocabulary import SINGLE_QUANTITIES
 
-__all__ = ["lines_of", "name_of_quantity", "one_of"]
-
 _OF_CYCLES = (
     "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
     "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient",

@@ -6,6 +6,8 @@ packages are imported inside the commands, so that ``--help`` answers at once.
 
 from __future__ import annotations
 
+import gc
+import os
 import sys
 from typing import Annotated, Any
 
@@ -17,6 +19,7 @@ from reduction.cli.campaigncommands import check, init, report, run, schema, sni
 from reduction.cli.cataloguecommand import catalogue
 from reduction.cli.commandoutput import INTERRUPTED
 from reduction.cli.curvecommands import assembly, composite
+from reduction.cli.diffcommand import diff
 from reduction.cli.experimentcommands import experiment, surface
 from reduction.cli.explorecommand import explore
 from reduction.cli.lookupcommand import lookup
@@ -25,14 +28,17 @@ from reduction.cli.publishedcommands import export, reproduce
 from reduction.cli.usage import Commands
 from reduction.cli.verifycommand import verify
 
-__all__ = ["app"]
-
 
 class _Application(typer.Typer):
     """The command, which ends in words also where it is interrupted before it has begun."""
 
     def __call__(self, *words: Any, **options: Any) -> Any:
         """Run it."""
+        # numpy, which is not loaded yet, takes this as it is: threads for matrices as small as
+        # those of a reduction wait for each other, and longer than the products take
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        # an archive is many small objects without circles: looked through for those less often
+        gc.set_threshold(100_000, 20, 50)
         try:
             return super().__call__(*words, **options)
         except KeyboardInterrupt:
@@ -83,5 +89,6 @@ app.command()(catalogue)
 app.command()(report)
 app.command()(explore)
 app.command()(verify)
+app.command()(diff)
 app.command()(reproduce)
 app.command()(schema)

@@ -13,10 +13,6 @@ from rich.table import Table
 from reduction.digits import fixed_number, places_within, plain_number
 from reduction.units import UnitSystem, combined_unit, display_unit
 
-__all__ = [
-    "Shown", "as_given", "fitted_unit", "plain", "short", "table_of", "within",
-]  # fmt: skip
-
 _LARGE, _HUGE = 1e5, 1e7
 
 

@@ -7,12 +7,11 @@ from typing import Annotated
 
 import typer
 
-from reduction.cli.usage import here
-
-__all__ = ["AllowRemote", "CampaignPath", "Json", "OwnCampaign", "Quiet", "SpecPath", "Units"]
+from reduction.cli.usage import here, written_here
 
 
-def _here(path: Path | None) -> Path | None:
+def here_if_given(path: Path | None) -> Path | None:
+    """A path of this machine, where one is given."""
     return None if path is None else here(path)
 
 
@@ -20,10 +19,14 @@ Json = Annotated[bool, typer.Option("--json", help="One JSON object on standard 
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Nothing but errors.")]
 Units = Annotated[str, typer.Option("--units", help="What is shown: si or us (psi, lbf, ft).")]
 SpecPath = Annotated[Path, typer.Argument(metavar="SPEC.toml", show_default=False, callback=here)]
-CampaignPath = Annotated[str, typer.Argument(metavar="CAMPAIGN.toml", show_default=False)]
+CampaignPath = Annotated[
+    Path, typer.Argument(metavar="CAMPAIGN.toml", show_default=False, callback=here)
+]
+ProcessedOut = Annotated[Path, typer.Option(help="Where products go.", callback=written_here)]
+ReportsOut = Annotated[Path, typer.Option(help="Where the report goes.", callback=written_here)]
 AllowRemote = Annotated[
     bool,
-    typer.Option("--allow-remote", help="Let files be addresses, such as s3://bucket/T-1.csv."),
+    typer.Option("--allow-remote", help="Let logs and archives be addresses: s3://bucket/T-1.csv."),
 ]
 OwnCampaign = Annotated[
     Path | None,
@@ -31,6 +34,6 @@ OwnCampaign = Annotated[
         metavar="CAMPAIGN.toml",
         help="Where the campaign is, if in neither raw/CAMPAIGN/ nor CAMPAIGN/.",
         show_default=False,
-        callback=_here,
+        callback=here_if_given,
     ),
 ]

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 
 from rich.cells import cell_len
 
-__all__ = ["NOTHING", "plain_table"]
-
 NOTHING = "-"
 """What stands in an empty cell, so that every line has as many columns."""
 

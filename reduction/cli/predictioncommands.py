@@ -12,8 +12,6 @@ from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import AllowRemote, Json, Quiet, SpecPath, Units
 from reduction.cli.usage import written_here
 
-__all__ = ["compare", "predict"]
-
 
 class PredictionName(StrEnum):
     """Predictions that the command line knows."""

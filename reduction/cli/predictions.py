@@ -24,8 +24,6 @@ from reduction.tables.write import write_tables
 from reduction.units import UnitSystem, display_unit
 from reduction.vocabulary import quantity
 
-__all__ = ["predict_hose"]
-
 _SHOWN = 24
 _ALONG = (
     "strain", "free_strain", "tension", "fill_pressure", "cord_tension", "cord_strain",

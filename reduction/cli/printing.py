@@ -12,8 +12,6 @@ from pathlib import Path
 from reduction.archive.whole import whole_file
 from reduction.errors import ArchiveError, SettingsError
 
-__all__ = ["find_browser", "print_page"]
-
 _NAMES = (
     "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome",
     "microsoft-edge", "microsoft-edge-stable", "msedge",

@@ -7,8 +7,6 @@ from pathlib import Path
 from reduction.archive.products import archives_in
 from reduction.errors import ArchiveError
 
-__all__ = ["processed_folders"]
-
 
 def processed_folders(processed: Path) -> list[Path]:
     """Folders with archives: the one that is given, or those in it.

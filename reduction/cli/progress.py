@@ -22,9 +22,6 @@ from rich.text import Text
 from reduction.batch.status import TestStatus
 from reduction.cli.commandoutput import CommandOutput
 
-__all__ = ["CampaignProgress", "campaign_progress"]
-
-_MANY = 4  # tests at work that are named one by one
 _WORDS = {
     "survey": "reading", "reduce": "reducing", "tables": "writing tables",
     "report": "writing the report",
@@ -48,7 +45,7 @@ class CampaignProgress:
     bar : rich.progress.Progress, optional
         On a terminal.
     is_quiet : bool
-        Nothing is said, but remarks are.
+        Nothing is said.
     """
 
     def __init__(self, bar: Progress | None = None, *, is_quiet: bool = False) -> None:
@@ -56,12 +53,12 @@ class CampaignProgress:
         self._is_quiet = is_quiet
         self._task: TaskID | None = None
         self._stage, self._done, self._total = "", 0, 0
-        self._running: dict[str, None] = {}
+        self._running = ""
 
     def stage(self, name: str, n_tests: int) -> None:
         """A stage begins."""
         self._stage, self._done, self._total = name, 0, n_tests
-        self._running.clear()
+        self._running = ""
         if self._bar is not None:
             if self._task is not None:
                 self._bar.remove_task(self._task)
@@ -70,13 +67,13 @@ class CampaignProgress:
 
     def begun(self, test: str) -> None:
         """Work on a test began."""
-        self._running[test] = None
+        self._running = test
         self._show()
 
     def ended(self, test: str, status: TestStatus | None = None) -> None:
         """Work on a test ended: a line where it has a status."""
         self._done += 1
-        self._running.pop(test, None)
+        self._running = ""
         self._show()
         if status is None:
             return
@@ -86,21 +83,10 @@ class CampaignProgress:
             words.append(f"{status.seconds:.1f} s")
         if status.worker:
             words.append(status.worker)
-        if self._running:
-            words.append(f"at work: {self._at_work()}")
         self._line(", ".join(words))
 
-    def remark(self, text: str) -> None:
-        """Something that a person should know."""
-        self._say(text)
-
-    def _at_work(self) -> str:
-        named = list(self._running)[:_MANY]
-        more = len(self._running) - len(named)
-        return ", ".join(named) + (f" and {more} more" if more else "")
-
     def _words(self) -> str:
-        return escape(f"{_WORDS.get(self._stage, self._stage)} {self._at_work()}".rstrip())
+        return escape(f"{_WORDS.get(self._stage, self._stage)} {self._running}".rstrip())
 
     def _show(self) -> None:
         if self._bar is not None and self._task is not None:
@@ -110,10 +96,8 @@ class CampaignProgress:
             )
 
     def _line(self, text: str) -> None:
-        if not self._is_quiet:
-            self._say(text)
-
-    def _say(self, text: str) -> None:
+        if self._is_quiet:
+            return
         if self._bar is None:
             sys.stderr.write(f"{text}\n")
             sys.stderr.flush()

@@ -11,8 +11,6 @@ from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import AllowRemote, Json, Quiet, Units
 from reduction.cli.usage import written_here
 
-__all__ = ["export", "reproduce"]
-
 
 def export(
     sources: Annotated[

@@ -7,37 +7,32 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
 from pathlib import Path
 from signal import SIG_DFL, Signals, default_int_handler, getsignal, signal
 from threading import current_thread, main_thread
 
 from reduction.address import shown_address
-from reduction.archive.products import OF_CAMPAIGN
 from reduction.campaign.plan import Campaign
 from reduction.campaign.staged import staged_campaign
 from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.progress import campaign_progress
-from reduction.remote.mirror import copied, mirrored, put_at_end
-from reduction.remote.place import allowed, base_name, below
-from reduction.remote.scratch import renamed, scratch_folder
-
-__all__ = ["campaign_at", "in_order", "local_sources", "product_folders", "report_folder"]
+from reduction.errors import SettingsError
+from reduction.remote import allowed, base_name, fetch, product_fault, renamed, scratch_folder
 
 # a machine that is shut down or a queue that ends a job; a terminal that is closed, where there are
 _REQUESTS = [one for one in Signals if one.name in ("SIGTERM", "SIGHUP")]
 
 
 @contextmanager
-def campaign_at(address: str, *, allow_remote: bool, output: CommandOutput) -> Iterator[Campaign]:
-    """Load a campaign from a path or an address, with its logs at hand.
+def campaign_at(path: Path, *, allow_remote: bool, output: CommandOutput) -> Iterator[Campaign]:
+    """Load a campaign with its logs at hand.
 
     Parameters
     ----------
-    address : str
+    path : pathlib.Path
         The campaign.toml.
     allow_remote : bool
-        Whether anything is fetched from the net.
+        Whether logs are fetched from the net.
     output : CommandOutput
         Learns what copies are called.
 
@@ -51,7 +46,7 @@ def campaign_at(address: str, *, allow_remote: bool, output: CommandOutput) -> I
         with campaign_progress(output) as bar:
             campaign = opened.enter_context(
                 staged_campaign(
-                    address,
+                    path,
                     allow_remote=allow_remote,
                     progress=lambda stage, name: bar.stage(f"{stage} {name}", 0),
                 )
@@ -78,92 +73,10 @@ def in_order() -> Iterator[None]:
 
 
 @contextmanager
-def product_folders(
-    campaign: Campaign, processed: str, reports: str, *, allow_remote: bool, output: CommandOutput
-) -> Iterator[tuple[Campaign, Path, Path]]:
-    """Give folders of this machine to write products into; on the net they appear at the end.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    processed, reports : str
-        Paths or addresses of the folders in which campaigns have theirs.
-    allow_remote : bool
-        Whether they may be addresses.
-    output : CommandOutput
-        Learns what copies are called.
-
-    Yields
-    ------
-    campaign : Campaign
-        Whose messages name the addresses.
-    processed, reports : pathlib.Path
-        Where to write.
-
-    Raises
-    ------
-    SettingsError
-        If one is an address and addresses are not allowed, or nothing can be written there.
-    ArchiveError
-        If products cannot be copied from there, or put there.
-    """
-    is_remote = allowed(processed, allow_remote, what="--processed")
-    with (
-        report_folder(reports, allow_remote=allow_remote, output=output) as pages,
-        renamed(output.names),
-        ExitStack() as opened,  # closed first: a page follows the products that it shows
-    ):
-        folder = Path(processed)
-        if is_remote:
-            folder = opened.enter_context(scratch_folder())
-            output.names[str(folder)] = shown_address(processed).rstrip("/")
-            opened.enter_context(mirrored(below(processed, campaign.id), folder / campaign.id))
-        yield replace(campaign, names=campaign.names | output.names), folder, pages
-
-
-@contextmanager
-def report_folder(reports: str, *, allow_remote: bool, output: CommandOutput) -> Iterator[Path]:
-    """Give a folder of this machine to write pages into; on the net they appear at the end.
-
-    Parameters
-    ----------
-    reports : str
-        Path or address of the folder in which campaigns have theirs.
-    allow_remote : bool
-        Whether it may be an address.
-    output : CommandOutput
-        Learns what the copy is called.
-
-    Yields
-    ------
-    folder : pathlib.Path
-        Where to write.
-
-    Raises
-    ------
-    SettingsError
-        If it is an address and addresses are not allowed, or nothing can be written there.
-    ArchiveError
-        If a page cannot be put there.
-    """
-    if not allowed(reports, allow_remote, what="--reports"):
-        yield Path(reports)
-        return
-    # what draws is not needed to read
-    from reduction.report.page import is_page_beside
-
-    with scratch_folder() as folder, renamed(output.names):
-        output.names[str(folder)] = shown_address(reports).rstrip("/")
-        with put_at_end(reports, folder, beside=is_page_beside):
-            yield folder
-
-
-@contextmanager
 def local_sources(
     sources: Sequence[str], *, allow_remote: bool, output: CommandOutput
 ) -> Iterator[list[str]]:
-    """Copy each source that is an address: an archive, or the folder of a processed campaign.
+    """Copy each source that is the address of an archive.
 
     Parameters
     ----------
@@ -182,9 +95,9 @@ def local_sources(
     Raises
     ------
     SettingsError
-        If one is an address and addresses are not allowed.
+        If one is an address and addresses are not allowed, or not of an archive.
     ArchiveError
-        If there is no archive, or it cannot be copied.
+        If it cannot be copied.
     """
     with ExitStack() as opened:
         opened.enter_context(in_order())
@@ -194,9 +107,17 @@ def local_sources(
             if not allowed(source, allow_remote, what="the source"):
                 found.append(source)
                 continue
-            folder = opened.enter_context(scratch_folder())
-            is_whole = base_name(source).removesuffix(".nc") in OF_CAMPAIGN
-            copy = copied(source, folder, beside=is_whole)
+            name = base_name(source)
+            if not name.endswith(".nc"):
+                raise SettingsError(
+                    "the source is an address, and not of an archive", found=shown_address(source),
+                    needed="the address of one archive, such as s3://bucket/processed/tmt/T-1.nc; "
+                    "a folder on this machine",
+                    hint="Copy the folder here first, with aws s3 sync, rclone or the like.",
+                )  # fmt: skip
+            above = base_name(shown_address(source).rpartition("/")[0]) or "campaign"
+            copy = opened.enter_context(scratch_folder()) / above / name
+            fetch(source, copy, fault=product_fault)
             output.names[str(copy)] = shown_address(source)
             found.append(str(copy))
         yield found

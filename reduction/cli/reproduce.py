@@ -26,8 +26,6 @@ from reduction.reproduce.reports import (
     touched_errata,
 )
 
-__all__ = ["document", "reproduce_erratum", "reproduce_reports"]
-
 UNEXPLAINED = DataError.exit_status
 _COLUMNS = (
     "cells: printed numbers of a table. reproduced: comes back from other numbers of the pages "

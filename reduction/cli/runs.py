@@ -14,7 +14,7 @@ from typing import Any, cast
 from rich.markup import escape
 from rich.table import Table
 
-from reduction.archive.inmemory import ArchivesInMemory
+from reduction.archive.open import read_once
 from reduction.batch.check import check_campaign as check_tests
 from reduction.batch.part import PartStatus
 from reduction.batch.planned import experiments_found
@@ -26,15 +26,12 @@ from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.designvalues import address_of_design_page, refresh_design_page
 from reduction.cli.processed import processed_folders
 from reduction.cli.progress import campaign_progress
-from reduction.cli.remote import product_folders
-from reduction.cli.workers import chosen_executor
+from reduction.cli.workers import chosen_workers
 from reduction.errors import ArchiveError, SettingsError
 from reduction.report.clientreport import PAGE_NAME
 from reduction.report.page import write_report
 from reduction.strain.model import StrainModel
 from reduction.units import UnitSystem, display_unit
-
-__all__ = ["check_campaign", "report_again", "run_campaign"]
 
 
 def _status_table(tests: Sequence[TestStatus]) -> Table:
@@ -187,9 +184,8 @@ def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: Comman
 def run_campaign(
     campaign: Campaign,
     *,
-    processed: str,
-    reports: str,
-    allow_remote: bool,
+    processed: Path,
+    reports: Path,
     tests: tuple[str, ...],
     force: bool,
     jobs: int | None,
@@ -197,37 +193,31 @@ def run_campaign(
     output: CommandOutput,
 ) -> None:
     """Reduce a campaign and say what became of each test."""
-    archives = ArchivesInMemory()
+    opener = read_once()
     with (
-        product_folders(campaign, processed, reports, allow_remote=allow_remote, output=output) as (
-            campaign,
-            processed_here,
-            reports_here,
-        ),
-        chosen_executor(jobs, scheduler) as executor,
+        chosen_workers(jobs, scheduler) as workers,
         campaign_progress(output) as progress,
     ):
         if scheduler is not None:
             # the workers have working folders of their own
             campaign = replace(campaign, path=campaign.path.absolute())
-            processed_here = processed_here.absolute()
+            processed = processed.absolute()
         result = run_tests(
             campaign,
-            processed=processed_here,
-            reports=reports_here,
+            processed=processed,
+            reports=reports,
             clock=time.perf_counter,
             tests=tests,
             force=force,
             # paths, jobs and choices of tests are left out, so that equal inputs give equal bytes
             command="reduction run campaign.toml",
             units=cast("UnitSystem", output.units),
-            values_page=address_of_design_page(processed_here, reports_here, output),
-            executor=executor,
+            values_page=address_of_design_page(processed, reports, output),
+            workers=workers,
             progress=progress,
-            opener=archives.reading,
+            opener=opener,
         )
-        # here, where it is still a file of this machine
-        client = None if result.report is None else _client_report(result.report)
+    client = None if result.report is None else _client_report(result.report)
     if result.tests or not (campaign.outcomes or campaign.hoses):
         output.show(_status_table(result.tests))
     _say_results(output, results_found(campaign))
@@ -261,7 +251,7 @@ def run_campaign(
         output.say(f"report:   {result.report}")
     _say_client_report(client, output)
     document["design_values"] = refresh_design_page(
-        processed_here, reports_here, output, made=campaign.id, opener=archives.reading
+        processed, reports, output, made=campaign.id, opener=opener
     )
     output.answer(document)
     _report_failures(output, result.tests, result.parts)

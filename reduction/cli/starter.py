@@ -10,8 +10,6 @@ from reduction.ingest.sniff import sniff_layout
 from reduction.ingest.starter import starter_campaign
 from reduction.visible import toml_comment
 
-__all__ = ["print_layout", "start_campaign"]
-
 
 def print_layout(file: Path, output: CommandOutput) -> None:
     """Print a proposed layout in TOML, and what in it is a guess."""

@@ -20,8 +20,6 @@ from reduction.surface.product import (
 from reduction.surface.screening import ScreeningEffects
 from reduction.units import combined_unit
 
-__all__ = ["effects_document", "frame", "surface_document"]
-
 
 def frame(runs: RunSeries, notes: tuple[str, ...]) -> dict[str, Any]:
     """What answers for surfaces and for effects have in common."""

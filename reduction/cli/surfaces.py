@@ -21,8 +21,6 @@ from reduction.surface.screening import ScreeningEffects, screening_effects, scr
 from reduction.surface.surfaces import fit_surfaces
 from reduction.units import UnitSystem
 
-__all__ = ["fit_runs"]
-
 _NEAR_A_LEVEL = 0.1
 """Coded distance from -1 or 1 at which a level of a screening is still that level."""
 

@@ -18,8 +18,6 @@ from reduction.surface.product import (
 from reduction.surface.screening import ScreeningEffects
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["show_effects", "show_surfaces"]
-
 
 def show_surfaces(
     surfaces: ResponseSurfaces,

@@ -14,8 +14,6 @@ from reduction.export.product import ExportLine
 from reduction.export.thin import curve_from_zero
 from reduction.units import parse_quantity
 
-__all__ = ["with_syrope"]
-
 _ROUNDING = 1e-9
 _NEEDED = 'a form and its numbers: "LINEAR, 0.2", "QUADRATIC, 0.2, 0.5" or "EXP, 0.2, 1.5"'
 

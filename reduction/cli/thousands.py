@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["grouped"]
-
 _NUMBERS = re.compile(r"[-+]?[\d.]+(?: to [-+]?[\d.]+)?")
 _MANY = re.compile(r"(?<![\d.])\d{6,}")
 

@@ -14,8 +14,6 @@ from typer.core import TyperGroup
 
 from reduction.address import shown_address
 
-__all__ = ["Commands", "here", "written_here"]
-
 USAGE = 2
 _LONGEST = 500
 # click's own class, which some versions of typer carry within themselves

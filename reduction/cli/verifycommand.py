@@ -11,8 +11,6 @@ from reduction.cli.commandoutput import CommandOutput, guarded
 from reduction.cli.options import AllowRemote, Json, OwnCampaign, Quiet
 from reduction.cli.usage import here
 
-__all__ = ["verify"]
-
 
 def verify(
     processed_dir: Annotated[

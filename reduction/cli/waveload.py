@@ -16,8 +16,6 @@ from reduction.report.predictionpage import write_wave_page
 from reduction.tables.column import csv_text
 from reduction.units import UnitSystem, display_unit
 
-__all__ = ["predict_wave"]
-
 _SERIES = ("horizontal", "vertical", "horizontal_classic", "vertical_classic")
 _UNITS = {
     "time": "s", **dict.fromkeys(_SERIES, "N m-1"), "immersion_depth": "m",

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
-from reduction.batch.executor import Executor, Serial
+from reduction.batch.executor import Workers, local_workers
 from reduction.errors import SettingsError
-
-__all__ = ["chosen_executor"]
 
 
 @contextmanager
-def chosen_executor(jobs: int | None, scheduler: str | None) -> Iterator[Executor]:
+def chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers | None]:
     """Give what ``--jobs`` or ``--scheduler`` asks for, and end it afterwards.
 
     Parameters
@@ -24,13 +22,13 @@ def chosen_executor(jobs: int | None, scheduler: str | None) -> Iterator[Executo
 
     Yields
     ------
-    executor : Executor
-        Ready to work.
+    workers : Workers or None
+        Ready to work; None where this process does it itself.
 
     Raises
     ------
     SettingsError
-        If both are given, or Dask is not there.
+        If both are given, or Dask is not there for a scheduler.
     """
     if jobs is not None and scheduler is not None:
         raise SettingsError(
@@ -38,19 +36,19 @@ def chosen_executor(jobs: int | None, scheduler: str | None) -> Iterator[Executo
             found=f"--jobs {jobs} --scheduler {scheduler}",
             hint="How many workers a scheduler has is said where they are started.",
         )
-    if scheduler is None and jobs in (None, 1):
-        yield Serial()
+    if scheduler is None:
+        with local_workers(jobs) if jobs is not None and jobs > 1 else nullcontext() as workers:
+            yield workers
         return
     try:
-        from reduction.batch.clusters import local_cluster, users_cluster
+        from reduction.batch.cluster import users_cluster
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
             raise
         raise SettingsError(
-            "several workers need Dask, which is not installed",
+            "--scheduler needs Dask, which is not installed",
             found=f"no package '{error.name}'",
-            hint="Install it with: pip install 'mooring-reduction[cluster]'",
+            hint="Install it with: pip install 'mooring-reduction[cluster]'. --jobs needs none.",
         ) from error
-    cluster = local_cluster(jobs or 1) if scheduler is None else users_cluster(scheduler)
-    with cluster as executor:
-        yield executor
+    with users_cluster(scheduler) as workers:
+        yield workers

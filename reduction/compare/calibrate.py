@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from reduction.compare.difference import difference_of
 from reduction.compare.fitproblem import FitProblem, FitSpread, parameter_bounds, spread_of
@@ -29,8 +29,6 @@ from reduction.errors import DataError, SettingsError
 from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign
 from reduction.record import Bools, Floats
-
-__all__ = ["calibrate_hose"]
 
 _LEAST_NOISE = 1e-6  # of the RMS tension: points without scatter are not infinitely exact
 _AT_BOUND = 1e-4  # of the width between the bounds
@@ -160,7 +158,7 @@ def calibrate_hose(
     covariance += told_apart.open_covariance
     deviation = np.sqrt(np.diagonal(covariance))
     width = (problem.high - problem.low) * problem.unit
-    half = student.ppf(0.975, spread.freedom) * deviation
+    half = stdtrit(spread.freedom, 0.975) * deviation
     is_wide = 2 * half > _WIDE * width
     is_known = half <= width
     half, stated_deviation = (np.where(is_known, one, np.nan) for one in (half, deviation))

@@ -13,9 +13,7 @@ import numpy as np
 
 from reduction.compare.measuredcurve import NODES_A_BIN, Reading
 from reduction.errors import DataError
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = ["Cells", "centre_weights", "fill_cells", "reading_of", "tension_at_centres"]
+from reduction.record import Floats, Integers, read_only_arrays
 
 # a centre further than this beyond the last sample would be extrapolated, not read
 _BEYOND = 0.05
@@ -24,6 +22,7 @@ _OUTSIDE = 0.05
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Cells:
     """Moments of the samples of each row and bin; arrays have the shape (n_rows, n_bins).
 
@@ -43,10 +42,6 @@ class Cells:
     highest: Floats
     residual: Floats
     freedom: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def fill_cells(

@@ -19,8 +19,6 @@ from reduction.compare.product import CycleDifference, Difference, EnergyDiffere
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["cycle_differences", "difference_of", "energy_difference", "strain_at_tension"]
-
 
 def difference_of(
     strain: ArrayLike, predicted: ArrayLike, measured: ArrayLike, *, curve: CurveName

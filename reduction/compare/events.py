@@ -23,8 +23,6 @@ from reduction.predict.product import HoseDesign, HoseEvent
 from reduction.predict.uncertainty import EventUncertainty, propagate_hose
 from reduction.record import Floats
 
-__all__ = ["EVENTS", "event_differences"]
-
 EVENTS = ("pick_up", "working", "break")
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from reduction.compare.identifiability import plausible_error
 from reduction.compare.measuredcurve import MeasuredCurve
@@ -22,9 +22,7 @@ from reduction.compare.residuals import autocorrelation_length
 from reduction.compare.trials import number_of, range_of, trial_tension
 from reduction.errors import FitError
 from reduction.predict.product import HoseDesign
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["FitProblem", "FitSpread", "parameter_bounds", "spread_of"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 _START_STEPS = (-4.0, -2.0, 0.0, 2.0, 4.0)  # plausible errors, tried in all combinations
 _DIFFERENCE = 1e-3  # of a plausible error, for derivatives
@@ -69,6 +67,7 @@ def parameter_bounds(name: str, start: float) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class FitProblem:
     """Measured points and what is to be fitted to them.
 
@@ -113,10 +112,6 @@ class FitProblem:
     measured: MeasuredCurve
     noise: Floats
     shared: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def used(self) -> Bools:
@@ -215,7 +210,7 @@ class FitProblem:
         margin = 1e-6 * (self.high - self.low)  # a search may not begin on a bound
         inside = np.clip(first[: self.unit.size], self.low + margin, self.high - margin)
         x0 = np.concatenate([inside, np.zeros(k)])
-        found = least_squares(
+        found = scipy.optimize.least_squares(
             self.residual,
             x0,
             jac=self.jacobian,
@@ -268,16 +263,13 @@ class FitProblem:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class FitSpread:
     """Covariance of the fitted numbers, in plausible errors, and what it rests on."""
 
     covariance: Floats
     freedom: float
     effective_points: float
-
-    def __post_init__(self) -> None:
-        """Make the array read-only."""
-        freeze_arrays(self)
 
 
 def spread_of(problem: FitProblem, best: Floats, noise: Floats) -> FitSpread:

@@ -28,8 +28,6 @@ from reduction.predict.hose import predict_hose
 from reduction.predict.product import HoseDesign, HosePrediction
 from reduction.record import Bools, Floats
 
-__all__ = ["compare_hose"]
-
 _DYNAMIC = (
     "the test is dynamic and the cord curve static: nylon is stiffer under quick load, so that a "
     "prediction is expected to stretch more than this test; a difference is not of the model alone"

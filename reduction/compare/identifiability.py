@@ -25,8 +25,6 @@ from reduction.compare.product import Identifiability
 from reduction.errors import DataError, SettingsError
 from reduction.record import Floats
 
-__all__ = ["CALIBRATED", "identify_directions", "plausible_error"]
-
 CALIBRATED = (
     "wrap_angle",
     "rubber_modulus",

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from reduction.checks import as_spread
 from reduction.compare.trials import number_of, range_of, trial_tension
@@ -21,8 +21,6 @@ from reduction.predict.cordcurve import CordCurve
 from reduction.predict.cordload import cord_load
 from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
 from reduction.record import Floats
-
-__all__ = ["cord_curve_error", "input_draws", "known_uncertainties"]
 
 _CUT = 3.0
 _BETWEEN = 16  # steps from one point of a cord curve to the next
@@ -139,7 +137,7 @@ def cord_curve_error(design: HoseDesign, strain: Floats) -> Floats:
     steps = np.arange(_BETWEEN) / _BETWEEN
     dense = points.strain[:-1, None] + np.diff(points.strain)[:, None] * steps
     plain = cord_load(points, dense.ravel()).reshape(dense.shape)
-    other = np.asarray(CubicSpline(points.strain, points.load)(dense))
+    other = np.asarray(scipy.interpolate.CubicSpline(points.strain, points.load)(dense))
     whole = np.hstack([other, points.load[1:, None]])
     other = np.where(np.all(np.diff(whole, axis=1) > 0, axis=1)[:, None], other, plain)
     curves = (

@@ -21,8 +21,6 @@ from reduction.compare.shared import SharedErrors, constant_errors
 from reduction.errors import DataError, SettingsError
 from reduction.record import Bools, Floats, Integers
 
-__all__ = ["measured_curve"]
-
 _ONE_BRANCH = (
     "one branch was measured: it is judged itself, and lies above a midline by half the loop"
 )

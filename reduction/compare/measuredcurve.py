@@ -7,10 +7,8 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.record import Floats, Integers, freeze_arrays, require_shapes
+from reduction.record import Floats, Integers, read_only_arrays, require_shapes
 from reduction.uncertainty.product import Component
-
-__all__ = ["BRANCHES", "CURVES", "NODES_A_BIN", "CurveName", "Loading", "MeasuredCurve", "Reading"]
 
 Loading = Literal["static", "dynamic"]
 CurveName = Literal["ascending", "descending", "midline"]
@@ -21,6 +19,7 @@ NODES_A_BIN = 40
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Reading:
     """How a test shows a curve: weights of the strains between the bin centres.
 
@@ -39,10 +38,6 @@ class Reading:
     node: Floats
     weight: Floats
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
     def of(self, curve: Floats) -> Floats:
         """A curve at the nodes, shape (..., n_node), as the test shows it, (..., n_strain)."""
         windows = np.lib.stride_tricks.sliding_window_view(curve, self.weight.shape[1], axis=-1)
@@ -50,6 +45,7 @@ class Reading:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class MeasuredCurve:
     """Tension of a test on one axis of strain, cycle by cycle and over the cycles.
 
@@ -116,7 +112,6 @@ class MeasuredCurve:
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
-        freeze_arrays(self)
         n_strain, n_cycle = self.strain.size, self.cycle_number.size
         shapes = {
             "tension": (n_cycle, 2, n_strain),

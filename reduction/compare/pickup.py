@@ -19,8 +19,6 @@ from reduction.compare.measuredcurve import MeasuredCurve
 from reduction.compare.residuals import autocorrelation_length
 from reduction.record import Floats, Integers
 
-__all__ = ["PickUp", "measured_pick_up"]
-
 _MARGIN = 5  # bins on either side of a bend, for the curve to be known there
 _CANDIDATES = 41
 _ENDS = (1.0, 0.8, 0.65, 0.5)  # of the strains: a pull to the break bends in other ways as well

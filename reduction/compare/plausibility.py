@@ -14,8 +14,6 @@ from math import degrees
 from reduction.compare.measuredcurve import Loading
 from reduction.errors import DataError
 
-__all__ = ["plausibility_of_working_strain"]
-
 # [1] sec. 3.0: angle, stretch, cycle; then by its eq. 8 the stretch of a cord of 9.5 % at a third
 # of its break load, and what a degree of angle is worth
 _REPORTED = (

@@ -17,21 +17,11 @@ import numpy as np
 
 from reduction.compare.measuredcurve import CurveName, MeasuredCurve
 from reduction.predict.product import HoseDesign, HosePrediction
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = [
-    "Calibration",
-    "Comparison",
-    "CycleDifference",
-    "Difference",
-    "EnergyDifference",
-    "EventDifference",
-    "Identifiability",
-    "Validation",
-]
+from reduction.record import Floats, Integers, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Difference:
     """Comparison error of one curve; ``difference`` has the shape (n_strain,), NaN outside.
 
@@ -48,10 +38,6 @@ class Difference:
     relative_rms: float
     worst_strain: float
     worst_difference: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)
@@ -95,6 +81,7 @@ class EnergyDifference:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CycleDifference:
     """Comparison error cycle by cycle, at the judged curve of each; shape (n_cycle,). [N].
 
@@ -109,12 +96,9 @@ class CycleDifference:
     bias_per_decade: float
     bias_per_decade_standard_uncertainty: float
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Validation:
     """Comparison error against what measurement and prediction are uncertain by.
 
@@ -163,12 +147,9 @@ class Validation:
     ratio_difference: float = float("nan")
     notes: tuple[str, ...] = ()
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Identifiability:
     """Whether the curve can tell the fitted numbers apart.
 
@@ -200,12 +181,9 @@ class Identifiability:
     words: str
     open_covariance: Floats
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Calibration:
     """Numbers of a hose fitted to a measured curve; arrays have the shape (n_parameter,).
 
@@ -257,10 +235,6 @@ class Calibration:
     shared_error: tuple[str, ...]
     shared_error_value: Floats
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)

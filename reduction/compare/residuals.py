@@ -16,8 +16,6 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_finite
 from reduction.record import Floats
 
-__all__ = ["autocorrelation_length"]
-
 
 def autocorrelation_length(residual: ArrayLike) -> float:
     r"""Number of neighbouring points that err together.

@@ -15,9 +15,7 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
 from reduction.errors import DataError, SettingsError
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = ["BranchSamples", "select_samples"]
+from reduction.record import Floats, Integers, read_only_arrays
 
 _LEAST_STEP = 0.01
 _SAMPLES_A_BIN = 1.5
@@ -25,6 +23,7 @@ _MOST_ROWS = 1000
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class BranchSamples:
     """Samples that are finite and belong to a branch.
 
@@ -47,10 +46,6 @@ class BranchSamples:
     cycles_pooled: int
     n_break_in: int
     notes: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     def least_step(self) -> float:
         """Width of a bin that holds four samples or more, 1, 2 or 5 times a power of ten. [1]."""

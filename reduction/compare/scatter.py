@@ -11,13 +11,10 @@ References
 from __future__ import annotations
 
 import numpy as np
-from scipy.stats import norm
-from scipy.stats import t as student
+from scipy.special import ndtri, stdtrit
 
 from reduction.compare.cells import Cells, centre_weights
 from reduction.record import Floats
-
-__all__ = ["bin_noise", "branch_scatter", "shared_scatter"]
 
 _POOLED_FREEDOM = 10.0  # what the scatter of the whole branch weighs beside that of one bin
 _LEAST_SHARE = 0.5  # of the cycles, that have to visit a bin
@@ -189,7 +186,7 @@ def shared_scatter(tension: Floats, mean: Floats) -> tuple[Floats, Floats]:
     size, axes = np.linalg.eigh(coefficient.T @ coefficient / (n_cycle - 1))
     edge = variance * (1 + np.sqrt(n_basis / (n_cycle - 1))) ** 2
     above = size > max(edge, _ROUNDING * size[-1])
-    widened = student.ppf(0.975, n_cycle - 1) / norm.ppf(0.975)
+    widened = stdtrit(n_cycle - 1, 0.975) / ndtri(0.975)
     spread = np.sqrt(np.maximum(size[above] - variance, 0.0) / n_cycle) * widened
     common = axes[:, above]
     return (spread * (basis @ common)).T, tension - coefficient @ common @ (basis @ common).T

@@ -14,10 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from reduction.checks import as_spread
-from reduction.record import Floats, freeze_arrays, require_shapes
+from reduction.record import Floats, read_only_arrays, require_shapes
 from reduction.uncertainty.product import Component
-
-__all__ = ["CurveErrors", "SharedErrors", "constant_errors", "error_words", "read_along"]
 
 _AT_AN_END = 5  # points whose straight line goes on beyond an end
 
@@ -33,6 +31,7 @@ class CurveErrors(NamedTuple):
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SharedErrors:
     """Errors that all samples of a test share, each one standard uncertainty above zero.
 
@@ -62,7 +61,6 @@ class SharedErrors:
 
     def __post_init__(self) -> None:
         """Check shapes and make the arrays read-only."""
-        freeze_arrays(self)
         n_point = self.strain.size
         rows = (len(self.component), 2, n_point)
         shapes = {"tension": (2, n_point), "tension_error": rows, "strain_error": rows}

@@ -23,8 +23,6 @@ from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
 from reduction.predict.sensitivity import hose_sensitivity
 from reduction.record import Floats
 
-__all__ = ["design_with", "number_of", "range_of", "trial_tension"]
-
 _LOWEST = {"dead_length_share": 0.0, "rubber_modulus": 0.0}
 _SMALLEST = 1e-6  # of what has to be above zero
 

@@ -26,8 +26,6 @@ from reduction.compare.verdict import LEAST_PROBABILITY, probability_words, verd
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["N_DRAWS", "validate_curve"]
-
 N_DRAWS = 4000
 """Draws of all errors that a verdict rests on: 5 % of them are 200."""
 _PROBABILITY = 0.95

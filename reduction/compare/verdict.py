@@ -12,8 +12,6 @@ import numpy as np
 
 from reduction.compare.product import Validation
 
-__all__ = ["LEAST_PROBABILITY", "probability_words", "verdict_words"]
-
 LEAST_PROBABILITY = 0.05
 """Below this the shape of a difference is not one that the stated errors make."""
 _SMALLEST = 1e-3  # four thousand draws do not tell smaller ones apart

@@ -16,8 +16,6 @@ from reduction.record import Floats, Integers
 from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.samples.scratch import let_go
 
-__all__ = ["changes_of_count", "counted_cycles"]
-
 _CYCLES_READ = 64  # before their samples are let go
 
 Indices = NDArray[np.intp]

@@ -15,8 +15,6 @@ from reduction.cycles.energy import sums_over_cycles
 from reduction.cycles.harmonic import CycleBasis
 from reduction.record import Floats, Integers
 
-__all__ = ["mean_drift", "part_means"]
-
 
 def part_means(values: Floats, basis: CycleBasis, middles: Integers) -> Floats:
     """Mean over time of a series in the three parts of each cycle between its middles.

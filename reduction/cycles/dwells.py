@@ -16,8 +16,6 @@ from reduction.phases.standstill import Standstills
 from reduction.record import Bools, Floats
 from reduction.samples.blocks import take_samples
 
-__all__ = ["dwells_of_cycles"]
-
 _SAME_LEVEL = 0.3  # of the stroke
 _FEWEST_DWELLS = 3
 _DWELL_RATIO = 2.0

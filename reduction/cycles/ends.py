@@ -19,8 +19,6 @@ from reduction.cycles.runs import DIFFERENT, Edge, Run
 from reduction.record import Floats
 from reduction.samples.blocks import take_samples
 
-__all__ = ["FittedRun", "fit_ends", "without_stands"]
-
 _SHORT = 0.05  # share of its neighbour by which one at an edge may end short of the level
 _PACE = 0.25  # share by which a half cycle at the end of a run may last longer or shorter
 _TURNS_BESIDE = 8  # turns of the run that an end is held against

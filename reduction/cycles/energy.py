@@ -27,8 +27,6 @@ from reduction.checks import as_same_shape
 from reduction.errors import DataError
 from reduction.record import Floats, Integers
 
-__all__ = ["loop_energy", "sums_over_cycles", "without_drift"]
-
 _EIGHTH_ORDER = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 
 

@@ -31,8 +31,6 @@ from reduction.samples.intervals import interval_labels
 from reduction.settings import CycleSettings
 from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
 
-__all__ = ["find_cycles"]
-
 _HINT = (
     "Check cycles.control, cycles.band and the layout, or give the test the kind it is "
     "(relaxation, creep, quasi-static)."

@@ -23,8 +23,6 @@ from reduction.phases.standstill import Standstills
 from reduction.record import Bools, Floats, Integers
 from reduction.samples.blocks import take_samples
 
-__all__ = ["HalfCycles", "find_half_cycles"]
-
 _GAP_SHARE = 0.3  # of a half cycle
 _GAP_STEPS = 3.5  # median time steps
 

@@ -20,15 +20,14 @@ import numpy as np
 from reduction.cycles.energy import sums_over_cycles
 from reduction.cycles.turn import cosine_and_sine
 from reduction.errors import DataError
-from reduction.record import Floats, Integers, freeze_arrays
+from reduction.record import Floats, Integers, read_only_arrays
 
 _AROUND = 10  # cycles on either side whose durations make the period of one
 _LEAST_DETERMINANT = 1e-9  # of the normal equations; 2 where samples are many and even
 
-__all__ = ["CycleBasis", "cycle_basis", "fundamental", "mean_period", "phase_turns"]
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CycleBasis:
     """Cosine and sine of each sample's phase in its cycle, times its share of the cycle.
 
@@ -50,10 +49,6 @@ class CycleBasis:
     turn_rate: Floats
     first: Integers
     last: Integers
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def cycle_basis(

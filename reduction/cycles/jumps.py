@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 from reduction.record import Floats
 from reduction.samples.blocks import take_samples
 
-__all__ = ["drop_jumps"]
-
 _JUMP_SHARE = 0.8  # of the range of a half cycle, in one step
 _LONGEST = 0.25  # of a typical half cycle
 _FEWEST_STEPS = 8  # with fewer steps a half cycle, one step is a good part of it

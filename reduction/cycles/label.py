@@ -20,8 +20,6 @@ from reduction.samples.blocks import sample_blocks
 from reduction.samples.scratch import empty_like
 from reduction.vocabulary import PHASE_VALUES
 
-__all__ = ["label_phases"]
-
 
 def label_phases(
     time: Floats, *, standstills: Standstills, cycles: Cycles | None

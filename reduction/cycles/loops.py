@@ -27,8 +27,6 @@ from reduction.samples.blocks import take_samples
 from reduction.samples.scratch import empty_like, let_go
 from reduction.workers import run_blocks
 
-__all__ = ["close_loops"]
-
 # samples reduced at a time: near the cache, yet long enough for threads to pay
 _BLOCK = 1 << 17
 # samples beside a block that its differences of strain reach

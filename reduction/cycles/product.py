@@ -7,13 +7,12 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 from reduction.samples.scratch import give_back, let_go
-
-__all__ = ["Cycles", "Loops"]
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Cycles:
     """Cycles of one test, all specimens together, since they share the crosshead.
 
@@ -55,10 +54,6 @@ class Cycles:
     counted_by: str = "reversals"
     notes: tuple[str, ...] = ()
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
     @property
     def n_cycles(self) -> int:
         """Number of whole cycles."""
@@ -80,6 +75,7 @@ class Cycles:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Loops:
     """One row a cycle and specimen; every array has shape (n_specimens, n_cycles).
 
@@ -103,10 +99,6 @@ class Loops:
     loss_factor: Floats
     fundamental_energy_share: Floats
     uncertainty: dict[str, Floats]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     def let_go(self) -> None:
         """Take the tables of a long test, which lie on disk, off the memory of the process."""

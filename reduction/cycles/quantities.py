@@ -16,8 +16,6 @@ from reduction.cycles.energy import without_drift
 from reduction.cycles.product import Cycles
 from reduction.record import Floats
 
-__all__ = ["MEASURED", "Waveform", "quantities_of_cycles"]
-
 Waveform = Literal["triangular", "sinusoidal", "other"]
 
 MEASURED = (

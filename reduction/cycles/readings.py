@@ -13,8 +13,6 @@ import numpy as np
 from reduction.cycles.energy import sums_over_cycles
 from reduction.record import Bools, Floats, Integers
 
-__all__ = ["bridge_gaps", "reading_noise"]
-
 # a cycle that lacks a larger share of its readings gives no numbers
 _MISSING_SHARE = 0.1
 _NOISE_SAMPLES = 65_536

@@ -17,8 +17,6 @@ from reduction.phases.noise import noise_range
 from reduction.record import Floats
 from reduction.samples.blocks import sample_blocks, take_samples
 
-__all__ = ["find_reversals", "first_pass", "typical_range"]
-
 _BAND_SHARE = 0.1
 _SLOW_PASS = 0.1
 _GROUP = 4

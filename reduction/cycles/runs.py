@@ -19,8 +19,6 @@ from numpy.typing import NDArray
 from reduction.record import Floats
 from reduction.samples.blocks import BLOCK, sample_blocks, take_samples
 
-__all__ = ["DIFFERENT", "Edge", "Run", "gaps_of_record", "runs_that_cycle"]
-
 DIFFERENT = 0.3
 """Share by which ranges of neighbouring half cycles may differ. [1]."""
 

@@ -23,12 +23,11 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
 from reduction.errors import DataError
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["SlopeReadings", "slope_readings"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SlopeReadings:
     """Slope of each loop by three readings; every array has the shape of the loops.
 
@@ -48,10 +47,6 @@ class SlopeReadings:
     between_strain_extremes: Floats
     between_tension_extremes: Floats
     relative_spread: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def slope_readings(apparent_spring_constant: ArrayLike, loss_factor: ArrayLike) -> SlopeReadings:

@@ -22,8 +22,6 @@ from reduction.phases.noise import estimate_noise
 from reduction.record import Bools, Floats
 from reduction.samples.blocks import take_samples
 
-__all__ = ["constant_rate_span", "plateau_rates", "stroke_span"]
-
 _RATE_NOISE = 0.01
 _WIDEST = 4  # a window is at most this part of a branch
 _RATES_READ = 33

@@ -12,8 +12,6 @@ import numpy as np
 
 from reduction.record import Floats
 
-__all__ = ["cosine_and_sine"]
-
 _PLACES = 1 << 12  # a power of two, so that the turns come off an index bit by bit
 _STEP = 2 * np.pi / _PLACES
 _COSINE, _SINE = np.cos(_STEP * np.arange(_PLACES)), np.sin(_STEP * np.arange(_PLACES))

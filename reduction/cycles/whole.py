@@ -16,8 +16,6 @@ from reduction.cycles.halves import HalfCycles
 from reduction.record import Bools, Floats
 from reduction.samples.blocks import take_samples
 
-__all__ = ["whole_cycles"]
-
 # an amplitude that is halved leaves a cycle open by a quarter of its range where that happens at
 # the peak, by a third at the valley
 _OPEN = 0.2

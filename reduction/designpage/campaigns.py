@@ -14,12 +14,8 @@ from reduction.archive.campaignlines import (
     names_apart,
 )
 from reduction.archive.open import Opener, reading
-from reduction.designpage.exportdata import curves_of_archive, refusal_of_surfaces
 from reduction.designpage.linedata import json_text, line_data
 from reduction.errors import ReductionError
-from reduction.lookup.product import LineSource
-
-__all__ = ["CampaignLines", "read_campaigns", "state_of"]
 
 _SURFACES = "surfaces"
 _STATUS = "status.csv"
@@ -185,14 +181,4 @@ def _stamp(path: Path) -> str:
 
 def _lines(path: Path, opener: Opener) -> list[dict[str, Any]]:
     with opener(path) as archive:
-
-        def of(line: LineSource) -> dict[str, Any]:
-            is_test = "experiment" not in archive.sizes
-            made = (
-                curves_of_archive(archive, path.stem, line.name)
-                if is_test
-                else refusal_of_surfaces(line)
-            )
-            return line_data(line) | {"export": made}
-
-        return [of(line) for line in lines_of_open_archive(archive, path, opener)]
+        return [line_data(line) for line in lines_of_open_archive(archive, path, opener)]

@@ -13,8 +13,6 @@ from reduction.lookup.linesurface import LineSurface
 from reduction.lookup.product import LineCurve, LineSource
 from reduction.uncertainty.product import Component
 
-__all__ = ["json_text", "line_data", "numbers"]
-
 _TEXTS = ("name", "source", "material", "construction", "condition", "kind", "strength_of")
 _NUMBERS = (
     "diameter", "rated_break_strength", "tensile_strength", "linear_density", "wet_linear_density",

@@ -10,34 +10,33 @@ from pathlib import Path
 from typing import Any, cast, get_args
 from urllib.parse import quote
 
+import numpy as np
 from jinja2 import Environment, StrictUndefined
 
 from reduction import __version__
 from reduction.archive.open import Opener, reading
 from reduction.archive.write import write_whole
 from reduction.designpage.campaigns import CampaignLines, read_campaigns, state_of
-from reduction.designpage.exportdata import EXPORT_CONSTANTS, curves_of_published
 from reduction.designpage.linedata import json_text, line_data
 from reduction.designpage.printed import errata_told, printed_at
-from reduction.line.product import REASONS
 from reduction.published.linesource import published_sources
 from reduction.surface.tested import ABOVE_LEVERAGE
+from reduction.uncertainty.combine import coverage_factor
 from reduction.units import Dimension, UnitSystem, display_unit, scale_to_si
 from reduction.vocabulary import quantity
-
-__all__ = ["MOST_BYTES", "PAGE_NAME", "render_design_page", "write_design_page"]
 
 PAGE_NAME = "design-values.html"
 MOST_BYTES = 2_500_000
 """Of the lines of campaigns on one page; of the rest it says how many archives there are."""
 _REPORT = "index.html"
-_FORMAT = 1
+_FORMAT = 2
 """Of what one page keeps for the next."""
 _TIMES = 3
+_SHARES = np.append(1e-12, np.arange(1, 33) / 32)
+"""Inverse degrees of freedom at which the page has the factor of an interval; the first is none."""
 _SCRIPTS = (
     "format.js", "student.js", "surface.js", "curve.js", "loads.js", "lookup.js", "shown.js",
-    "identify.js", "thin.js", "linetype.js", "dynamics.js", "moordyn.js", "data.js", "chart.js",
-    "form.js", "answer.js", "type.js", "page.js",
+    "data.js", "chart.js", "form.js", "command.js", "answer.js", "page.js",
 )  # fmt: skip
 _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
 _OF_LINES = (
@@ -54,8 +53,6 @@ _GIVEN: dict[Dimension, tuple[str, ...]] = {
     "frequency": ("Hz",),
     "force": ("N", "kN", "lbf"),
     "strain": ("%", "1"),
-    "linear_density": ("kg/m", "g/m", "lb/ft"),
-    "length": ("mm", "in", "m"),
 }
 
 
@@ -159,11 +156,7 @@ def _reports_beside(reports: Path, campaigns: Sequence[CampaignLines]) -> dict[s
 def _constants() -> dict[str, Any]:
     """What does not depend on any campaign."""
     lines = tuple(published_sources().values())
-    published = [
-        line_data(line)
-        | {"printed": printed_at(line), "export": curves_of_published(line, lines)}
-        for line in lines
-    ]  # fmt: skip
+    published = [line_data(line) | {"printed": printed_at(line)} for line in lines]
     known = {name: quantity(name) for name in (*_OF_LINES, *_LEVELS)}
     units = {one.unit for one in known.values()}
     return {
@@ -185,8 +178,7 @@ def _constants() -> dict[str, Any]:
             for dimension, given in _GIVEN.items()
         },
         "above_leverage": ABOVE_LEVERAGE,
-        "reasons": {str(number): text for number, text in REASONS.items()},
-        "export": EXPORT_CONSTANTS,
+        "coverage_factors": coverage_factor(1 / _SHARES).tolist(),
     }
 
 

@@ -11,8 +11,6 @@ from reduction.published.cell import ReportId
 from reduction.published.lines import published_lines
 from reduction.published.read import REPORTS, cells_of, errata_of
 
-__all__ = ["errata_told", "printed_at"]
-
 _LINES: ReportId = "CG-D-39-80"
 _TETHER = re.compile(r"WHOI-2005-10, Table (\d+)")
 

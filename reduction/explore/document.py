@@ -1,8 +1,7 @@
-"""What the page is sent: tests, settings, figures and tables as JSON, every name as plain text."""
+"""What the page is sent: tests, settings, and the report's section of a test; all as JSON."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from math import isfinite
 from typing import Any
@@ -11,19 +10,15 @@ import numpy as np
 
 from reduction.batch.survey import Survey
 from reduction.campaign.numbers import dimension_of, limits_of
-from reduction.errors import ReductionError
-from reduction.explore.answers import answer_table
-from reduction.explore.figures import draw_change
+from reduction.errors import SettingsError
 from reduction.explore.file import CampaignText, Written
 from reduction.explore.keys import Setting, settings_of_kind
-from reduction.explore.session import Made, Session
-from reduction.report.figure import Figure
-from reduction.report.htmltable import Table, number_text
-from reduction.report.summary import all_notes
+from reduction.explore.session import Session
+from reduction.report.htmltable import number_text
+from reduction.report.render import render_section
+from reduction.report.section import make_section
 from reduction.report.view import TestView
 from reduction.units import UnitSystem, display_unit, parse_quantity
-
-__all__ = ["campaign_document", "change_document"]
 
 # where the archive says what was found for a number that nobody stated
 _FOUND = {
@@ -33,8 +28,6 @@ _FOUND = {
     "cycles.band": ("position_band", "tension_band"),
     "modulus.window": ("strain_window",),
 }
-_SLOW = 2.0
-"""A change that takes longer is told beforehand. [s]"""
 
 
 def campaign_document(session: Session, units: UnitSystem) -> dict[str, Any]:
@@ -59,74 +52,72 @@ def campaign_document(session: Session, units: UnitSystem) -> dict[str, Any]:
 
 
 def change_document(
-    session: Session,
-    test: str,
-    text: CampaignText,
-    before: Made,
-    after: Made,
-    units: UnitSystem,
+    session: Session, units: UnitSystem, *, test: str, changes: Mapping[str, str]
 ) -> dict[str, Any]:
-    """Settings, answers and figures of a test, and the diff of campaign.toml.
+    """Settings of a test, its section of the report, and the diff of campaign.toml.
 
     Parameters
     ----------
     session : Session
         The campaign.
-    test : str
-        Id of the product.
-    text : CampaignText
-        What campaign.toml would say.
-    before, after : Made
-        The test as the file on the disk has it, and as that text has it.
     units : UnitSystem
         What a reader is shown.
+    test : str
+        Id of the product.
+    changes : mapping of str to str
+        Texts by key, as a person writes them; none for what the file on the disk says.
     """
-    views = [
-        None if one.dataset is None else TestView(name, one.dataset, units)
-        for name, one in (("before", before), ("after", after))
-    ]
-    is_same = text.digest == session.text.digest
-    old, new = (views[0], views[0]) if is_same else views
-    of_cycles = [one.survey.plan.settings.cycles for one in (before, after)]
-    left_out = (of_cycles[0].break_in_cycles, of_cycles[1].break_in_cycles)
-    table = answer_table(old, new)
-    return {
-        "test": test,
-        "settings": _settings(session, text, after, new, units),
-        "error": after.error,
-        "notes": [] if new is None else all_notes(new),
-        "answers": None if table is None else _table(table),
-        "figures": [_figure(one) for one in draw_change(old, new, left_out=left_out)],
-        "diff": session.text.difference(text),
-        "before": session.text.digest,
-        "after": text.digest,
-        "also": list(after.also),
-        "is_standing": before.is_standing,
-        "seconds": after.seconds,
-        "rows": after.survey.n_rows,
-        "is_slow": not is_same and after.seconds > _SLOW,
-    }
-
-
-def _settings(
-    session: Session, text: CampaignText, made: Made, view: TestView | None, units: UnitSystem
-) -> list[dict[str, Any]]:
+    text = session.changed(test, changes)
+    made = session.made(test, text)
+    key = "standing" if text.digest == session.text.digest else "changed"
+    view = None if made.dataset is None else TestView(key, made.dataset, units)
     survey = made.survey
-    log = survey.plan.log
-    found = [
+    settings = [
         _setting(one, session, text, survey, view, units)
         for one in settings_of_kind(survey.plan.kind)
     ]
-    if survey.plan.step_place:
-        now = text.step_ends(log, survey.plan.step_place - 1)
-        found += [
-            {
-                "key": key, "group": "Steps", "words": f"{key.rpartition('.')[2]}, of this step",
-                "value": value, "shown": value, "place": "test", "choices": [], "slider": None,
-            }
-            for key, value in now.items()
-        ]  # fmt: skip
-    return found
+    return {
+        "test": test,
+        "settings": settings + _step_settings(survey, text),
+        "error": made.error,
+        # names out of files are escaped in it, and no script of it runs
+        "section": "" if view is None else render_section(make_section(view), is_folded=False).html,
+        "diff": session.text.difference(text),
+        "before": session.text.digest,
+        "after": text.digest,
+        "also": list(made.also),
+        "is_standing": made.is_standing,
+        "seconds": made.seconds,
+        "rows": survey.n_rows,
+    }
+
+
+def save_document(
+    session: Session, *, test: str, changes: Mapping[str, str], before: str, after: str
+) -> dict[str, Any]:
+    """Write what was shown; ``before`` and ``after`` are the digests that came with the diff."""
+    text = session.changed(test, changes)
+    if (session.text.digest, text.digest) != (before, after):
+        raise SettingsError(
+            "the diff that was shown is not of this file any more",
+            hint="Nothing was written. Look at the diff again.",
+        )
+    session.save(text)
+    return {"saved": str(session.path)}
+
+
+def _step_settings(survey: Survey, text: CampaignText) -> list[dict[str, Any]]:
+    """Both ends of a step, which are no setting of a reduction."""
+    if not survey.plan.step_place:
+        return []
+    ends = text.step_ends(survey.plan.log, survey.plan.step_place - 1)
+    return [
+        {
+            "key": key, "group": "Steps", "words": f"{key.rpartition('.')[2]}, of this step",
+            "value": value, "shown": value, "place": "test", "choices": [], "slider": None,
+        }
+        for key, value in ends.items()
+    ]  # fmt: skip
 
 
 def _setting(
@@ -224,32 +215,3 @@ def _slider(setting: Setting, survey: Survey, in_force: Any) -> dict[str, Any] |
         "unit": slider.unit,
         "value": value,
     }
-
-
-def _figure(figure: Figure) -> dict[str, Any]:
-    return {
-        "key": figure.key.removeprefix("after-").removeprefix("before-"),
-        "caption": figure.caption + (" Synthetic data." if figure.synthetic else ""),
-        "label": figure.label,
-        "height": figure.height,
-        "wide": figure.is_wide,
-        "json": figure.json(),
-    }
-
-
-def _table(table: Table) -> dict[str, Any]:
-    return {
-        "caption": table.caption,
-        "columns": list(table.columns),
-        "numbers": list(table.number_columns),
-        "rows": [[{"text": cell.text, "value": cell.value} for cell in row] for row in table.rows],
-        "remarks": list(table.remarks),
-    }
-
-
-def as_json(document: Mapping[str, Any]) -> bytes:
-    """A document as it is sent; a number that is not finite would be no JSON."""
-    try:
-        return json.dumps(document, allow_nan=False, separators=(",", ":")).encode("utf-8")
-    except ValueError as error:
-        raise ReductionError(f"internal error, a defect of this program: {error}") from error

@@ -1,4 +1,4 @@
-"""One key of a TOML text changed, and every other line as it was: comments, order, spacing.
+"""Some keys of a TOML text changed, and every other line as it was: comments, order, spacing.
 
 What was made is read again and compared with what was meant; where they differ the text is
 left as it is and a person is told which line to write.
@@ -6,20 +6,21 @@ left as it is and a person is told which line to write.
 
 from __future__ import annotations
 
-import copy
-import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+import tomlkit
+from tomlkit.container import Container
+from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import AoT, InlineTable, Item, Table
+
 from reduction.errors import SettingsError
-from reduction.explore.statements import Path, Statement, Table, read_tables
-from reduction.visible import toml_text
 
-__all__ = ["Value", "edited", "literal", "value_at"]
-
+Path = tuple[str | int, ...]
 Value = bool | int | float | str | list[Any] | dict[str, Any]
-_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_NAMED = 2
+"""Keys of a header that is added where a table is not there, as in ``[tests.T-1]``."""
 
 
 def edited(text: str, changes: Mapping[Path, Value | None]) -> str:
@@ -41,7 +42,7 @@ def edited(text: str, changes: Mapping[Path, Value | None]) -> str:
     Raises
     ------
     SettingsError
-        If the text is written in a way that cannot be changed line by line.
+        If the text is written in a way in which a key cannot be changed by itself.
 
     Examples
     --------
@@ -50,23 +51,24 @@ def edited(text: str, changes: Mapping[Path, Value | None]) -> str:
     file = "a.csv"  # raw
     order = 2
     """
-    meant: dict[str, Any] = tomllib.loads(text)
     for path, value in changes.items():
-        if value_at(meant, path) == value and type(value_at(meant, path)) is type(value):
+        before = tomllib.loads(text)
+        now = value_at(before, path)
+        if now == value and type(now) is type(value):
             continue
-        _put(meant, path, value)
-        made = _without(text, path) if value is None else _with(text, path, value)
         try:
-            is_meant = _pruned(tomllib.loads(made)) == _pruned(meant)
-        except tomllib.TOMLDecodeError:
+            made = _with(text, path, value)
+            after = tomllib.loads(made)
+            is_meant = value_at(after, path) == value
+            is_meant &= dict(_leaves(before, path)) == dict(_leaves(after, path))
+        except (TOMLKitError, ValueError, KeyError, TypeError, AttributeError):
             is_meant = False
         if not is_meant:
-            line = f"{'.'.join(map(str, path))} = {'' if value is None else literal(value)}"
             raise SettingsError(
                 "campaign.toml is written in a way that is not changed here",
-                needed="the line taken out by hand: " + line
+                needed=f"the line taken out by hand: {_dotted(path)}"
                 if value is None
-                else "the line written by hand: " + line,
+                else f"the line written by hand: {_line(path, value)}",
             )
         text = made
     return text
@@ -84,103 +86,74 @@ def value_at(document: object, path: Path) -> Any:
     return document
 
 
-def literal(value: Value) -> str:
-    """Return a value as TOML has it on one line.
-
-    Examples
-    --------
-    >>> print(literal({"method": "marks", "marks": "marks.csv"}))
-    { method = "marks", marks = "marks.csv" }
-    """
-    if isinstance(value, dict):
-        inside = ", ".join(f"{_key(key)} = {literal(one)}" for key, one in value.items())
-        return f"{{ {inside} }}" if inside else "{}"
-    if isinstance(value, list):
-        return f"[{', '.join(literal(one) for one in value)}]"
-    if isinstance(value, str):
-        return toml_text(value)
-    return str(value).lower() if isinstance(value, bool) else repr(value)
+def _leaves(document: Any, left_out: Path, at: Path = ()) -> Iterator[tuple[Path, Any]]:
+    """Every value but one by its path; tables that hold nothing say nothing."""
+    if at == left_out:
+        return
+    if isinstance(document, dict | list):
+        pairs = document.items() if isinstance(document, dict) else enumerate(document)
+        for key, value in pairs:
+            yield from _leaves(value, left_out, (*at, key))
+    else:
+        yield at, document
 
 
-def _key(key: str) -> str:
-    return key if _BARE.fullmatch(key) else literal(key)
-
-
-def _put(document: Any, path: Path, value: Value | None) -> None:
-    """Set, or take out, one key of a document in memory."""
-    for key in path[:-1]:
-        if isinstance(document, list):
-            document = document[int(key)]
-        else:
-            document = document.setdefault(key, {})
-    if value is not None:
-        document[path[-1]] = copy.deepcopy(value)
-    elif path[-1] in document:
-        del document[path[-1]]
-
-
-def _pruned(document: Any) -> Any:
-    """The same without empty tables: they say nothing, and a text may keep their headers."""
-    if isinstance(document, list):
-        return [_pruned(one) for one in document]
-    if not isinstance(document, dict):
-        return document
-    parts = {key: _pruned(one) for key, one in document.items()}
-    return {key: one for key, one in parts.items() if one != {}}
-
-
-def _holder(tables: list[Table], path: Path) -> Statement | None:
-    """The statement of a key, or of a value on one line that holds it."""
-    own = [one for table in tables for one in table.statements]
-    return next((one for one in own if path[: len(one.path)] == one.path), None)
-
-
-def _with(text: str, path: Path, value: Value) -> str:
-    tables = read_tables(text)
-    holder = _holder(tables, path)
-    if holder is not None:
-        return _rewritten(text, holder, path, value)
+def _with(text: str, path: Path, value: Value | None) -> str:
+    """The text with one key set, or left out."""
+    document = tomlkit.parse(text)
     end_of_line = "\r\n" if "\r\n" in text else "\n"
-    homes = [table for table in tables if _is_home(table, path)]
-    if not homes:
+    holder: Any = document
+    home, keys = holder, path
+    depth, last = 0, len(path) - 1
+    while depth < last and (isinstance(path[depth], int) or path[depth] in holder):
+        holder = holder[path[depth]]
+        depth += 1
+        if isinstance(holder, Table) and not holder.is_super_table():
+            home, keys = holder, path[depth:]
+    key = path[depth]
+    if isinstance(holder, InlineTable):
+        # of a table on one line the whole is written again
+        whole: dict[str, Any] = holder.unwrap()
+        for name in reversed(path[depth + 1 :]):
+            value = {str(name): value}
+        whole[str(key)] = value
+        return _with(text, path[:depth], {k: v for k, v in whole.items() if v is not None} or None)
+    if value is None:
+        del holder[key]
+    elif depth == last and (isinstance(key, int) or key in holder):
+        holder[key] = _item(value)
+    elif depth < min(_NAMED, last):
         gap = "" if not text else end_of_line if text.endswith("\n") else 2 * end_of_line
-        header = ".".join(_key(str(key)) for key in path[:2])
-        line = _line(path[2:], value)
-        return f"{text}{gap}[{header}]{end_of_line}{line}{end_of_line}"
-    home = max(homes, key=lambda table: len(table.path))
-    beside = [one for one in home.statements if one.path[:2] == path[:2]]
-    place = beside[-1].end if beside else home.end
-    above = text[beside[-1].start if beside else home.start : place]
-    indent = above[: len(above) - len(above.lstrip(" \t"))]
-    before = "" if place == 0 or text[place - 1] == "\n" else end_of_line
-    line = f"{indent}{_line(path[len(home.path) :], value)}"
-    return f"{text[:place]}{before}{line}{end_of_line}{text[place:]}"
+        lines = f"[{_dotted(path[:_NAMED])}]", _line(path[_NAMED:], value), ""
+        return f"{text}{gap}{end_of_line.join(lines)}"
+    else:
+        # below the last key of its table, which is above the comment of the next table
+        before = _last_line(home)
+        before.trail = before.trail or end_of_line
+        before.trail += f"{before.indent}{_line(keys, value)}{end_of_line}"
+    return tomlkit.dumps(document)
 
 
-def _is_home(table: Table, path: Path) -> bool:
-    """Whether a key can be written under a header, where others of its test stand."""
-    if path[: len(table.path)] != table.path:
-        return False
-    is_own = len(table.path) >= min(2, len(path) - 1)
-    return is_own or any(one.path[:2] == path[:2] for one in table.statements)
+def _last_line(table: Any) -> Any:
+    """What stands about the last key of a table; about its header where it has no key."""
+    body = table.body if isinstance(table, Container) else table.value.body
+    for key, item in reversed(body):
+        if key is not None and (key.is_dotted() or not isinstance(item, Table | AoT)):
+            return _last_line(item) if isinstance(item, Table) else item.trivia
+    return table.trivia
+
+
+def _dotted(keys: Path) -> str:
+    return tomlkit.key([str(key) for key in keys]).as_string()
 
 
 def _line(keys: Path, value: Value) -> str:
-    return f"{'.'.join(_key(str(key)) for key in keys)} = {literal(value)}"
+    return f"{_dotted(keys)} = {_item(value).as_string()}"
 
 
-def _without(text: str, path: Path) -> str:
-    holder = _holder(read_tables(text), path)
-    return text if holder is None else _rewritten(text, holder, path, None)
-
-
-def _rewritten(text: str, holder: Statement, path: Path, value: Value | None) -> str:
-    """The text with another value of one statement; without it where nothing is left of it."""
-    within = path[len(holder.path) :]
-    if within:
-        whole = tomllib.loads(f"value = {text[holder.value_start : holder.value_end]}")["value"]
-        _put(whole, within, value)
-        value = whole or None
-    if value is None:
-        return text[: holder.start] + text[holder.end :]
-    return text[: holder.value_start] + literal(value) + text[holder.value_end :]
+def _item(value: Value) -> Item:
+    """A value as it is written on one line."""
+    if isinstance(value, dict) and value:
+        inside = ", ".join(_line((key,), one) for key, one in value.items())
+        return tomlkit.value(f"{{ {inside} }}")
+    return tomlkit.inline_table() if value == {} else tomlkit.item(value)

@@ -19,11 +19,9 @@ from reduction.archive.whole import whole_file
 from reduction.campaign.numbers import dimension_of
 from reduction.campaign.testtable import read_test_table
 from reduction.errors import ArchiveError, SettingsError
+from reduction.explore.edit import Path as Keys
 from reduction.explore.edit import Value, edited, value_at
 from reduction.explore.keys import Setting, setting_of
-from reduction.explore.statements import Path as Keys
-
-__all__ = ["CampaignText", "Written"]
 
 Place = Literal["test", "defaults", "table", "nowhere"]
 _WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH

@@ -7,8 +7,6 @@ from typing import Literal, get_args
 
 from reduction.settings import StrainMethod
 
-__all__ = ["SETTINGS", "Setting", "Slider", "setting_of", "settings_of_kind"]
-
 Group = Literal[
     "Trim and cycles",
     "Modulus windows",

@@ -1,33 +1,66 @@
-"""A server on this machine alone, with limits on what it reads and how long it waits."""
+"""The explorer's server: on this machine alone, for who has the token, with limits for everybody.
+
+A request has to come from a page of this server, by its own name.  How much of it is read and
+how long it may take to arrive is bounded, so that one who dawdles does not hold the others up.
+"""
 
 from __future__ import annotations
 
+import hmac
 import json
 import secrets
 import socket
 import threading
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from importlib.resources import files
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import parse_qs, urlsplit
 
-from reduction.errors import SettingsError
-from reduction.explore.guard import HEADERS, Guard
-from reduction.explore.routes import Answer, Routes
+from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
 
-__all__ = ["ExploreServer"]
+from reduction.errors import ReductionError, SettingsError
+from reduction.explore.document import campaign_document, change_document, save_document
+from reduction.explore.session import Session
+from reduction.units import UnitSystem
 
 HOST = "127.0.0.1"
 MOST_BYTES = 64_000
 """Longest body of a request. [1]"""
 PATIENCE = 10.0
-"""How long a part of a request may take to arrive. [s]"""
-DEADLINE = 60.0
-"""How long a connection may live; each is of one request. [s]"""
+"""How long a part of a request may take to arrive, and an answer to be taken. [s]"""
+DEADLINE = 30.0
+"""How long a whole request may take to arrive; each connection is of one. [s]"""
 MOST_AT_ONCE = 24
-_PAGE = "text/html; charset=utf-8"
+_MOST_CHANGES = 40
+_LONGEST = 200
+_NAMES = (HOST, "localhost")
+_JSON, _PAGE = "application/json; charset=utf-8", "text/html; charset=utf-8"
+_SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
+_HEADERS = {
+    "Cache-Control": "no-store",
+    # plotly puts its style sheet into the page, so that styles have to be allowed in it
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+        "img-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+        "frame-ancestors 'none'"
+    ),
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+}
+"""Of every answer: nothing is kept, framed, guessed or told to others."""
+Reply = tuple[int, str, bytes]
+
+
+class _Refused(Exception):  # noqa: N818 - it is an answer, and no error of this program
+    """A request that is not answered: status and words."""
 
 
 class ExploreServer(ThreadingHTTPServer):
@@ -35,8 +68,10 @@ class ExploreServer(ThreadingHTTPServer):
 
     Parameters
     ----------
-    routes : Routes
-        What it answers.
+    session : Session
+        The campaign; one request at a time is at work on it.
+    units : UnitSystem
+        What a reader is shown.
     port : int
         0 for a free one.
     told_of_defect : callable, optional
@@ -54,9 +89,10 @@ class ExploreServer(ThreadingHTTPServer):
 
     def __init__(
         self,
-        routes: Routes,
+        session: Session,
+        units: UnitSystem,
         port: int = 0,
-        told_of_defect: Callable[[Exception], None] | None = None,
+        told_of_defect: Callable[[Exception], None] = lambda error: None,
     ) -> None:
         try:
             super().__init__((HOST, port), _Handler)
@@ -66,15 +102,37 @@ class ExploreServer(ThreadingHTTPServer):
                 found=f"{port}: {getattr(error, 'strerror', None) or error}",
                 needed="a free one from 1024 to 65535, or none: one is found then",
             ) from error
-        self.routes = routes
+        self.token = secrets.token_urlsafe(32)
         self.told_of_defect = told_of_defect
-        self.guard = Guard(secrets.token_urlsafe(32), self.server_port)
+        self.working = threading.Lock()
         self._places = threading.BoundedSemaphore(MOST_AT_ONCE)
+        ours, report = files("reduction.explore") / "static", files("reduction.report") / "static"
+        self.page = (ours / "explore.html").read_bytes()
+        self.static = {
+            "/explore.css": (_STYLE, (ours / "explore.css").read_bytes()),
+            "/explore.js": (_SCRIPT, (ours / "explore.js").read_bytes()),
+            "/page.css": (_STYLE, (report / "page.css").read_bytes()),
+            "/inflate.js": (_SCRIPT, (report / "inflate.js").read_bytes()),
+            "/figures.js": (_SCRIPT, (report / "figures.js").read_bytes()),
+            "/plotly.js": (_SCRIPT, get_plotlyjs().encode("utf-8")),
+        }
+
+        def again() -> dict[str, Any]:
+            session.read_again()
+            return campaign_document(session, units)
+
+        # what gives the document that is asked for, and the names that it needs of a request
+        self.documents: dict[str, tuple[Callable[..., dict[str, Any]], tuple[str, ...]]] = {
+            "/api/campaign": (partial(campaign_document, session, units), ()),
+            "/api/reload": (again, ()),
+            "/api/change": (partial(change_document, session, units), ("test", "changes")),
+            "/api/save": (partial(save_document, session), ("test", "changes", "before", "after")),
+        }
 
     @property
     def address(self) -> str:
         """The address of the page, with its token."""
-        return f"http://{HOST}:{self.server_port}/?token={self.guard.token}"
+        return f"http://{HOST}:{self.server_port}/?token={self.token}"
 
     def server_bind(self) -> None:
         """Bind, without asking a name server for the name of this machine."""
@@ -90,14 +148,10 @@ class ExploreServer(ThreadingHTTPServer):
         super().process_request(request, client_address)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Answer, and make room for the next; one that dawdles is cut off."""
-        deadline = threading.Timer(DEADLINE, _cut_off, (request,))
-        deadline.daemon = True
-        deadline.start()
+        """Answer, and make room for the next."""
         try:
             super().process_request_thread(request, client_address)
         finally:
-            deadline.cancel()
             self._places.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
@@ -116,119 +170,155 @@ class _Handler(BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
     timeout = PATIENCE
 
+    def setup(self) -> None:
+        super().setup()
+        self._deadline = threading.Timer(DEADLINE, _cut_off, (self.connection,))
+        self._deadline.daemon = True
+        self._deadline.start()
+
+    def finish(self) -> None:
+        self._deadline.cancel()
+        super().finish()
+
     def do_GET(self) -> None:
         """The page for one who knows the token; style and scripts hold nothing of a campaign."""
-        self._answered(self._get)
+        self._answer(self._got)
 
     def do_POST(self) -> None:
         """A document for a document."""
-        self._answered(self._post)
+        self._answer(self._posted)
 
-    def _answered(self, answer: Callable[[], None]) -> None:
+    def _answer(self, made: Callable[[str, str], Reply]) -> None:
         try:
-            answer()
+            reply = made(*self._address())
+        except _Refused as refusal:
+            status, text = refusal.args
+            reply = _as_json(status, {"error": text})
+        except ReductionError as error:
+            reply = _as_json(HTTPStatus.UNPROCESSABLE_ENTITY, {"error": str(error)})
         except OSError:  # who asked is gone, or dawdles
             raise
         except Exception as error:
             # a stranger learns no more of a defect here than that it is one; the terminal does
-            if self.server.told_of_defect is not None:
-                self.server.told_of_defect(error)
-            self._refuse(HTTPStatus.INTERNAL_SERVER_ERROR, "internal error, a defect here")
+            self.server.told_of_defect(error)
+            said = f"internal error, a defect of this program: {type(error).__name__}"
+            reply = _as_json(HTTPStatus.INTERNAL_SERVER_ERROR, {"error": said})
+        self._send(*reply)
 
-    def _get(self) -> None:
-        asked = self._asked()
-        if asked is None:
-            return
-        routes, (path, query) = self.server.routes, asked
-        if path == "/":
-            if self.server.guard.knows_address(query):
-                self._send(Answer(HTTPStatus.OK, _PAGE, routes.page))
-            else:
-                self._refuse(
-                    HTTPStatus.FORBIDDEN,
-                    "the token is missing or wrong; open the address that the command printed",
-                )
-        elif path in routes.static:
-            kind, body = routes.static[path]
-            self._send(Answer(HTTPStatus.OK, kind, body))
-        elif path in routes.posted:
-            self._refuse(HTTPStatus.METHOD_NOT_ALLOWED, "only POST is answered here")
-        else:
-            self._refuse(HTTPStatus.NOT_FOUND, "there is nothing here")
-
-    def _post(self) -> None:
-        asked = self._asked()
-        if asked is None:
-            return
-        path, _ = asked
-        routes = self.server.routes
-        if not self.server.guard.knows_token(self._headers()):
-            self._refuse(HTTPStatus.FORBIDDEN, "the token is missing or wrong")
-        elif path not in routes.posted:
-            is_known = path == "/" or path in routes.static
-            status = HTTPStatus.METHOD_NOT_ALLOWED if is_known else HTTPStatus.NOT_FOUND
-            self._refuse(status, "nothing is posted here")
-        elif (body := self._body()) is not None:
-            self._send(routes.post(path, body))
-
-    def _headers(self) -> dict[str, str]:
-        return {name.lower(): value for name, value in self.headers.items()}
-
-    def _asked(self) -> tuple[str, str] | None:
+    def _address(self) -> tuple[str, str]:
         """Path and query, of a request that comes from where it should."""
-        refusal = self.server.guard.refusal(self._headers(), self.headers.get_all("Host") or [])
-        if refusal is not None:
-            self._refuse(*refusal)
-            return None
+        known = {f"{name}:{self.server.server_port}" for name in _NAMES}
+        hosts = self.headers.get_all("Host") or []
+        if len(hosts) != 1 or hosts[0].lower() not in known:
+            # a name of somebody else's that was made to lead here
+            raise _Refused(HTTPStatus.FORBIDDEN, "this server answers to its own address alone")
+        origin = self.headers.get("Origin", f"http://{hosts[0]}").lower()
+        site = self.headers.get("Sec-Fetch-Site", "none")
+        if origin not in {f"http://{one}" for one in known} or site not in ("none", "same-origin"):
+            raise _Refused(HTTPStatus.FORBIDDEN, "a page of another server asked")
         try:
             parts = urlsplit(self.path)
         except ValueError:
-            self._refuse(HTTPStatus.BAD_REQUEST, "the address cannot be read")
-            return None
+            raise _Refused(HTTPStatus.BAD_REQUEST, "the address cannot be read") from None
         if parts.scheme or parts.netloc:
-            self._refuse(HTTPStatus.NOT_FOUND, "there is nothing here")
-            return None
+            raise _Refused(HTTPStatus.NOT_FOUND, "there is nothing here")
         return parts.path, parts.query
 
-    def _body(self) -> bytes | None:
-        """The body of a request; None where it was refused."""
+    def _needs_token(self, given: list[str]) -> None:
+        # in a time that does not tell how much of it was right
+        own = self.server.token.encode()
+        if len(given) != 1 or not hmac.compare_digest(given[0].encode("utf-8", "replace"), own):
+            raise _Refused(
+                HTTPStatus.FORBIDDEN,
+                "the token is missing or wrong; open the address that the command printed",
+            )
+
+    def _got(self, path: str, query: str) -> Reply:
+        if path in self.server.static:
+            return HTTPStatus.OK, *self.server.static[path]
+        if path != "/":
+            raise _nothing_at(path in self.server.documents)
+        try:
+            given = parse_qs(query, max_num_fields=4).get("token", [])
+        except ValueError:  # more fields than that
+            given = []
+        self._needs_token(given)
+        return HTTPStatus.OK, _PAGE, self.server.page
+
+    def _posted(self, path: str, query: str) -> Reply:
+        scheme, _, given = self.headers.get("Authorization", "").partition(" ")
+        self._needs_token([given.strip()] if scheme.lower() == "bearer" else [])
+        if path not in self.server.documents:
+            raise _nothing_at(path == "/" or path in self.server.static)
+        make, names = self.server.documents[path]
+        asked = _read(self._body())
+        missing = [name for name in names if name not in asked]
+        if missing:
+            raise _Refused(HTTPStatus.BAD_REQUEST, f"the request has no {missing[0]}")
+        # it is here as a whole: the work on it takes as long as it takes
+        self._deadline.cancel()
+        with self.server.working:
+            return _as_json(HTTPStatus.OK, make(**{name: asked[name] for name in names}))
+
+    def _body(self) -> bytes:
+        """The body of a request, which states what it is and how long."""
         kind = self.headers.get("Content-Type", "").partition(";")[0].strip().lower()
         length = self.headers.get("Content-Length", "")
         if kind != "application/json":
-            self._refuse(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "application/json is needed")
-        elif self.headers.get("Transfer-Encoding") or not (length.isascii() and length.isdigit()):
-            self._refuse(HTTPStatus.LENGTH_REQUIRED, "the length of the request is needed")
-        elif len(length) > 9 or int(length) > MOST_BYTES:
-            self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "the request is too long")
-        else:
-            body = self.rfile.read(int(length))
-            if len(body) == int(length):
-                return body
-            self._refuse(HTTPStatus.BAD_REQUEST, "the request is cut off")
-        return None
+            raise _Refused(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "application/json is needed")
+        if self.headers.get("Transfer-Encoding") or not (length.isascii() and length.isdigit()):
+            raise _Refused(HTTPStatus.LENGTH_REQUIRED, "the length of the request is needed")
+        if len(length) > len(str(MOST_BYTES)) or int(length) > MOST_BYTES:
+            raise _Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "the request is too long")
+        body = self.rfile.read(int(length))
+        if len(body) != int(length):
+            raise _Refused(HTTPStatus.BAD_REQUEST, "the request is cut off")
+        return body
 
-    def _refuse(self, status: int, text: str) -> None:
-        """Say no, in words."""
-        body = json.dumps({"error": text}).encode()
-        self._send(Answer(status, "application/json; charset=utf-8", body))
-
-    def _send(self, answer: Answer) -> None:
+    def _send(self, status: int, kind: str, body: bytes) -> None:
         self.request_version = self.protocol_version  # what is no request has headers too
-        self.send_response_only(answer.status)
-        for name, value in HEADERS.items():
+        self.send_response_only(status)
+        for name, value in _HEADERS.items():
             self.send_header(name, value)
-        self.send_header("Content-Type", answer.kind)
-        self.send_header("Content-Length", str(len(answer.body)))
+        self.send_header("Content-Type", kind)
+        self.send_header("Content-Length", str(len(body)))
         self.send_header("Connection", "close")
         self.close_connection = True
         self.end_headers()
         if self.command != "HEAD":
-            self.wfile.write(answer.body)
+            self.wfile.write(body)
 
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
         """Refuse what could not be read as a request, in the form of all refusals."""
         del message, explain  # may repeat what a stranger sent
-        self._refuse(code, HTTPStatus(code).phrase.lower())
+        self._send(*_as_json(code, {"error": HTTPStatus(code).phrase.lower()}))
 
     def log_message(self, format: str, *args: Any) -> None:
         """Nothing: an address with its token is not for a terminal."""
+
+
+def _nothing_at(is_known: bool) -> _Refused:
+    if is_known:
+        return _Refused(HTTPStatus.METHOD_NOT_ALLOWED, "not in this way")
+    return _Refused(HTTPStatus.NOT_FOUND, "there is nothing here")
+
+
+def _read(body: bytes) -> dict[str, Any]:
+    """A document of a request: short texts, and changes by key that are short texts."""
+    try:
+        asked: dict[str, Any] = json.loads(body)
+        changes = asked.get("changes", {})
+        texts = [*changes, *changes.values()]
+        texts += [value for name, value in asked.items() if name != "changes"]
+        # a half of a character that UTF-16 writes as two can stand in JSON and in no file
+        is_short = all(len(text.encode("utf-8")) <= _LONGEST for text in texts)
+    except (ValueError, RecursionError, AttributeError, TypeError):
+        is_short = False
+    if not is_short or len(changes) > _MOST_CHANGES:
+        raise _Refused(HTTPStatus.BAD_REQUEST, "the request is not one of short texts as JSON")
+    return asked
+
+
+def _as_json(status: int, document: dict[str, Any]) -> Reply:
+    """A document as it is sent; a number that is not finite would be no JSON."""
+    return status, _JSON, json.dumps(document, allow_nan=False).encode("utf-8")

@@ -13,8 +13,6 @@ from reduction.export.header import header_lines, real_number
 from reduction.export.product import ExportLine
 from reduction.export.thin import thin_curve
 
-__all__ = ["ABAQUS_POINTS", "abaqus_text"]
-
 ABAQUS_POINTS = 200
 """Rows of a table. [1]"""
 

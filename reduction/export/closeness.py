@@ -11,8 +11,6 @@ from reduction.export.spline import fit_smooth_curve
 from reduction.export.thin import local_words, thin_curve
 from reduction.export.whoicable import CABLE_POINTS
 
-__all__ = ["closeness_of"]
-
 _CLOSE = 0.05
 _POINTS = {
     "moordyn": MOST_POINTS,

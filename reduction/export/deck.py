@@ -12,8 +12,6 @@ import math
 from reduction.export.header import number
 from reduction.export.product import ExportLine
 
-__all__ = ["NO_GRAVITY", "WEIGHTLESS", "deck", "line_type", "segment_length"]
-
 _LENGTH, _SEGMENTS = 10.0, 5
 NO_GRAVITY = "0 g"
 WEIGHTLESS = (

@@ -18,9 +18,7 @@ import numpy as np
 from reduction.digits import plain_number
 from reduction.errors import SettingsError
 from reduction.line.model import apparent_spring_constant, hysteresis_energy
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["Syrope", "Viscoelasticity"]
+from reduction.record import Floats, read_only_arrays
 
 _STEPS = 201
 
@@ -128,6 +126,7 @@ class Viscoelasticity:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Syrope:
     """Working curves of a fibre rope that remembers its greatest mean tension.
 
@@ -163,7 +162,6 @@ class Syrope:
 
     def __post_init__(self) -> None:
         """Check what MoorDyn does not."""
-        freeze_arrays(self)
         allowed = {
             "LINEAR": (0 < self.k1, "k1 above 0"),
             "QUADRATIC": (0 <= self.k1 < 1 and 0 < self.k2 <= 1, "0 <= k1 < 1 and 0 < k2 <= 1"),

@@ -11,11 +11,6 @@ from reduction.line.product import REASONS, LineParameters
 from reduction.lookup.product import DesignValues
 from reduction.record import Floats
 
-__all__ = [
-    "doubts_of_identified", "doubts_of_printed", "interval_of", "said_identified", "said_instead",
-    "said_of_value", "said_over_frequency", "said_printed",
-]  # fmt: skip
-
 
 def said_identified(
     part: Viscoelasticity, amplitude: float, half: Mapping[str, Floats], *, is_exact: bool

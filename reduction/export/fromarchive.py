@@ -26,8 +26,6 @@ from reduction.export.spread import CurveSpread
 from reduction.record import Bools, Floats
 from reduction.uncertainty.combine import combined_standard_uncertainty
 
-__all__ = ["CurveName", "line_from_archive", "line_from_open_archive"]
-
 CurveName = Literal["mean", "ascending", "descending"]
 _BRANCHES = ("ascending", "descending")
 _NOT_APART = (

@@ -19,8 +19,6 @@ from reduction.export.spread import CurveSpread
 from reduction.export.table import TableColumn, ValueTable, spread_columns
 from reduction.pipeline.deployed import DeployedLine
 
-__all__ = ["assembly_table", "line_from_assembly"]
-
 
 def assembly_table(line: DeployedLine) -> ValueTable:
     """Return every node of an assembly: length, tension, stiffness, and what each tether carries.

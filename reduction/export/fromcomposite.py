@@ -22,8 +22,6 @@ from reduction.lookup.composite import CompositeCurve
 from reduction.lookup.source import PieceSource, used_of
 from reduction.record import Bools
 
-__all__ = ["composite_table", "line_from_composite", "ranges_of"]
-
 _WAYS = {
     "mean": "mean of both branches",
     "ascending": "ascending branch",

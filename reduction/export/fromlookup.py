@@ -24,8 +24,6 @@ from reduction.lookup.curve import evaluate_curve
 from reduction.lookup.product import LineCurve, LineSource
 from reduction.record import Floats
 
-__all__ = ["line_from_lookup"]
-
 _POINTS = 201
 _LARGE_CONSTANT = 0.01
 _MOST_CUT, _LEAST_CUT = 0.9, 0.05  # shares of the greatest tension that a cut may leave or take

@@ -13,8 +13,6 @@ import math
 from reduction.digits import plain_number
 from reduction.export.product import SEA_WATER, ExportLine
 
-__all__ = ["guards_of", "range_of"]
-
 _SAME = 1e-9
 _LEAST_FILL = 0.6  # of the diameter: a third of the area, where ropes have two thirds
 

@@ -11,8 +11,6 @@ from reduction.export.guards import guards_of, range_of
 from reduction.export.product import ExportLine
 from reduction.export.thin import ThinnedCurve, local_words
 
-__all__ = ["header_lines", "number", "one_line", "real_number"]
-
 _WIDTH = 100
 
 

@@ -40,8 +40,6 @@ from reduction.lookup.line import look_up
 from reduction.lookup.product import DesignValues, LineSource
 from reduction.record import Floats
 
-__all__ = ["LineDynamics", "line_dynamics"]
-
 _REST, _APPARENT, _ENERGY = (
     "quasi_static_spring_constant", "apparent_spring_constant", "hysteresis_energy",
 )  # fmt: skip

@@ -26,8 +26,6 @@ from reduction.record import Floats
 from reduction.uncertainty.line import line_contributions
 from reduction.uncertainty.product import Contributions
 
-__all__ = ["half_widths"]
-
 _REST = "quasi_static_spring_constant"
 _LOOP = ("apparent_spring_constant", "hysteresis_energy")
 

@@ -15,8 +15,6 @@ from reduction.lookup.product import DesignValues, LineSource
 from reduction.record import Floats
 from reduction.vocabulary import quantity
 
-__all__ = ["TENSIONS", "format_of_file", "table_of_difference", "table_of_values"]
-
 TENSIONS = ("mean_tension", "tension_amplitude", "tension")
 """Levels that are shares of a break strength as well."""
 _OF_SUFFIX = {

@@ -37,11 +37,6 @@ from reduction.export.header import header_lines, number, one_line
 from reduction.export.product import ExportLine
 from reduction.export.thin import ThinnedCurve, thin_curve
 
-__all__ = [
-    "MOST_POINTS", "NUMERICAL_DAMPING", "MoorDynForm", "fast_damping", "moordyn_files",
-    "table_text",
-]  # fmt: skip
-
 MoorDynForm = Literal["table", "static-dynamic", "load-dependent", "syrope"]
 MOST_POINTS = 30
 """Rows that a table of MoorDyn may have. [1]"""

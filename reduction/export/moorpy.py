@@ -30,8 +30,6 @@ from reduction.export.moordyn import MOST_POINTS, NUMERICAL_DAMPING, table_text
 from reduction.export.product import ExportLine
 from reduction.export.thin import thin_curve
 
-__all__ = ["MoorPyForm", "moorpy_files"]
-
 MoorPyForm = Literal["table", "library"]
 
 

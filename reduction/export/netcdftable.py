@@ -15,8 +15,6 @@ from reduction.errors import ArchiveError
 from reduction.export.table import CONTRIBUTION, SIGNED, ValueTable
 from reduction.vocabulary import quantity
 
-__all__ = ["write_netcdf"]
-
 
 def write_netcdf(table: ValueTable, path: Path) -> None:
     """Write a table as a netCDF file, SI, with its sources as attributes.

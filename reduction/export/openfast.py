@@ -14,8 +14,6 @@ from reduction.export.header import header_lines
 from reduction.export.moordyn import MoorDynForm, moordyn_files
 from reduction.export.product import ExportLine
 
-__all__ = ["openfast_files"]
-
 # OpenFAST hands its own gravity to the module, unless the file has another
 _LEFT_OUT = ("0 writeLog", "1 disableOutTime", "10 TmaxIC", "0.1 dtIC", NO_GRAVITY, WEIGHTLESS)
 _ABOUT_GRAVITY = "gravity is that of OpenFAST: the line sags, and has more tension than its strain"

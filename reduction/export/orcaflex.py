@@ -15,8 +15,6 @@ from reduction.export.header import header_lines, real_number
 from reduction.export.product import ExportLine
 from reduction.export.thin import thin_curve
 
-__all__ = ["ORCAFLEX_POINTS", "orcaflex_text"]
-
 ORCAFLEX_POINTS = 100
 """Rows of a table. [1]"""
 _PER_KILO = 1e-3

@@ -16,9 +16,7 @@ from dataclasses import dataclass, field
 from reduction.errors import SettingsError
 from reduction.export.dynamics import Syrope, Viscoelasticity
 from reduction.export.spread import CurveSpread
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["CYLINDER", "SEA_WATER", "ExportLine", "Hydrodynamics"]
+from reduction.record import Floats, read_only_arrays
 
 SEA_WATER = 1025.0
 """Density that turns a wet mass into a displaced volume. [kg m-3]"""
@@ -46,6 +44,7 @@ CYLINDER = Hydrodynamics(
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ExportLine:
     """A line as a mooring code takes it.
 
@@ -106,7 +105,6 @@ class ExportLine:
 
     def __post_init__(self) -> None:
         """Check that somebody has said what the curve is and where it is from."""
-        freeze_arrays(self)
         for name, needed in (
             ("name", "letters or digits"),
             ("curve", "a branch or a mean, in words"),

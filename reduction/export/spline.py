@@ -16,13 +16,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import BSpline, PPoly
-from scipy.optimize import nnls
+import scipy
 
 from reduction.export.thin import curve_from_zero, local_share, thin_curve
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["SmoothCurve", "fit_smooth_curve"]
+from reduction.record import Floats, read_only_arrays
 
 _DEGREE = 2
 _FIRST, _MOST = 4, 24
@@ -33,6 +30,7 @@ _GRID = 801
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SmoothCurve:
     """Cubic pieces of a curve.
 
@@ -61,10 +59,6 @@ class SmoothCurve:
     share: float
     local: float
     words: str
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def fit_smooth_curve(strain: Floats, tension: Floats) -> SmoothCurve:
@@ -125,7 +119,9 @@ def fit_smooth_curve(strain: Floats, tension: Floats) -> SmoothCurve:
     )
 
 
-def _greatest_error(fitted: PPoly, at: Floats, load: Floats) -> tuple[float, float]:
+def _greatest_error(
+    fitted: scipy.interpolate.PPoly, at: Floats, load: Floats
+) -> tuple[float, float]:
     """Greatest difference from the straight lines between the points, and its strain."""
     breaks = np.union1d(at, fitted.x)
     step = np.clip(np.searchsorted(at, breaks[:-1], "right") - 1, 0, at.size - 2)
@@ -144,21 +140,26 @@ def _greatest_error(fitted: PPoly, at: Floats, load: Floats) -> tuple[float, flo
     return float(off.max()), float(places[off.argmax()])
 
 
-def _fitted(grid: Floats, wanted: Floats, knots: Floats, end: float, top: float) -> PPoly:
+def _fitted(
+    grid: Floats, wanted: Floats, knots: Floats, end: float, top: float
+) -> scipy.interpolate.PPoly:
     """Integral of positive quadratic B-splines through 0 0, as pieces."""
     whole = np.concatenate([[0.0] * _DEGREE, knots, [end] * (_DEGREE + 1)])
     count = whole.size - _DEGREE - 1
     integrals = [
-        BSpline(whole, row, _DEGREE, extrapolate=True).antiderivative() for row in np.eye(count)
+        scipy.interpolate.BSpline(whole, row, _DEGREE, extrapolate=True).antiderivative()
+        for row in np.eye(count)
     ]
     columns = np.stack([one(grid) - one(0.0) for one in integrals], axis=1)
     least = _LEAST_SLOPE * top / end
-    weights, _ = nnls(columns / end, wanted / top - columns.sum(axis=1) * least / top)
-    slope = BSpline(whole, least + weights * top / end, _DEGREE)
-    pieces = PPoly.from_spline(slope.antiderivative().tck)
+    weights, _ = scipy.optimize.nnls(
+        columns / end, wanted / top - columns.sum(axis=1) * least / top
+    )
+    slope = scipy.interpolate.BSpline(whole, least + weights * top / end, _DEGREE)
+    pieces = scipy.interpolate.PPoly.from_spline(slope.antiderivative().tck)
     # from_spline keeps the repeated knots as empty pieces
     real = np.flatnonzero(np.diff(pieces.x) > 0)
     bounds = np.append(pieces.x[real], end)
     coefficient = pieces.c[:, real].copy()
     coefficient[-1] -= coefficient[-1, 0]
-    return PPoly(coefficient, bounds)
+    return scipy.interpolate.PPoly(coefficient, bounds)

@@ -7,13 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from reduction.errors import DataError
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, read_only_arrays
 from reduction.uncertainty.product import Component
-
-__all__ = ["CurveSpread"]
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CurveSpread:
     """Standard uncertainties of the tensions of a curve, NaN where they are not known.
 
@@ -45,7 +44,6 @@ class CurveSpread:
                 found=f"{n_points} uncertainties, {of_random} random ones, contributions of shape "
                 f"{self.contribution.shape} to {len(self.component)} errors",
             )
-        freeze_arrays(self)
 
     @property
     def shared(self) -> Floats:

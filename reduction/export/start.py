@@ -17,8 +17,6 @@ from reduction.digits import plain_number
 from reduction.lookup.product import LineSource
 from reduction.record import Floats
 
-__all__ = ["siblings_of", "start_against"]
-
 _DOUBT = 0.05
 
 

@@ -24,16 +24,6 @@ from reduction.uncertainty.product import Component
 from reduction.units import UnitSystem, display_unit
 from reduction.visible import safe_cell
 
-__all__ = [
-    "CONTRIBUTION",
-    "SIGNED",
-    "TableColumn",
-    "ValueTable",
-    "curve_table",
-    "spread_columns",
-    "table_text_of",
-]
-
 CONTRIBUTION = "tension_uncertainty_contribution"
 SIGNED = "what one standard uncertainty of each shared error adds to the tension"
 """What stands where a format has a place for contributions."""

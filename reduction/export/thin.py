@@ -16,17 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = [
-    "LEAST_SHARE",
-    "LIFT",
-    "ThinnedCurve",
-    "curve_from_zero",
-    "local_share",
-    "local_words",
-    "thin_curve",
-]
+from reduction.record import Floats, Integers, read_only_arrays
 
 LIFT = 1e-6
 """Share of the greatest tension that is added over the curve where it does not rise. [1]"""
@@ -44,6 +34,7 @@ class _Close(Protocol):
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ThinnedCurve:
     """A curve from 0 0, strictly rising; arrays have the shape (n_points,).
 
@@ -58,10 +49,6 @@ class ThinnedCurve:
     share: float
     local: float
     words: str
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floats, str]:

@@ -29,8 +29,6 @@ from reduction.export.spline import SmoothCurve, fit_smooth_curve
 from reduction.export.thin import local_words, thin_curve
 from reduction.record import Floats
 
-__all__ = ["CABLE_POINTS", "WhoiCableForm", "whoicable_text"]
-
 WhoiCableForm = Literal["expression", "table"]
 CABLE_POINTS = 100
 """Pairs of a table. [1]"""

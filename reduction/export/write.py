@@ -21,8 +21,6 @@ from reduction.export.table import ValueTable, curve_table, table_text_of
 from reduction.export.whoicable import WhoiCableForm, whoicable_text
 from reduction.units import UnitSystem
 
-__all__ = ["FORMATS", "FORMS", "export_line", "export_table"]
-
 _TABLES = ("csv", "json", "latex", "markdown", "netcdf")
 FORMS: dict[str, tuple[str, ...]] = {
     "moordyn": get_args(MoorDynForm),

@@ -14,16 +14,15 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_increasing, as_same_shape
 from reduction.errors import DataError
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, read_only_arrays
 from reduction.samples.blocks import sample_blocks
-
-__all__ = ["Blocks", "logarithmic_blocks"]
 
 BLOCKS_PER_DECADE = 40
 LARGEST_WEIGHT = 64.0
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Blocks:
     """Block means of a series, shape (n_blocks,) each.
 
@@ -40,10 +39,6 @@ class Blocks:
     elapsed: Floats
     value: Floats
     count: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def weight(self) -> Floats:

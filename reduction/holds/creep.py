@@ -15,8 +15,6 @@ from reduction.errors import DataError
 from reduction.holds.blocks import logarithmic_blocks
 from reduction.holds.relaxation import Rate, rate_per_decade
 
-__all__ = ["TENSION_TOLERANCE", "creep_rate", "tension_variation"]
-
 TENSION_TOLERANCE = 0.01
 
 

@@ -7,12 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = ["HoldResult", "hold_numbers"]
+from reduction.record import Floats, Integers, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class HoldResult:
     """Relaxation (constant length) or creep (constant tension) of one specimen in one hold.
 
@@ -88,10 +87,6 @@ class HoldResult:
     hold_final_tension_standard_uncertainty: float = float("nan")
     tension_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     strain_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def hold_numbers(holds: Sequence[HoldResult]) -> Integers:

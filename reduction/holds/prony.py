@@ -20,9 +20,7 @@ from reduction.checks import as_same_shape
 from reduction.errors import DataError, FitError
 from reduction.holds.series import exponentials, ramp_factor
 from reduction.moduli.separable import SeparableFit, fit_separable, lag_one_inflation
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["PronyFit", "fit_prony"]
+from reduction.record import Floats, read_only_arrays
 
 _DEGENERATE = "no positive terms that can be told apart"
 GRID_TIMES = 20
@@ -34,6 +32,7 @@ LARGEST_LOG = 50.0
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class PronyFit:
     """A Prony series with its standard uncertainties (type A).
 
@@ -56,10 +55,6 @@ class PronyFit:
     long_time_tension: float
     long_time_tension_standard_uncertainty: float
     criterion: str
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def _starts(
@@ -91,10 +86,10 @@ def _unsupported(
     fit: SeparableFit, inflation: float, shortest: float, longest: float
 ) -> str | None:
     """Why a fit may not be reported, or None."""
-    times, size = np.exp(fit.shape), fit.amplitude[1:]
-    uncertainty = fit.standard_uncertainty * np.sqrt(inflation)
     if not _is_positive(fit):
         return _DEGENERATE
+    times, size = np.exp(fit.shape), fit.amplitude[1:]
+    uncertainty = fit.standard_uncertainty * np.sqrt(inflation)
     if times.max() > LONGEST_TIME * longest:
         return f"a time of {times.max():.3g} s is too long for a hold of {longest:.3g} s"
     if times.min() < shortest:
@@ -174,11 +169,12 @@ def fit_prony(
     longest = float(time[-1])
     grid = np.geomspace(shortest, LONGEST_TIME * longest, GRID_TIMES)
 
-    def basis(log_times: Floats) -> Floats:
-        # A search that strays stays finite; the complex step of a derivative is kept.
-        real = np.real(log_times)
-        times = np.exp(np.clip(real, -LARGEST_LOG, LARGEST_LOG) + (log_times - real))
-        return np.column_stack([np.ones_like(time), exponentials(time, times)])
+    def basis(log_times: Floats) -> tuple[Floats, Floats]:
+        # A search that strays stays finite.
+        times = np.exp(np.clip(log_times, -LARGEST_LOG, LARGEST_LOG))[:, None, :]
+        decay = exponentials(time, times)
+        level = np.ones((len(log_times), time.size, 1))
+        return np.concatenate([level, decay], axis=2), decay * (time[:, None] / times)
 
     fits: dict[int, SeparableFit] = {}
     refused: list[str] = []

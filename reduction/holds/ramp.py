@@ -23,8 +23,6 @@ from reduction.samples.columns import chosen, mean_of
 from reduction.samples.scratch import let_go
 from reduction.samples.search import last_sample
 
-__all__ = ["Ramp", "begins_inside", "find_ramp"]
-
 
 @dataclass(frozen=True)
 class Ramp:

@@ -27,8 +27,6 @@ from reduction.phases.standstill import Standstills
 from reduction.samples.columns import chosen, mean_of, shifted
 from reduction.settings import HoldSettings
 
-__all__ = ["reduce_holds"]
-
 _EMPTY = np.empty(0)
 
 

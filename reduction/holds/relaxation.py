@@ -28,15 +28,6 @@ from reduction.samples.blocks import sample_blocks
 from reduction.samples.columns import chosen, mean_of, median_step_reaches
 from reduction.samples.scratch import let_go
 
-__all__ = [
-    "RAMP_TIMES_LEFT_OUT",
-    "Rate",
-    "end_mean",
-    "rate_per_decade",
-    "relaxation_drop",
-    "value_at_times",
-]
-
 RAMP_TIMES_LEFT_OUT = 3.0
 FEWEST_BLOCKS = 8
 SHORTEST_SPAN = 0.5

@@ -19,8 +19,6 @@ from reduction.samples.blocks import sample_blocks
 from reduction.samples.columns import chosen
 from reduction.samples.scratch import empty_like
 
-__all__ = ["select_hold"]
-
 _LOOKED_BACK = 1 << 16
 """Samples before a hold in which its ramp is looked for at first: many cycles may lie between two
 holds."""

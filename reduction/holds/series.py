@@ -17,8 +17,6 @@ from reduction.checks import as_positive
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["exponentials", "prony_tension", "ramp_factor"]
-
 SMALLEST_RATIO = 1e-12
 
 
@@ -114,12 +112,12 @@ def exponentials(elapsed: Floats, relaxation_time: Floats) -> Floats:
     ----------
     elapsed : ndarray, shape (n_samples,)
         Time. [s]
-    relaxation_time : ndarray, shape (n_terms,)
-        Times of the terms; complex ones give derivatives. [s]
+    relaxation_time : ndarray, shape (n_terms,) or (..., 1, n_terms)
+        Times of the terms, or several sets of them. [s]
 
     Returns
     -------
-    columns : ndarray, shape (n_samples, n_terms)
+    columns : ndarray, shape (..., n_samples, n_terms)
         1 at time zero. [1]
 
     Raises

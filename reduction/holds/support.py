@@ -21,8 +21,6 @@ from reduction.samples.blocks import BLOCK, sample_blocks
 from reduction.samples.columns import chosen, median_step_reaches, shifted
 from reduction.settings import HoldSettings
 
-__all__ = ["SIGNIFICANT", "Ends", "Hold", "hold_ends", "reasons_against"]
-
 SIGNIFICANT = 3.0
 FEWEST_SAMPLES = 20
 FINAL_SHARE = 0.05

@@ -12,8 +12,6 @@ from reduction.ingest.textparts import TextFile
 from reduction.ingest.textrows import line_starts
 from reduction.record import Bools, Integers
 
-__all__ = ["BlockLines", "block_lines", "header_length"]
-
 _NEWLINE, _RETURN = b"\n\r"
 
 

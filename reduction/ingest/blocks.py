@@ -28,8 +28,6 @@ from reduction.ingest.textparts import TextFile, open_text
 from reduction.ingest.textrows import TextRows, split_line
 from reduction.record import Bools
 
-__all__ = ["read_blocks"]
-
 _MTS = "MTS793|"
 _DECIMAL_FIELD = 5
 _KEPT_LINES = 200

@@ -24,8 +24,6 @@ from reduction.ingest.columns import Wanted, without_marks
 from reduction.ingest.layout import CLOCK, Layout
 from reduction.record import Bools, Floats
 
-__all__ = ["SheetCells", "parsed", "read_cells"]
-
 _ERROR_CELL = re.compile(r"Error\((\w+)\)")
 _ERROR_MARKS = {
     "NA": "#N/A",

@@ -14,8 +14,6 @@ from reduction.ingest.layout import CLOCK, Layout
 from reduction.record import Bools, Floats
 from reduction.samples.scratch import ColumnWriter
 
-__all__ = ["CheckedColumn"]
-
 _EXACT = 2**53  # whole numbers beyond this have no float64 of their own
 _KINDS = {
     "b": "true or false",

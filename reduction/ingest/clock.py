@@ -11,8 +11,6 @@ import numpy as np
 from reduction.errors import LogError
 from reduction.record import Floats, Integers
 
-__all__ = ["clock_to_seconds"]
-
 _CLOCK = re.compile(r"(\d{1,2}):?([0-5]\d)(?::([0-5]\d(?:[.,]\d+)?))?")
 _DAY = 86400.0
 

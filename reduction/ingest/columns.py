@@ -22,16 +22,6 @@ from reduction.ingest.layout import CLOCK, Layout
 from reduction.record import Floats
 from reduction.units import Dimension, scale_to_si
 
-__all__ = [
-    "Wanted",
-    "check_lengths",
-    "check_unit",
-    "find_column",
-    "stated_scale",
-    "wanted_columns",
-    "without_marks",
-]
-
 _BRACKETS = {"(": ")", "[": "]", "{": "}", "<": ">"}
 _SHOWN = 40
 _LONGEST_SHOWN = 200

@@ -14,8 +14,6 @@ from reduction.record import Bools, Floats, Integers
 from reduction.samples.blocks import BLOCK, finite_extremes, sample_blocks, take_samples
 from reduction.samples.intervals import interval_labels, over_intervals
 
-__all__ = ["Runs", "constant_runs", "find_saturated", "find_stuck", "find_stuck_position", "moves"]
-
 _EDGES = 1 << 10  # of runs, looked at together: a quantised channel has one for every level
 _SATURATED_SAMPLES = 5
 _SATURATED_STEPS = 16.0

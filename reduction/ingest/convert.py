@@ -19,8 +19,6 @@ from reduction.samples.scratch import empty_like, zeros_like
 from reduction.settings import QualitySettings
 from reduction.units import Dimension, parse_quantity
 
-__all__ = ["to_record"]
-
 _WORKERS = 4
 _NO_COUNT = -1
 _DATUM_SHARE = 0.05

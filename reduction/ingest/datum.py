@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from reduction.ingest.layout import Layout
 from reduction.units import parse_quantity
 
-__all__ = ["length_at_slack"]
-
 
 def length_at_slack(layouts: Sequence[Layout]) -> float | None:
     """Thimble-to-thimble length at which the layouts of a log say that it is slack.

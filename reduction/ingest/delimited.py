@@ -24,8 +24,6 @@ from reduction.ingest.source import unchanged
 from reduction.ingest.textparts import TextFile, open_text
 from reduction.ingest.textrows import TextRows, count_lines, line_starts, split_line
 
-__all__ = ["read_delimited"]
-
 _LINE = 1 << 12  # bytes that most lines of a header have at most
 _KEPT_LINES = 1000
 

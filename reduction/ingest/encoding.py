@@ -8,8 +8,6 @@ from pathlib import Path
 
 from reduction.errors import LogError, SettingsError
 
-__all__ = ["TextEncoding", "decode", "find_encoding", "row_of"]
-
 _UTF8_FAMILY = {"utf-8", "utf-8-sig", "ascii"}
 # the longer mark first: a UTF-32 mark begins with the UTF-16 one
 _MARKS = (

@@ -7,8 +7,6 @@ import numpy as np
 from reduction.record import Bools, Floats, Integers
 from reduction.samples.blocks import take_samples
 
-__all__ = ["find_excursions", "usual_step"]
-
 LONGEST = 10  # samples of an excursion
 _NEIGHBOURS = 4  # steps on each side that tell the course
 _JUMP_TO_STEPS = 5.0

@@ -23,8 +23,6 @@ from reduction.ingest.textrows import TextRows, count_lines, split_line
 from reduction.record import Floats, Integers
 from reduction.visible import cut
 
-__all__ = ["Fields", "read_fields"]
-
 _BLOCK = 1 << 20  # bytes that the parser takes at a time, a line at least
 
 

@@ -32,8 +32,6 @@ from reduction.samples.search import any_sample, first_sample
 from reduction.settings import QualitySettings
 from reduction.workers import run_blocks
 
-__all__ = ["flag_record"]
-
 _Flags = NDArray[np.uint16]
 _NO_READING = np.uint16(Quality.MISSING | Quality.STUCK)
 _TOLD_OTHERWISE = np.uint16(

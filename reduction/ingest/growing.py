@@ -19,8 +19,6 @@ from reduction.record import Floats, Integers
 from reduction.samples.blocks import BLOCK
 from reduction.samples.scratch import ColumnWriter
 
-__all__ = ["AT_A_TIME", "GrowingLog", "in_order"]
-
 AT_A_TIME = 2
 """Parts whose numbers are read together. [1]."""
 

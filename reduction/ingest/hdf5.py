@@ -29,8 +29,6 @@ from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, matrix_table, read_columns
 
-__all__ = ["group_table", "hdf5_table", "read_hdf5"]
-
 
 def hdf5_table(
     path: Path, file: h5py.File, layout: Layout, watch: Watch | None = None
@@ -130,7 +128,7 @@ def read_hdf5(
     """
     watch = watch or Watch(path)
     source = hash_source(path, name)
-    with open_hdf5(path, watch) as file:
+    with open_hdf5(path) as file:
         columns, n_rows = read_columns(
             path, layout, hdf5_table(path, file, layout, watch), parts=parts, watch=watch
         )

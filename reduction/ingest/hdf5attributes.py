@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from reduction.errors import LogError
 
-__all__ = ["is_plain_attribute", "plain_attribute", "unit_attribute"]
-
 _UNIT_KEYS = ("units", "unit", "Units", "Unit")
 _LONGEST_UNIT = 200
 _PLAIN_CLASSES = (h5py.h5t.INTEGER, h5py.h5t.FLOAT, h5py.h5t.STRING, h5py.h5t.ENUM)

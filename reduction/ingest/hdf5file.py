@@ -8,7 +8,6 @@ library would make them up, any number of them.
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -21,37 +20,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.errors import LogError
-from reduction.globalheap import endless_heap
 from reduction.ingest.limits import Watch
 from reduction.ingest.table import row_parts
-
-__all__ = [
-    "chunk_length",
-    "data_set",
-    "find_member",
-    "names_in",
-    "open_hdf5",
-    "read_data_set",
-    "read_texts",
-    "series_parts",
-]
 
 _PACKED = ("scale_factor", "add_offset")
 _SHOWN = 40
 
 
 @contextmanager
-def open_hdf5(path: Path, watch: Watch | None = None) -> Iterator[h5py.File]:
+def open_hdf5(path: Path) -> Iterator[h5py.File]:
     """Open an HDF5 file for a block.
 
     Raises
     ------
     LogError
-        If the file is none, or is damaged, or takes too long.
-    OSError
-        If the system refuses.
+        If the file is none, or is damaged.
     """
-    watch = watch or Watch(path)
     try:
         file = h5py.File(path, "r", locking=False)
     except OSError as error:
@@ -59,12 +43,6 @@ def open_hdf5(path: Path, watch: Watch | None = None) -> Iterator[h5py.File]:
             path, "the file is not HDF5", found=str(error)[:200], needed="an HDF5 file"
         ) from error
     with file:
-        # outside of what is told as damage: the system may refuse
-        with path.open("rb") as plain:
-            lengths = file.id.get_create_plist().get_sizes()[1]
-            fault = endless_heap(plain, lengths, meanwhile=watch.check_time)
-        if fault is not None:
-            raise LogError(path, "the file is damaged", found=fault, needed="an intact file")
         try:
             yield file
         except (OSError, RuntimeError, KeyError, UnicodeDecodeError) as error:  # damage
@@ -265,7 +243,6 @@ def read_texts(
         watch.check_columns(dataset.size)
         if dataset.dtype.kind == "O" and h5py.check_string_dtype(dataset.dtype) is None:
             raise _no_text(path, dataset)  # rows of any length, for which there is no bound
-        _check_lengths(path, dataset)
         # one by one: each of them may be the same long text
         for part in row_parts(dataset.shape[axis], 1):
             for value in _values(path, dataset, (slice(None),) * axis + (part,), 1, watch).ravel():
@@ -277,30 +254,6 @@ def read_texts(
                 texts.append(text)
         return tuple(texts)
     raise _no_text(path, dataset)
-
-
-def _check_lengths(path: Path, dataset: h5py.Dataset) -> None:
-    """`LogError` where a text states more bytes than the file has.
-
-    The library takes that memory before it looks for the text.  Lengths stand before the places of
-    the texts, where these stand in a row; those in chunks are left to the library.
-    """
-    begin = dataset.id.get_offset()
-    kind = h5py.check_string_dtype(dataset.dtype)
-    if begin is None or kind is None or kind.length is not None:
-        return
-    width = 4 + dataset.file.id.get_create_plist().get_sizes()[0] + 4
-    with path.open("rb") as file:
-        n_bytes = file.seek(0, os.SEEK_END)
-        file.seek(begin)
-        row = np.frombuffer(file.read(width * dataset.size), dtype=np.uint8)
-    stated = row[: row.size // width * width].reshape(-1, width)[:, :4].copy().view("<u4")
-    if stated.size and stated.max() > n_bytes:
-        raise LogError(
-            path, f"'{dataset.name}' is damaged",
-            found=f"a text of {stated.max():,} bytes in a file of {n_bytes:,}",
-            needed="texts that stand in the file",
-        )  # fmt: skip
 
 
 def _no_text(path: Path, dataset: h5py.Dataset) -> LogError:

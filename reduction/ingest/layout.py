@@ -13,8 +13,6 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator, model_valida
 from reduction.errors import SettingsError
 from reduction.units import Dimension, parse_quantity, scale_to_si
 
-__all__ = ["CLOCK", "Channel", "Format", "Layout"]
-
 CLOCK = "clock"
 
 Format = Literal["delimited", "blocks", "spreadsheet", "tdms", "matlab", "hdf5", "parquet", "json"]

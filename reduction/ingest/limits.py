@@ -10,8 +10,6 @@ from typing import Literal
 from reduction.errors import LogError
 from reduction.settings import Limits
 
-__all__ = ["Watch", "check_regular"]
-
 _KINDS = {
     stat.S_IFDIR: "a folder",
     stat.S_IFCHR: "a device",
@@ -19,6 +17,7 @@ _KINDS = {
     stat.S_IFIFO: "a pipe",
     stat.S_IFSOCK: "a socket",
 }
+_DAMAGED = "It may be damaged: save it again with the program that wrote it. "
 _Limit = Literal["file_size", "unpacked_size", "line_length", "columns", "time"]
 
 
@@ -111,10 +110,29 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
         """`LogError` where reading has taken longer than ``time``; to be called between blocks."""
         seconds = time.monotonic() - self._begin
         if seconds > self.limits.time:
-            raise self._beyond(
-                "time", "the file takes too long to read", f"{seconds:.3g} s so far",
-                f"{self.limits.time:g} s at most",
-            )  # fmt: skip
+            raise self.too_slow(seconds)
+
+    def too_slow(self, seconds: float) -> LogError:
+        """Error of a file that took so long, and was not read."""
+        return self._beyond(
+            "time", "the file takes too long to read", f"{seconds:.3g} s so far",
+            f"{self.limits.time:g} s at most",
+        )  # fmt: skip
+
+    def too_much_memory(self) -> LogError:
+        """Error of a file whose reader was refused more memory."""
+        return self._beyond(
+            "unpacked_size", "the file takes more memory than it may", "more when it is read",
+            f"{self.limits.unpacked_size:,} bytes at most", before=_DAMAGED,
+        )  # fmt: skip
+
+    def broken(self, found: str) -> LogError:
+        """Error of a file that ended the process of its reader."""
+        return self._beyond(
+            "unpacked_size", "the library that reads this format broke at the file", found,
+            f"an intact file that takes {self.limits.unpacked_size:,} bytes of memory at most",
+            before=_DAMAGED,
+        )  # fmt: skip
 
     def long_line(self, row: int) -> LogError:
         """Error of a line that is longer than ``line_length``."""

@@ -11,8 +11,6 @@ from xml.parsers import expat
 
 from reduction.errors import LogError
 
-__all__ = ["SoundMarkup", "is_markup"]
-
 _SUFFIXES = (".xml", ".rels")
 
 

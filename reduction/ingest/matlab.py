@@ -27,15 +27,6 @@ from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, matrix_table, read_columns
 
-__all__ = [
-    "matlab_table",
-    "open_matlab",
-    "read_cell_texts",
-    "read_matlab",
-    "struct_fields",
-    "struct_place",
-]
-
 _LETTER = 60  # bytes of a character while a text is put together
 _OWN_CLASSES = (MatlabOpaque, MatlabFunction, MatlabObject)
 
@@ -213,7 +204,7 @@ def open_matlab(path: Path, watch: Watch | None = None) -> Iterator[Mapping[str,
     """Variables of a MATLAB file of any version; `LogError` where the file is none."""
     watch = watch or Watch(path)
     if h5py.is_hdf5(path):
-        with open_hdf5(path, watch) as file:
+        with open_hdf5(path) as file:
             yield _Struct(path, file, watch)
     else:
         yield Variables(path, watch)

@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["equal_numbers", "has_narrow_numbers"]
-
 
 def has_narrow_numbers(value: Any) -> bool:
     """Whether numbers in it, at any depth, are of a class that does not hold every stored one.

@@ -3,31 +3,36 @@
 from __future__ import annotations
 
 import io
+import struct
 import warnings
 import zlib
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
+import numpy as np
 import scipy.io
+import scipy.sparse
 from scipy.io.matlab import MatReadError, matfile_version
 
 from reduction.errors import LogError
 from reduction.ingest.limits import Watch
-from reduction.ingest.matlabcheck import HEADER, StoredVariable, stored_variables
 from reduction.ingest.matlabstored import equal_numbers, has_narrow_numbers
-
-__all__ = ["OF_MATLAB_ALONE", "Variables", "no_array"]
 
 OF_MATLAB_ALONE = (
     "A table or timetable can be read by MATLAB alone: save it as a struct of columns, "
     "table2struct(T, 'ToScalar', true)."
 )
 """What to do about an object of one of MATLAB's own classes."""
+_COMPLEX = "complex numbers"
+_HEADER = 128  # bytes before the first variable of a file of version 5
+_LONGEST_HEAD = 1 << 16  # bytes of a variable before its values
 _NOT_MATLAB = (
     MatReadError, ValueError, IndexError, OSError, TypeError, KeyError, EOFError, zlib.error,
-    NotImplementedError, UnboundLocalError,
+    NotImplementedError, UnboundLocalError, struct.error,
+    ArithmeticError, AttributeError, SystemError,  # numbers of a type that there is not
 )  # fmt: skip
 
 
@@ -38,29 +43,30 @@ class Variables(Mapping[str, Any]):
         self.path, self.watch = path, watch
         try:
             version, _ = matfile_version(str(path), appendmat=False)
-        except _NOT_MATLAB as error:
+            with _strictly(), path.open("rb") as stream:
+                found = [*_stored(stream, watch)] if version else _old(stream)
+        except LogError:
+            raise
+        except (*_NOT_MATLAB, UserWarning, RuntimeWarning) as error:
             raise LogError(
                 path, "the file is not a MATLAB file that can be read", found=str(error)[:200],
-                needed="a .mat file of version 4 to 7.3",
+                needed="a .mat file of version 4 to 7.3 that is whole",
             ) from error  # fmt: skip
-        self.is_old = version == 0
-        held = stored_variables(path, version, watch)
-        self.stored = {variable.name: variable for variable in held}
-        self.twice = {name for name, count in Counter(v.name for v in held).items() if count > 1}
-        self.names = list(self.stored)
+        self.places = dict(found)
+        self.twice = {name for name, n in Counter(name for name, _ in found).items() if n > 1}
 
     def __getitem__(self, name: str) -> Any:
-        stored = self.stored[name]
+        place = self.places[name]
         if name in self.twice:
             raise no_array(self.path, name, "two variables of that name")
-        if stored.kind == "sparse":  # what class it comes as depends on the release of scipy
+        self.watch.check_time()
+        found = self._loaded(name, place, mat_dtype=True)  # true/false apart from numbers
+        if scipy.sparse.issparse(found):
             raise no_array(self.path, name, "a sparse matrix")
-        if stored.is_complex:  # the library would drop the imaginary part without a word
-            raise no_array(self.path, name, "complex numbers")
-        self.watch.check_unpacked(stored.memory, f"variable '{name}'")
-        found = self._loaded(name, mat_dtype=True)  # which keeps true/false apart from numbers
+        if np.iscomplexobj(found):
+            raise no_array(self.path, name, _COMPLEX)
         if has_narrow_numbers(found) and not equal_numbers(
-            found, self._loaded(name, mat_dtype=False)
+            found, self._loaded(name, place, mat_dtype=False)
         ):
             raise LogError(
                 self.path, f"variable '{name}' cannot be read",
@@ -68,33 +74,63 @@ class Variables(Mapping[str, Any]):
             )  # fmt: skip
         return found
 
-    def _loaded(self, name: str, *, mat_dtype: bool) -> Any:
-        stream: Any = io.BytesIO(self._bytes(self.stored[name]))
+    def _loaded(self, name: str, place: tuple[int, int] | None, *, mat_dtype: bool) -> Any:
         try:
-            with warnings.catch_warnings():
-                # scipy goes on with numbers in a byte order that it does not know, and with texts
-                # of numbers that are no letters
-                warnings.simplefilter("error", UserWarning)
-                warnings.simplefilter("error", RuntimeWarning)
-                return scipy.io.loadmat(stream, mat_dtype=mat_dtype, variable_names=[name])[name]
+            with _strictly(), self.path.open("rb") as stream:
+                # the library would look for it from the first on
+                file: Any = stream if place is None else _alone(stream, *place)
+                return scipy.io.loadmat(file, mat_dtype=mat_dtype, variable_names=[name])[name]
+        except np.exceptions.ComplexWarning:  # of the imaginary part, which would be dropped
+            raise no_array(self.path, name, _COMPLEX) from None
         except (*_NOT_MATLAB, UserWarning, RuntimeWarning) as error:
             raise LogError(
                 self.path, f"variable '{name}' cannot be read", found=str(error)[:200],
                 needed="an intact .mat file", hint=OF_MATLAB_ALONE,
             ) from error  # fmt: skip
 
-    def _bytes(self, stored: StoredVariable) -> bytes:
-        """The variable as a file of its own: the library would look for it from the first on."""
-        with self.path.open("rb") as stream:
-            head = b"" if self.is_old else stream.read(HEADER)
-            stream.seek(stored.begin)
-            return head + stream.read(stored.end - stored.begin)
-
     def __iter__(self) -> Any:
-        return iter(self.names)
+        return iter(self.places)
 
     def __len__(self) -> int:
-        return len(self.names)
+        return len(self.places)
+
+
+@contextmanager
+def _strictly() -> Iterator[None]:
+    """Refuse what scipy goes on with: an unknown order of bytes, texts of no letters."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UserWarning)
+        warnings.simplefilter("error", RuntimeWarning)
+        yield
+
+
+def _old(stream: Any) -> list[tuple[str, None]]:
+    """Variables of a file of version 4."""
+    return [(name, None) for name, _, _ in scipy.io.whosmat(stream)]
+
+
+def _stored(stream: BinaryIO, watch: Watch) -> Iterator[tuple[str, tuple[int, int]]]:
+    """Variables of a file of version 5 to 7: where each begins, and how many bytes it has."""
+    order = "<" if stream.read(_HEADER)[126:] == b"IM" else ">"
+    begin, size, count = _HEADER, stream.seek(0, io.SEEK_END), 0
+    while begin < size:
+        watch.check_time()
+        watch.check_columns(count := count + 1)
+        stream.seek(begin)
+        length = 8 + struct.unpack(f"{order}4xI", stream.read(8))[0]
+        # an object of one of MATLAB's own classes has no shape, and the library fails at it
+        with suppress(TypeError):
+            for name, _, _ in scipy.io.whosmat(_alone(stream, begin, min(length, _LONGEST_HEAD))):
+                yield name, (begin, length)
+        begin += length
+
+
+def _alone(stream: BinaryIO, begin: int, length: int) -> Any:
+    """One variable as a file of its own."""
+    stream.seek(0)
+    head = stream.read(_HEADER)
+    stream.seek(begin)
+    return io.BytesIO(head + stream.read(length))
 
 
 def no_array(path: Path, name: str, found: str) -> LogError:

@@ -21,8 +21,6 @@ from reduction.ingest.source import read_bytes, source_of
 from reduction.ingest.table import matrix_table, read_columns
 from reduction.record import Floats
 
-__all__ = ["json_content", "read_json"]
-
 _VALUE, _LIST = 40, 90  # bytes that a number and a list take in memory
 _MOST_DIGITS = 300  # of whole numbers that are finite as float64
 

@@ -20,8 +20,6 @@ from reduction.ingest.rawlog import RawLog
 from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, read_columns
 
-__all__ = ["open_parquet", "parquet_table", "read_parquet"]
-
 _UNIT_KEYS = (b"units", b"unit")
 _BUFFER = 1 << 20  # bytes
 _MACHINERY = (b"ARROW:schema", b"pandas")  # for programs, not for a reader

@@ -7,8 +7,6 @@ from pathlib import Path
 
 from reduction.samples.scratch import scratch_folder
 
-__all__ = ["Parts"]
-
 
 @dataclass(frozen=True)
 class Parts:

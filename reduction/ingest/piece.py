@@ -15,8 +15,6 @@ from reduction.samples.blocks import sample_blocks
 from reduction.samples.scratch import empty_like
 from reduction.units import Dimension, parse_quantity, scale_to_si
 
-__all__ = ["Piece", "to_piece"]
-
 _USED = ("crosshead_position", "tension", "strain", "cycle_counter")
 _RESTART_SAMPLES = 3
 

@@ -14,8 +14,6 @@ from reduction.ingest.textrows import split_line
 from reduction.units import scale_to_si
 from reduction.visible import cut
 
-__all__ = ["check_units", "keep_line"]
-
 _LONGEST_NAME = 200  # characters at the end of a name in which a unit may stand
 _UNIT_IN_NAME = re.compile(r".*[\(\[]\s*([^()\[\]]*[^()\[\]\d\s][^()\[\]]*)[\)\]]\s*$")
 

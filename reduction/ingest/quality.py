@@ -17,18 +17,6 @@ from reduction.record import Bools, Floats, Integers, Quality, Record
 from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.samples.scratch import zeros_like
 
-__all__ = [
-    "RowAccount",
-    "Timing",
-    "account_rows",
-    "find_missing",
-    "find_outside_range",
-    "find_spikes",
-    "noise_of",
-    "sampled_windows",
-    "time_faults",
-]
-
 _WINDOWS, _WINDOW = 64, 1024
 _NEIGHBOURS = 4
 _SPIKE_TO_NEIGHBOURS = 3.0

@@ -9,8 +9,6 @@ import numpy as np
 from reduction.provenance import Source
 from reduction.record import Bools, Floats, Integers
 
-__all__ = ["RawLog"]
-
 
 @dataclass(frozen=True)
 class RawLog:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from reduction.ingest.blocks import read_blocks
+from reduction.ingest.bounded import bounded
 from reduction.ingest.delimited import read_delimited
 from reduction.ingest.hdf5 import read_hdf5
 from reduction.ingest.layout import Format, Layout
@@ -20,8 +22,6 @@ from reduction.ingest.spreadsheet import read_spreadsheet
 from reduction.ingest.tdms import read_tdms
 from reduction.settings import Limits
 
-__all__ = ["read_log"]
-
 _IN_PARTS: dict[Format, Callable[..., RawLog]] = {
     "delimited": read_delimited,
     "blocks": read_blocks,
@@ -34,6 +34,7 @@ _WHOLE: dict[Format, Callable[..., RawLog]] = {
     "matlab": read_matlab,
     "json": read_json,
 }
+_TEXTS = ("delimited", "blocks", "json")  # read by this package, in this process
 
 
 def read_log(
@@ -75,6 +76,10 @@ def read_log(
     watch = Watch(path, limits)
     with unchanged(path) as n_bytes:
         watch.check_size(n_bytes)
+        given: dict[str, Any] = {"name": name, "watch": watch}
         if layout.format in _IN_PARTS:
-            return _IN_PARTS[layout.format](path, layout, name=name, parts=parts, watch=watch)
-        return _WHOLE[layout.format](path, layout, name=name, watch=watch)
+            given["parts"] = parts or Parts()
+        read = (_IN_PARTS | _WHOLE)[layout.format]
+        if layout.format in _TEXTS:
+            return read(path, layout, **given)
+        return bounded(read, path, layout, **given)

@@ -14,8 +14,6 @@ from reduction.record import Record
 from reduction.samples.scratch import give_back
 from reduction.settings import Limits, QualitySettings
 
-__all__ = ["read_record"]
-
 
 def read_record(
     files: Sequence[tuple[Path, Layout, str]],

@@ -10,8 +10,6 @@ import numpy as np
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["CommonTime", "on_common_time"]
-
 _COUNTED = "cycle_counter"
 
 

@@ -11,15 +11,23 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reduction.errors import LogError
+from reduction.ingest.bounded import bounded
 from reduction.ingest.layout import Format
 from reduction.ingest.limits import Watch
-from reduction.ingest.sniff_binary import SeenTable, look_at_binary, look_at_json, look_at_sheet
+from reduction.ingest.sniff_binary import (
+    SeenTable,
+    look_at_binary,
+    look_at_json,
+    look_at_sheet,
+    table_sheets,
+)
 from reduction.ingest.sniff_channels import UNKNOWN, propose_channels
 from reduction.ingest.sniff_text import look_at_text
 from reduction.ingest.source import check_not_empty, unchanged, unreadable
+from reduction.settings import Limits
 from reduction.visible import toml_text
 
-__all__ = ["SniffedLayout", "format_of", "sniff_layout"]
+_LIMITS = Limits(time=60.0)
 
 _MAGIC: tuple[tuple[bytes, Format], ...] = (
     (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "spreadsheet"),
@@ -69,16 +77,21 @@ def format_of(path: Path) -> Format:
     return "json" if head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{") else "delimited"
 
 
-def _look(path: Path, sheet: str | None) -> SeenTable:
+def _look(path: Path, sheet: str | None, watch: Watch) -> SeenTable:
     kind = format_of(path)
     if kind == "spreadsheet":
-        return look_at_sheet(path, sheet)
+        return bounded(look_at_sheet, path, sheet, watch=watch)
     if kind == "json":
-        return look_at_json(path)
+        return look_at_json(path, watch)
     if kind != "delimited":
-        return look_at_binary(path, kind)
+        return bounded(look_at_binary, path, kind, watch=watch)
     text = look_at_text(path)
     return SeenTable(text.format, text.columns, text.settings, text.remarks)
+
+
+def sheets_with_tables(path: Path) -> list[str]:
+    """Names of the sheets of a workbook that hold a table of numbers."""
+    return [name for name, _ in bounded(table_sheets, path, watch=Watch(path, _LIMITS))]
 
 
 def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> SniffedLayout:
@@ -103,10 +116,11 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
     LogError
         If the file cannot be read or is beyond a limit, or no table of numbers is found.
     """
+    watch = Watch(path, _LIMITS)
     with unchanged(path) as n_bytes:
-        Watch(path).check_size(n_bytes)
+        watch.check_size(n_bytes)
         check_not_empty(path, n_bytes)
-        seen = _look(path, sheet)
+        seen = _look(path, sheet, watch)
     if not seen.columns:
         raise LogError(path, "no columns of numbers are found", needed="a log")
     proposal = propose_channels(seen.columns)

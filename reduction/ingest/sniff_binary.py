@@ -32,8 +32,6 @@ from reduction.ingest.spreadsheet import open_workbook, read_rows
 from reduction.ingest.table import ColumnTable, matrix_table
 from reduction.ingest.tdms import WAVEFORM_COLUMN, open_tdms, tdms_table
 
-__all__ = ["SeenTable", "look_at_binary", "look_at_json", "look_at_sheet", "table_sheets"]
-
 _ROWS = 400
 _LONGEST_NAME = 1000
 _PART = 1 << 20  # rows that are loaded at a time
@@ -51,9 +49,9 @@ class SeenTable:
     remarks: tuple[str, ...] = ()
 
 
-def table_sheets(path: Path) -> list[tuple[str, TableShape]]:
+def table_sheets(path: Path, watch: Watch) -> list[tuple[str, TableShape]]:
     """Sheets of a workbook that hold a table of two or more rows of numbers."""
-    workbook = open_workbook(path)
+    workbook = open_workbook(path, watch)
     found = []
     for place, name in enumerate(workbook.sheet_names):
         table = look_at_table(read_rows(path, workbook, place, _ROWS), ".")
@@ -62,9 +60,9 @@ def table_sheets(path: Path) -> list[tuple[str, TableShape]]:
     return found
 
 
-def look_at_sheet(path: Path, sheet: str | None) -> SeenTable:
+def look_at_sheet(path: Path, sheet: str | None, watch: Watch) -> SeenTable:
     """One sheet of a workbook, or the one that holds the longest table."""
-    found = table_sheets(path)
+    found = table_sheets(path, watch)
     chosen = [entry for entry in found if sheet in (None, entry[0])]
     if not chosen:
         raise LogError(
@@ -206,16 +204,15 @@ def _tdms_candidates(path: Path, file: Any, watch: Watch) -> Iterator[Candidate]
         yield settings, tdms_table(path, file, group, watch)
 
 
-def look_at_binary(path: Path, kind: Format, watch: Watch | None = None) -> SeenTable:
+def look_at_binary(path: Path, kind: Format, watch: Watch) -> SeenTable:
     """The largest table of a TDMS, MATLAB, HDF5 or Parquet file."""
-    watch = watch or Watch(path)
     with ExitStack() as stack:
         candidates: Iterator[Candidate]
         if kind == "tdms":
-            file = stack.enter_context(open_tdms(path, watch))
+            file = stack.enter_context(open_tdms(path))
             candidates = _tdms_candidates(path, file, watch)
         elif kind == "hdf5":
-            hdf5 = stack.enter_context(open_hdf5(path, watch))
+            hdf5 = stack.enter_context(open_hdf5(path))
             candidates = _hdf5_candidates(path, hdf5, watch)
         elif kind == "matlab":
             variables = stack.enter_context(open_matlab(path, watch))
@@ -249,9 +246,9 @@ def _waveform(
     return []
 
 
-def look_at_json(path: Path) -> SeenTable:
+def look_at_json(path: Path, watch: Watch) -> SeenTable:
     """The largest matrix of a JSON object."""
-    _, content = json_content(path, Watch(path))
+    _, content = json_content(path, watch)
     texts, matrices = {}, {}
     for key, value in content.items():
         if not isinstance(value, list) or not value:

@@ -19,8 +19,6 @@ from reduction.record import Floats
 from reduction.units import DIMENSIONS, Dimension
 from reduction.visible import toml_comment, toml_text
 
-__all__ = ["UNKNOWN", "Proposal", "SeenColumn", "is_unit", "propose_channels"]
-
 UNKNOWN = "?"
 _NOT_MEASURED = (
     r"sollwert|set ?point|command|target|maximum|minimum|max|min|rate|speed|velocity|"

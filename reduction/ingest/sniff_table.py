@@ -12,8 +12,6 @@ import numpy as np
 
 from reduction.ingest.sniff_channels import SeenColumn, is_unit
 
-__all__ = ["TableShape", "is_number", "look_at_table", "seen_columns"]
-
 _ROWS = 400
 _RUN = 3  # rows in a row that make a table
 _NUMBER = {

@@ -14,8 +14,6 @@ from reduction.ingest.layout import Format
 from reduction.ingest.sniff_channels import SeenColumn
 from reduction.ingest.sniff_table import TableShape, is_number, look_at_table, seen_columns
 
-__all__ = ["SeenText", "look_at_text"]
-
 _HEAD = 1 << 18
 _LINES = 20_000  # that are looked at
 _DELIMITERS = ("\t", ";", ",", "|", " ")

@@ -16,16 +16,6 @@ from reduction.errors import LogError, ReductionError
 from reduction.ingest.limits import check_regular
 from reduction.provenance import Source
 
-__all__ = [
-    "RunningHash",
-    "check_not_empty",
-    "hash_source",
-    "read_bytes",
-    "source_of",
-    "unchanged",
-    "unreadable",
-]
-
 _BLOCK = 1 << 20
 
 

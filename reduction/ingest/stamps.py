@@ -7,8 +7,6 @@ import numpy as np
 from reduction.record import Bools, Floats
 from reduction.samples.blocks import copied, sample_blocks, take_samples
 
-__all__ = ["bridge_stamps"]
-
 _STEPS_READ = 100_001
 
 

@@ -13,13 +13,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reduction.errors import LogError
-from reduction.ingest.sniff import SniffedLayout, format_of, sniff_layout
-from reduction.ingest.sniff_binary import table_sheets
+from reduction.ingest.sniff import (
+    SniffedLayout,
+    format_of,
+    sheets_with_tables,
+    sniff_layout,
+)
 from reduction.ingest.sniff_channels import UNKNOWN
 from reduction.ingest.source import unreadable
 from reduction.visible import safe_cell, toml_comment, toml_text
-
-__all__ = ["starter_campaign"]
 
 _WRITTEN = ("campaign.toml", "tests.csv")
 _MARKS = {"test", "specimen", "hold"}
@@ -85,7 +87,7 @@ def _is_marks(path: Path) -> bool:
 def _logs_of(path: Path) -> list[_Log]:
     sheets: list[str | None] = [None]
     if format_of(path) == "spreadsheet":
-        sheets = [name for name, _ in table_sheets(path)]
+        sheets = [*sheets_with_tables(path)]
     found = [_Log(path.name, sheet, sniff_layout(path, sheet=sheet)) for sheet in sheets]
     return [log for log in found if {"crosshead_position", "tension.1"} & set(log.sniffed.keys)]
 

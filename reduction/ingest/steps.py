@@ -13,8 +13,6 @@ from reduction.ingest.quality import sampled_windows
 from reduction.record import Bools, Floats, Integers
 from reduction.samples.blocks import sample_blocks, take_samples
 
-__all__ = ["find_lone_steps"]
-
 _NEIGHBOURS = 4  # samples on each side that tell the level there
 _STEP_TO_STEPS = 5.0
 _SHARE_OF_RANGE = 0.05

@@ -16,8 +16,6 @@ from reduction.record import Floats, StepReadings
 from reduction.settings import Limits
 from reduction.units import parse_quantity, scale_to_si
 
-__all__ = ["read_step_readings"]
-
 _NEEDED = ("time", "tension.1", "gauge_length")
 
 

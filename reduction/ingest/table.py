@@ -26,8 +26,6 @@ from reduction.ingest.preamble import check_units
 from reduction.record import Floats
 from reduction.samples.scratch import ColumnWriter, check_room
 
-__all__ = ["ColumnTable", "Matrix", "matrix_table", "read_columns", "row_parts"]
-
 _PART = 16 << 20  # bytes of a matrix that are read at a time
 
 

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import nptdms  # type: ignore[import-untyped]
 import numpy as np
@@ -33,8 +33,6 @@ from reduction.ingest.source import hash_source
 from reduction.ingest.table import ColumnTable, read_columns, row_parts
 from reduction.record import Floats
 
-__all__ = ["WAVEFORM_COLUMN", "open_tdms", "read_tdms", "tdms_group", "tdms_table"]
-
 WAVEFORM_COLUMN = "wf_increment"
 _SCALES = "NI_Number_Of_Scales"
 _SCALE = re.compile(r"NI_Scale\[(\d{1,18})\]")
@@ -47,41 +45,15 @@ _NOT_TDMS = (
 log_manager.set_level(logging.CRITICAL)
 
 
-class _WatchedStream:
-    """A file whose reader is stopped when its time is over, and which never reads behind the end.
-
-    The reader goes through all segments in one call, however many a small file has.
-    """
-
-    def __init__(self, path: Path, stream: BinaryIO, watch: Watch) -> None:
-        self._stream, self._watch = stream, watch
-        self._size = path.stat().st_size
-        self.seek, self.tell, self.close = stream.seek, stream.tell, stream.close
-
-    def read(self, size: int = -1) -> bytes:
-        """So many bytes, or as many as there are."""
-        self._watch.check_time()
-        left = max(self._size - self._stream.tell(), 0)
-        return self._stream.read(left if size < 0 else min(size, left))
-
-    def readinto(self, buffer: Any) -> int:
-        """Fill a buffer as far as there are bytes."""
-        self._watch.check_time()
-        n_bytes: int = self._stream.readinto(buffer)  # type: ignore[attr-defined]
-        return n_bytes
-
-
 @contextmanager
-def open_tdms(path: Path, watch: Watch | None = None) -> Iterator[nptdms.TdmsFile]:
+def open_tdms(path: Path) -> Iterator[nptdms.TdmsFile]:
     """Open a TDMS file; `LogError` where the file is none.
 
     The stream, not the path, is handed on: npTDMS would believe an index file beside it.
     """
     with path.open("rb") as stream:
         try:
-            file = nptdms.TdmsFile.open(_WatchedStream(path, stream, watch or Watch(path)))
-        except LogError:
-            raise
+            file = nptdms.TdmsFile.open(stream)
         except _NOT_TDMS as error:
             raise LogError(
                 path, "the file is not TDMS", found=str(error)[:200], needed="a .tdms file"
@@ -125,8 +97,6 @@ def tdms_table(
         try:
             for part in row_parts(len(channel), n_rows):
                 yield np.asarray(channel[part])
-        except LogError:
-            raise
         except _NOT_TDMS as error:
             raise LogError(
                 path, "a channel cannot be read", channel=channel.name,
@@ -269,7 +239,7 @@ def read_tdms(
     """
     source = hash_source(path, name)
     watch = watch or Watch(path)
-    with open_tdms(path, watch) as file:
+    with open_tdms(path) as file:
         group = tdms_group(path, file, layout.group)
         table = tdms_table(path, file, group, watch)
         made = _waveform_times(path, layout, group, table)

@@ -26,8 +26,6 @@ from reduction.ingest.source import RunningHash, check_not_empty, unreadable
 from reduction.ingest.textrows import count_lines, line_starts
 from reduction.provenance import Source
 
-__all__ = ["TextFile", "TextPart", "open_text"]
-
 _PIECE = 1 << 17  # stays in the cache
 _LOOK = 1 << 16  # bytes in which a binary file shows itself
 _MARK = 4  # bytes of the longest byte-order mark

@@ -14,8 +14,6 @@ from reduction.errors import LogError
 from reduction.ingest.layout import Layout
 from reduction.record import Integers
 
-__all__ = ["TextRows", "count_lines", "line_starts", "split_line"]
-
 _PIECE = 1 << 17  # stays in the cache
 _NEWLINE, _RETURN = b"\n\r"
 _SHOWN = 60  # characters of a line in a message

@@ -22,8 +22,6 @@ from reduction.line.propertyproduct import (
     StepOfProgramme,
 )
 
-__all__ = ["bedded_in", "construction_strain"]
-
 _NAN = float("nan")
 
 

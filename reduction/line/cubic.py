@@ -18,8 +18,6 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["positive_range", "printed_form", "slope_of_cubic"]
-
 
 def slope_of_cubic(tension: ArrayLike, coefficient: ArrayLike) -> Floats:
     r"""Quasi-static spring constant of a load-strain cubic.

@@ -17,12 +17,11 @@ from numpy.typing import ArrayLike
 from reduction.cycles.product import Loops
 from reduction.errors import DataError, SettingsError
 from reduction.line.strength import mean_of_rows, one_a_specimen
-from reduction.record import Bools, Floats, Integers, freeze_arrays
-
-__all__ = ["CyclesToFailure", "cycles_to_failure"]
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CyclesToFailure:
     """How long a rope lasted; arrays have shape (n_specimens,).
 
@@ -46,10 +45,6 @@ class CyclesToFailure:
     valley_tension: Floats
     peak_tension_over_strength: Floats
     how: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def cycles_to_failure(

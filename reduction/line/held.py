@@ -26,8 +26,6 @@ from reduction.phases.standstill import Standstills
 from reduction.record import Floats
 from reduction.samples.columns import chosen
 
-__all__ = ["HeldPair", "held_pairs"]
-
 # a hold is a step up where its tension is above the last one's by this share of it
 _LEAST_RISE = 0.05
 _FINAL_SHARE = 0.05

@@ -43,8 +43,6 @@ from reduction.line.solve import (
 )
 from reduction.record import Floats
 
-__all__ = ["identify_by_amplitude", "identify_by_fundamental"]
-
 
 def _broadcast(**named: ArrayLike) -> dict[str, Floats]:
     arrays = [np.asarray(values, dtype=np.float64) for values in named.values()]

@@ -17,8 +17,6 @@ from reduction.cycles.readings import reading_noise
 from reduction.errors import DataError
 from reduction.record import Integers
 
-__all__ = ["find_loading", "greatest_fall"]
-
 # a rise out of slack shows above this many standard deviations of a reading
 _NOISE_FACTOR = 6.0
 # and above this share of the whole rise: the foot of the curve, where the line straightens

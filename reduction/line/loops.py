@@ -30,8 +30,6 @@ from reduction.line.sensitivity import (
 from reduction.moduli.separable import lag_one_inflation
 from reduction.record import Floats
 
-__all__ = ["identify_cycles", "identify_run"]
-
 Reading = Literal["amplitude", "fundamental"]
 
 # E'' by H and amplitudes over E'' of the fundamental: 1 for an ellipse, 0.66 for a triangle

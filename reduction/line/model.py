@@ -32,13 +32,6 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = [
-    "apparent_spring_constant",
-    "dashpot_coefficient",
-    "hysteresis_energy",
-    "storage_and_loss",
-]
-
 
 def _at_least_zero(**named: ArrayLike) -> tuple[Floats, ...]:
     """The inputs as float64, NaN let through; a negative one is refused by its name."""

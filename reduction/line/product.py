@@ -9,9 +9,7 @@ import numpy as np
 from numpy import int8
 from numpy.typing import NDArray
 
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["REASONS", "LineParameters", "SlowPull"]
+from reduction.record import Floats, read_only_arrays
 
 REASONS: dict[int, str] = {
     0: "",
@@ -26,6 +24,7 @@ REASONS: dict[int, str] = {
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LineParameters:
     """Parameters of the line; every array has one shape, (n_specimens, n_cycles) for loops.
 
@@ -83,12 +82,9 @@ class LineParameters:
     reading: str = "amplitude"
     notes: tuple[str, ...] = ()
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SlowPull:
     """Load-strain curve of one specimen: strain as a cubic of tension, and its inverse slope.
 
@@ -163,10 +159,6 @@ class SlowPull:
     polynomial_coefficient: Floats
     polynomial_deviation: float
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def strain_coefficient(self) -> Floats:

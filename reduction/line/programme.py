@@ -23,19 +23,13 @@ from reduction.cycles.product import Loops
 from reduction.errors import DataError, SettingsError
 from reduction.line.strength import mean_of_rows, one_a_specimen
 from reduction.moduli.separable import lag_one_inflation
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = [
-    "BeddingIn",
-    "DynamicStiffness",
-    "dynamic_stiffness",
-    "summarise_bedding_in",
-]
+from reduction.record import Floats, Integers, read_only_arrays
 
 _FEWEST_CYCLES = 3
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class BeddingIn:
     """How a new rope settles over its first cycles; arrays have shape (n_specimens,).
 
@@ -66,12 +60,9 @@ class BeddingIn:
     permanent_strain_standard_uncertainty: Floats
     n_cycles: int
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class DynamicStiffness:
     """Stiffness over the last cycles of each level; arrays have shape (n_specimens, n_levels).
 
@@ -114,10 +105,6 @@ class DynamicStiffness:
     mean_tension_standard_uncertainty: Floats
     tension_amplitude_standard_uncertainty: Floats
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def summarise_bedding_in(loops: Loops, *, rated_break_strength: ArrayLike) -> BeddingIn:

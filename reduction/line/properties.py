@@ -36,8 +36,6 @@ from reduction.line.propertyproduct import (
 )
 from reduction.record import Floats
 
-__all__ = ["change_in_length"]
-
 _NAN = float("nan")
 _HELD = "the rise was held on its way: what it gained meanwhile is in it"
 _NO_RISE = (

@@ -10,22 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.record import Floats, freeze_arrays
-
-__all__ = [
-    "MANY",
-    "PROPERTY_NAMES",
-    "RISE_GAP",
-    "BeddingCycles",
-    "ChangeInLength",
-    "CyclicLevel",
-    "FirstRise",
-    "HeldTension",
-    "PairOfHolds",
-    "PropertyName",
-    "StepNumber",
-    "StepOfProgramme",
-]
+from reduction.record import Floats, read_only_arrays
 
 PropertyName = Literal[
     "original stiffness",
@@ -56,6 +41,7 @@ def _none_shared() -> Floats:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class StepNumber:
     """A number of a step, and the two parts of its uncertainty.
 
@@ -74,12 +60,9 @@ class StepNumber:
     contribution: Floats = field(default_factory=_none_shared)
     degrees_of_freedom: float = MANY
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class FirstRise:
     """Tension on the first rise of a test, at two strains or more, all of them known.
 
@@ -102,12 +85,9 @@ class FirstRise:
     strain_contribution: Floats
     tension_contribution: Floats
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class BeddingCycles:
     """Cycles that bed a rope in.
 
@@ -132,10 +112,6 @@ class BeddingCycles:
     valley_tension: float
     first_peak_tension: float
     peak_tension: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)
@@ -175,6 +151,7 @@ class HeldTension:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class StepOfProgramme:
     """One step of the programme of one specimen; parts that it does not give are None, or empty.
 
@@ -207,12 +184,9 @@ class StepOfProgramme:
     holds: tuple[HeldTension, ...] = ()
     strength_contribution: Floats = field(default_factory=_none_shared)
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ChangeInLength:
     """One property between two tensions; NaN with a reason where the record does not support it.
 
@@ -251,10 +225,6 @@ class ChangeInLength:
     contribution: Floats = field(default_factory=_none_shared)
     over_strength_contribution: Floats = field(default_factory=_none_shared)
     degrees_of_freedom: float = MANY
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def is_stiffness(self) -> bool:

@@ -40,8 +40,6 @@ from reduction.line.pullblocks import (
 from reduction.moduli.separable import lag_one_inflation
 from reduction.record import Integers
 
-__all__ = ["MISFIT_NOTED", "fit_pull"]
-
 # rms of what a cubic misses, over the strain of the pull: above it the curve is none
 MISFIT_NOTED = 0.01
 

@@ -16,15 +16,6 @@ from reduction.errors import DataError
 from reduction.moduli.separable import lag_one_inflation
 from reduction.record import Floats
 
-__all__ = [
-    "N_BLOCKS",
-    "PullBlocks",
-    "block_means",
-    "covariance_of_blocks",
-    "misfit_of_cubic",
-    "rates_of_pull",
-]
-
 N_BLOCKS = 100
 """Steps of tension between the ends of a pull. [1]."""
 

@@ -16,8 +16,6 @@ from reduction.errors import DataError
 from reduction.line.product import SlowPull
 from reduction.record import Floats
 
-__all__ = ["BREAK_SHARES", "tension_grid"]
-
 BREAK_SHARES = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5)
 """Shares of the rated break strength at which the strain of a pull is given. [1]"""
 _GRID_STEPS = 40

@@ -19,14 +19,6 @@ from reduction.errors import DataError
 from reduction.line.product import SlowPull
 from reduction.record import Bools, Floats
 
-__all__ = [
-    "quasi_static_of_run",
-    "quasi_static_spring_constant",
-    "spring_constant_ratio",
-    "strain_at_break_share",
-    "strain_at_tension",
-]
-
 # a pull that ends at a level reads a hair above or below it
 _BEYOND = 0.01
 # a drift of the mean tension over a run that changes K_0 by more than this is said

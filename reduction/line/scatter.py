@@ -16,8 +16,6 @@ from reduction.cycles.product import Loops
 from reduction.moduli.separable import lag_one_inflation
 from reduction.record import Floats
 
-__all__ = ["covariance_of_means", "relative_deviations"]
-
 _FEWEST_CYCLES = 3
 
 

@@ -35,14 +35,6 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_same_shape
 from reduction.record import Floats
 
-__all__ = [
-    "AMPLITUDE_INPUTS",
-    "FUNDAMENTAL_INPUTS",
-    "OUTPUTS",
-    "amplitude_sensitivities",
-    "line_sensitivities",
-]
-
 OUTPUTS = (
     "storage_spring_constant", "loss_spring_constant", "dissipation_spring_constant",
     "relaxation_time", "dashpot_coefficient",

@@ -19,13 +19,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
+from scipy.special import ndtr, ndtri, stdtr, stdtrit
 
 from reduction.checks import as_positive
 from reduction.errors import DataError, SettingsError
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = ["VERDICTS", "SingleTimeCheck", "check_single_time", "power_of_frequency"]
+from reduction.record import Floats, Integers, read_only_arrays
 
 VERDICTS: dict[int, str] = {
     0: "not decided: the interval of the exponent reaches both 0 and 1",
@@ -38,6 +36,7 @@ VERDICTS: dict[int, str] = {
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SingleTimeCheck:
     """How the relaxation time of lines changes with frequency; arrays have shape (...).
 
@@ -82,10 +81,6 @@ class SingleTimeCheck:
     verdict: NDArray[np.int8]
     confidence: float
     tolerance: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def _membership(group: ArrayLike | None, n_runs: int) -> Floats:
@@ -180,14 +175,14 @@ def power_of_frequency(
 
 def _quantile(degrees_of_freedom: Integers, confidence: float) -> Floats:
     """Half width of an interval in standard uncertainties; normal where they were stated."""
-    t = stats.t.ppf((1 + confidence) / 2, np.maximum(degrees_of_freedom, 1))
-    return np.where(degrees_of_freedom > 0, t, stats.norm.ppf((1 + confidence) / 2))
+    t = stdtrit(np.maximum(degrees_of_freedom, 1), (1 + confidence) / 2)
+    return np.where(degrees_of_freedom > 0, t, ndtri((1 + confidence) / 2))
 
 
 def _tail(distance: Floats, degrees_of_freedom: Integers) -> Floats:
     """Probability of a distance as large, in standard uncertainties, on both sides."""
-    t = 2 * stats.t.sf(np.abs(distance), np.maximum(degrees_of_freedom, 1))
-    return np.where(degrees_of_freedom > 0, t, 2 * stats.norm.sf(np.abs(distance)))
+    t = 2 * stdtr(np.maximum(degrees_of_freedom, 1), -np.abs(distance))
+    return np.where(degrees_of_freedom > 0, t, 2 * ndtr(-np.abs(distance)))
 
 
 def check_single_time(

@@ -25,15 +25,6 @@ from reduction.line.product import REASONS, LineParameters
 from reduction.line.sensitivity import OUTPUTS
 from reduction.record import Floats
 
-__all__ = [
-    "NOT_POSITIVE",
-    "TOO_WIDE",
-    "fault_of_loop",
-    "line_of_loop",
-    "reasons_in_words",
-    "relative_uncertainties",
-]
-
 _UNKNOWN_REST, _BAD_REST, _MISSING, NOT_POSITIVE, TOO_WIDE, _NOT_ABOVE = range(1, 7)
 
 

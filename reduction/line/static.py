@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import stdtrit
 
 from reduction.checks import as_positive, as_same_shape
 from reduction.errors import DataError, FitError, SettingsError
@@ -29,18 +29,17 @@ from reduction.holds.blocks import logarithmic_blocks
 from reduction.holds.product import HoldResult
 from reduction.holds.relaxation import RAMP_TIMES_LEFT_OUT
 from reduction.moduli.separable import lag_one_inflation
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Bools, Floats, read_only_arrays
 from reduction.samples.blocks import finite_extremes, sample_blocks
 from reduction.samples.columns import chosen
 from reduction.samples.scratch import empty_like
-
-__all__ = ["CreepOfHold", "StaticStiffness", "creep_of_hold", "static_stiffness"]
 
 _FEWEST_POINTS = 4
 _SHORTEST_SPAN = 0.5
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class StaticStiffness:
     """Secant between two held tensions against time.
 
@@ -77,10 +76,6 @@ class StaticStiffness:
     slope_per_decade_over_strength: float
     confidence: float
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)
@@ -228,7 +223,7 @@ def static_stiffness(
     residual = np.sqrt(share) * (y - level - slope * (x - centre))
     variance = float((residual**2).sum()) / (x.size - 2) * lag_one_inflation(residual)
     u_slope = float(np.sqrt(variance / power))
-    width = float(stats.t.ppf((1 + confidence) / 2, x.size - 2)) * u_slope
+    width = float(stdtrit(x.size - 2, (1 + confidence) / 2)) * u_slope
     reaches = clock[0] <= reference_time <= clock[-1]
     return StaticStiffness(
         elapsed=blocks.elapsed,

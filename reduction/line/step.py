@@ -16,8 +16,6 @@ from reduction.line.programme import BeddingIn, DynamicStiffness
 from reduction.line.static import CreepOfHold
 from reduction.line.tensile import TensilePull
 
-__all__ = ["RopeStep"]
-
 
 @dataclass(frozen=True)
 class RopeStep:

@@ -13,8 +13,6 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["mean_of_rows", "one_a_specimen"]
-
 
 def one_a_specimen(rated_break_strength: ArrayLike, n_specimens: int) -> Floats:
     """Rated break strength of each specimen.

@@ -18,9 +18,7 @@ from reduction.checks import as_same_shape
 from reduction.cycles.readings import reading_noise
 from reduction.errors import DataError
 from reduction.line.strength import one_a_specimen
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["TensilePull", "parting_sample", "tensile_pull"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 # a machine that goes back by more than this share of its travel has unloaded the line
 _GIVEN_BACK = 0.05
@@ -32,6 +30,7 @@ _LAST_STEPS = 9
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class TensilePull:
     """A pull to the end; arrays have shape (n_specimens,).
 
@@ -58,10 +57,6 @@ class TensilePull:
     peak_tension_over_strength: Floats
     peak_tension_over_strength_standard_uncertainty: Floats
     how: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def parting_sample(

@@ -37,9 +37,7 @@ from reduction.lookup.parts import (
     shared_of,
 )
 from reduction.lookup.product import DesignValues
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["LineDifference", "compare_values"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 _RANDOM_OF: dict[tuple[End, End], str] = {
     ("surface_low", "surface_high"): "random_standard_uncertainty",
@@ -49,6 +47,7 @@ _RANDOM_OF: dict[tuple[End, End], str] = {
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LineDifference:
     """Values of one quantity of two lines.  Arrays have the shape (...) of the points.
 
@@ -102,10 +101,6 @@ class LineDifference:
     is_kind_different: Bools
     is_line_different: Bools
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def is_inside(self) -> Bools:

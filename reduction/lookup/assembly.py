@@ -26,13 +26,11 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.composite import CompositeCurve
 from reduction.lookup.tethers import SeriesPart, Tether
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Bools, Floats, read_only_arrays
 from reduction.strain.inverse import position_by_model
 from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.uncertainty.join import stacked
 from reduction.uncertainty.product import Component, Contributions
-
-__all__ = ["AssemblyCurve", "assemble"]
 
 # nodes of tension beside those of the curve: denser near slack, where splices stretch fastest
 _N_NODES = 400
@@ -42,6 +40,7 @@ _APART = 1e-9
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class AssemblyCurve:
     """Tension of an assembly against its length; arrays have shape (n,), nodes of straight lines.
 
@@ -86,10 +85,6 @@ class AssemblyCurve:
     is_tested: Bools
     is_join: Bools
     is_moved: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def n_tethers(self) -> int:

@@ -27,8 +27,6 @@ from reduction.lookup.pieces import CurvePiece, PieceKind
 from reduction.record import Bools, Floats
 from reduction.uncertainty.join import stacked
 
-__all__ = ["beside_loops", "between_pieces", "variance_apart"]
-
 
 def between_pieces(
     pieces: Sequence[CurvePiece], tension: Floats, variance: Floats, rows: Floats, known: Bools

@@ -12,15 +12,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import isotonic_regression
+import scipy
 
 from reduction.lookup.betweenpieces import beside_loops, between_pieces, variance_apart
 from reduction.lookup.pieces import CurvePiece, PieceKind
-from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 from reduction.uncertainty.join import stacked
 from reduction.uncertainty.product import Component
-
-__all__ = ["Blend", "blend_pieces"]
 
 # share of a range, from its end, after which a kind that goes before is alone
 _HAND_OVER = 0.1
@@ -35,6 +33,7 @@ _LEAST_SLOPE = 1e-6
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Blend:
     """Pieces as one curve on a grid; arrays have shape (n,), of intervals (n - 1,).
 
@@ -76,10 +75,6 @@ class Blend:
     between_pieces: dict[PieceKind, float]
     beside_loops: float
     farthest: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def blend_pieces(
@@ -261,7 +256,7 @@ def _chords(strain: Floats, tension: Floats) -> Floats:
 def _rising(strain: Floats, mean: Floats, weight: Floats, least: Floats) -> Floats:
     """Nearest curve whose slope is nowhere below the least one, and whose tension is above zero."""
     given = np.concatenate([[0.0], np.cumsum(least * np.diff(strain))])
-    found = isotonic_regression(mean - given, weights=weight / weight.max())
+    found = scipy.optimize.isotonic_regression(mean - given, weights=weight / weight.max())
     rest = np.asarray(found.x, dtype=np.float64)
     bound = _LEAST_SLOPE * mean.max() * strain[0] / strain[-1]
     rising = np.maximum(rest, bound) + given

@@ -31,18 +31,16 @@ from reduction.lookup.blend import blend_pieces
 from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.compositewords import doubt_of, notes_of
 from reduction.lookup.pieces import CurvePiece
-from reduction.lookup.product import LineCurve
-from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 from reduction.uncertainty.combine import combined_standard_uncertainty
 from reduction.uncertainty.product import Component
-
-__all__ = ["CompositeCurve", "composite_curve", "composite_line_curve"]
 
 _MOVED = 1e-9
 _TANGENT_NODES = 5
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CompositeCurve:
     """Tension against strain, strictly rising from 0, 0; straight lines between the nodes.
 
@@ -94,10 +92,6 @@ class CompositeCurve:
     piece_words: tuple[str, ...]
     doubt: str = ""
     notes: tuple[str, ...] = field(default=())
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def shared_standard_uncertainty(self) -> Floats:
@@ -247,41 +241,3 @@ def _slopes(strain: Floats, tension: Floats, first: Integers, last: Integers) ->
     """Slope between pairs of nodes; NaN where they are one."""
     apart = np.where(last > first, strain[last] - strain[first], np.nan)
     return (tension[last] - tension[first]) / apart
-
-
-def composite_line_curve(curve: CompositeCurve) -> LineCurve:
-    """Return a composite curve as one of a line, so that it can be looked up.
-
-    Parameters
-    ----------
-    curve : CompositeCurve
-        Tension against strain. [SI]
-
-    Returns
-    -------
-    line_curve : LineCurve
-        ``tension`` over ``strain``; tested from the first node of a piece to the last. [SI]
-
-    Raises
-    ------
-    DataError
-        Never by itself.
-
-    Notes
-    -----
-    A gap inside counts as tested, since the range of a look-up has two ends: the notes name it.
-
-    Examples
-    --------
-    >>> at = np.linspace(0.5, 1.0, 5)
-    >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
-    >>> line_curve = composite_line_curve(curve)
-    >>> print(line_curve.low, line_curve.high)
-    0.5 1.0
-    """
-    first = int(np.argmax(curve.piece >= 0))
-    return LineCurve(
-        "tension", "strain", float(curve.strain[first]), float(curve.strain[-1]),
-        at=curve.strain, value=curve.tension, standard_uncertainty=curve.standard_uncertainty,
-        component=curve.component, contribution=curve.contribution, notes=curve.notes,
-    )  # fmt: skip

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from reduction.errors import SettingsError
 from reduction.lookup.pieces import PieceKind
 
-__all__ = ["CompositeRule"]
-
 _KINDS: tuple[PieceKind, ...] = ("cyclic", "static", "first-loading")
 
 

@@ -19,8 +19,6 @@ from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.pieces import CurvePiece
 from reduction.record import Bools
 
-__all__ = ["doubt_of", "notes_of"]
-
 _MOVED = 1e-9
 _FAR = 2.0
 _LITTLE = 0.03

@@ -19,19 +19,18 @@ from numpy.typing import ArrayLike
 from reduction.line.cubic import slope_of_cubic
 from reduction.lookup.product import LineCurve
 from reduction.moduli.interpolation import curve_at
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Bools, Floats, read_only_arrays
 from reduction.uncertainty.combine import (
     combined_standard_uncertainty,
     coverage_factor,
     effective_degrees_of_freedom,
 )
 
-__all__ = ["CurvePoints", "evaluate_curve"]
-
 _EDGE = 1e-9
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CurvePoints:
     """A curve at points; arrays have the shape (...) of the points.
 
@@ -58,10 +57,6 @@ class CurvePoints:
     standard_uncertainty: Floats
     half_width: Floats
     is_inside: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def evaluate_curve(curve: LineCurve, at: ArrayLike) -> CurvePoints:

@@ -30,8 +30,6 @@ from reduction.lookup.product import DesignValues, LineCurve, LineSource
 from reduction.record import Floats
 from reduction.vocabulary import quantity as quantity_of
 
-__all__ = ["Branch", "look_up"]
-
 _DASHPOT = "dashpot_coefficient"
 Branch = Literal["ascending", "descending"]
 

@@ -13,13 +13,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from reduction.errors import DataError
-from reduction.record import Floats, Integers, freeze_arrays
+from reduction.record import Floats, Integers, read_only_arrays
 from reduction.uncertainty.product import Component
-
-__all__ = ["LineSurface"]
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LineSurface:
     """A quadratic surface of one quantity over coded factors.
 
@@ -88,7 +87,6 @@ class LineSurface:
 
     def __post_init__(self) -> None:
         """Check that terms and factors pair up, and make the arrays read-only."""
-        freeze_arrays(self)
         n_terms, n_factors = self.exponents.shape
         shapes = {
             "coefficient": (n_terms,),

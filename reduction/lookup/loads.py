@@ -21,16 +21,7 @@ from reduction.digits import plain_number
 from reduction.errors import DataError
 from reduction.lookup.curve import evaluate_curve
 from reduction.lookup.product import LineSource
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = [
-    "LEAST_SHARE",
-    "LOADED_SHARE",
-    "SLACK_SHARE",
-    "CycleLoads",
-    "cycle_loads",
-    "loads_of_line",
-]
+from reduction.record import Bools, Floats, read_only_arrays
 
 LOADED_SHARE = 0.6
 """Greatest share of the break strength for a line that is always loaded. [1]"""
@@ -42,6 +33,7 @@ _SLACK = 1e-9
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CycleLoads:
     """Ends of a cycle of tension; arrays have the shape (...) of the points.
 
@@ -58,10 +50,6 @@ class CycleLoads:
     own_minimum_share: Floats
     is_slack: Bools
     is_above_rule: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def cycle_loads(

@@ -21,8 +21,6 @@ from reduction.lookup.told import design_values
 from reduction.record import Floats
 from reduction.vocabulary import quantity as quantity_of
 
-__all__ = ["values_of_curve"]
-
 
 def values_of_curve(
     line: LineSource, curve: LineCurve, given: Mapping[str, Floats], extrapolate: str

@@ -25,8 +25,6 @@ from reduction.record import Bools, Floats
 from reduction.surface.tested import ABOVE_LEVERAGE
 from reduction.vocabulary import quantity as quantity_of
 
-__all__ = ["values_of_surface"]
-
 _RUN = "one more run of the same lines"
 _SURFACE = "the surface of these lines"
 

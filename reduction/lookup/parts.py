@@ -31,11 +31,6 @@ from reduction.uncertainty.combine import (
 from reduction.uncertainty.join import merged
 from reduction.uncertainty.product import Contributions
 
-__all__ = [
-    "End", "half_width_of_parts", "is_even", "own_half_width", "shared_half_width",
-    "shared_of",
-]  # fmt: skip
-
 End = Literal[
     "low", "high", "surface_low", "surface_high", "kind_low", "kind_high", "line_low", "line_high"
 ]  # fmt: skip

@@ -17,18 +17,9 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite, as_increasing, as_same_shape
 from reduction.errors import DataError, SettingsError
-from reduction.moduli.product import ModulusCurves
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Bools, Floats, read_only_arrays
 from reduction.uncertainty.product import Component, Contributions
 from reduction.vocabulary import BRANCH_NAMES
-
-__all__ = [
-    "CurvePiece",
-    "PieceBranch",
-    "PieceKind",
-    "pieces_of_branches",
-    "pieces_of_curves",
-]
 
 PieceKind = Literal["cyclic", "static", "first-loading"]
 PieceBranch = Literal["ascending", "descending", "mean"]
@@ -37,6 +28,7 @@ _KIND_WORDS = {"cyclic": "cycles", "static": "static", "first-loading": "first l
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CurvePiece:
     """Tension against strain over one unbroken range of one test.
 
@@ -77,7 +69,6 @@ class CurvePiece:
 
     def __post_init__(self) -> None:
         """Check that it is a curve, and make the arrays read-only."""
-        freeze_arrays(self)
         as_same_shape(
             strain=self.strain, tension=self.tension, uncertainty=self.random_standard_uncertainty
         )
@@ -208,51 +199,4 @@ def pieces_of_branches(
             rows[:, low:high],
         )
         for low, high in _runs(known)
-    )
-
-
-def pieces_of_curves(
-    curves: ModulusCurves,
-    specimen: int,
-    *,
-    name: str,
-    branch: PieceBranch = "mean",
-    kind: Literal["cyclic", "first-loading"] = "cyclic",
-) -> tuple[CurvePiece, ...]:
-    """Mean tension of the cycles of one test, or of its first rise, as pieces.
-
-    Parameters
-    ----------
-    curves : ModulusCurves
-        Of a test. [SI]
-    specimen : int
-        Row. [1]
-    name, branch, kind
-        As `pieces_of_branches`.
-
-    Returns
-    -------
-    pieces : tuple of CurvePiece
-        As `pieces_of_branches`.
-
-    Raises
-    ------
-    SettingsError
-        As `pieces_of_branches`.
-
-    Notes
-    -----
-    ``branch_tension`` with its type A uncertainty: a modulus alone leaves tension unknown ([1]_).
-
-    Examples
-    --------
-    See `tests/oracle/test_composite_truth.py`.
-    """
-    return pieces_of_branches(
-        curves.strain_bin,
-        curves.branch_tension[specimen],
-        curves.branch_tension_standard_uncertainty[specimen],
-        name=name,
-        branch=branch,
-        kind=kind,
     )

@@ -17,10 +17,8 @@ from typing import Literal
 import numpy as np
 
 from reduction.lookup.linesurface import LineSurface
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Bools, Floats, read_only_arrays
 from reduction.uncertainty.product import Component
-
-__all__ = ["DesignValues", "LineCurve", "LineSource"]
 
 _ROPE_RULE = (
     "peak at most 60 % of the break strength where the minimum stays at 3 % or above, 30 % where "
@@ -31,6 +29,7 @@ _TETHER_RULE = "a rubber tether must not go slack (WHOI-2005-10, sec. 2.3.2)"
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LineCurve:
     """A quantity over one variable, as a polynomial or through points.
 
@@ -85,10 +84,6 @@ class LineCurve:
     is_inverse_slope: bool = False
     errata: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)
@@ -175,6 +170,7 @@ class LineSource:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class DesignValues:
     """Values of one quantity at points.  Arrays have the shape (...) of the points.
 
@@ -267,10 +263,6 @@ class DesignValues:
     run_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     interval_of: str = ""
     surface_interval_of: str = ""
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def is_below_zero(self) -> Bools:

@@ -21,8 +21,6 @@ from scipy.special import stdtrit
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["interval_between_lines"]
-
 _BOTH_SIDES = 0.975
 
 

@@ -14,8 +14,6 @@ from collections.abc import Iterable, Sequence
 from reduction.errors import SettingsError
 from reduction.lookup.product import LineSource
 
-__all__ = ["DIAMETER_TOLERANCE", "find_lines"]
-
 DIAMETER_TOLERANCE = 0.03
 """Share within which two diameters are one size: 13 mm stands for 1/2 in, 2.4 % apart. [1]"""
 _ROUNDING = 1e-9

@@ -10,8 +10,6 @@ from reduction.lookup.compositerule import CompositeRule
 from reduction.lookup.pieces import CurvePiece, PieceBranch
 from reduction.strain.model import StrainModel
 
-__all__ = ["PieceSource", "compose", "used_of"]
-
 
 @dataclass(frozen=True)
 class PieceSource:

@@ -16,8 +16,6 @@ from reduction.errors import DataError, SettingsError
 from reduction.strain.inverse import with_free_length
 from reduction.strain.model import StrainModel
 
-__all__ = ["StatedSplices", "deployed_model", "stated_model"]
-
 
 @dataclass(frozen=True)
 class StatedSplices:

@@ -24,8 +24,6 @@ from reduction.uncertainty.join import stacked
 from reduction.uncertainty.product import Component, Contributions
 from reduction.vocabulary import BRANCH_VALUES
 
-__all__ = ["mean_piece", "piece_of_pull", "piece_of_steps"]
-
 _FEWEST = 2
 
 

@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
 from reduction.lookup.linesurface import LineSurface
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Bools, Floats, read_only_arrays
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import box_behnken
 from reduction.surface.terms import model_matrix, quadratic_exponents
@@ -38,12 +38,11 @@ from reduction.uncertainty.combine import (
 )
 from reduction.workers import run_blocks
 
-__all__ = ["SurfacePoints", "evaluate_surface", "sigma_from_r2"]
-
 _BLOCK = 16_384
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SurfacePoints:
     """A surface at points; arrays have the shape (n_points,).
 
@@ -64,10 +63,6 @@ class SurfacePoints:
     random: Floats
     run_random: Floats
     is_inside: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:

@@ -21,8 +21,6 @@ from reduction.record import Floats
 from reduction.strain.inverse import with_free_length
 from reduction.strain.model import StrainModel
 
-__all__ = ["SeriesPart", "Tether", "equal_tethers", "unequal_tethers"]
-
 
 @dataclass(frozen=True)
 class Tether:

@@ -17,8 +17,6 @@ from reduction.record import Bools, Floats
 from reduction.uncertainty.product import Component
 from reduction.vocabulary import quantity as quantity_of
 
-__all__ = ["design_values"]
-
 
 def design_values(
     line: LineSource,

@@ -19,12 +19,11 @@ from reduction.errors import DataError, SettingsError
 from reduction.lookup.assembly import AssemblyCurve, assemble
 from reduction.lookup.loads import cycle_loads
 from reduction.lookup.tethers import SeriesPart, Tether, unequal_tethers
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["LoadSharing", "WorkingPoint", "working_point", "worst_sharing"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class WorkingPoint:
     """An assembly under a cycle of tension; arrays have the shape (...) of the points.
 
@@ -64,10 +63,6 @@ class WorkingPoint:
     peak_share: Floats
     minimum_share: Floats
     is_tested: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def working_point(
@@ -177,6 +172,7 @@ def _tension_at_slack(assembly: AssemblyCurve) -> float:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LoadSharing:
     """Worst loads of one tether over a tolerance of lengths; arrays have the shape (...).
 
@@ -199,10 +195,6 @@ class LoadSharing:
     greatest_load: Floats
     least_load: Floats
     tension_at_slack: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def worst_sharing(

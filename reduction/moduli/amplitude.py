@@ -21,8 +21,6 @@ from reduction.errors import DataError
 from reduction.moduli.product import AmplitudeSummary
 from reduction.record import Floats
 
-__all__ = ["summarise_amplitude"]
-
 _QUANTITIES = (
     "frequency", "mean_strain", "strain_amplitude", "mean_tension", "tension_amplitude",
     "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",

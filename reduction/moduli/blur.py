@@ -18,8 +18,6 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["window_blur"]
-
 
 def _overlap(shift: float) -> float:
     """Correlation of two window slopes of white noise, centres ``shift`` windows apart."""

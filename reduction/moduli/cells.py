@@ -9,14 +9,12 @@ References
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csc_array
+import scipy
 
 from reduction.record import Integers
 
-__all__ = ["sums_by_cell"]
 
-
-def sums_by_cell(cell: Integers, n_cells: int) -> csc_array:
+def sums_by_cell(cell: Integers, n_cells: int) -> scipy.sparse.csc_array:
     """Matrix that sums samples by cell: ``sums_by_cell(cell, n_cells) @ values``.
 
     Parameters
@@ -50,6 +48,6 @@ def sums_by_cell(cell: Integers, n_cells: int) -> csc_array:
     if max(n_cells, cell.size) > np.iinfo(np.int32).max:
         raise ValueError(f"{cell.size} samples in {n_cells} cells are too many for one block")
     one_each = np.arange(cell.size + 1, dtype=np.int32)
-    return csc_array(
+    return scipy.sparse.csc_array(
         (np.ones(cell.size), cell.astype(np.int32), one_each), shape=(n_cells, cell.size)
     )

@@ -14,14 +14,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from reduction.errors import DataError
 from reduction.moduli.interpolation import curve_at
 from reduction.moduli.product import ModulusCurves, Ratio
 from reduction.record import Floats
-
-__all__ = ["compare_curves", "compare_cycles"]
 
 _CONFIDENCE = 0.95
 _MANY = 1e9
@@ -50,7 +48,7 @@ def _ratio(strain: Floats, above: _Side, below: _Side) -> Ratio:
         # Welch-Satterthwaite, [2]_ eq. G.2b
         freedom = total**2 / (relative[0] ** 2 / above.freedom + relative[1] ** 2 / below.freedom)
         uncertainty = np.abs(ratio) * np.sqrt(total)
-        reach = uncertainty * student_t.ppf((1 + _CONFIDENCE) / 2, np.where(total > 0, freedom, 1))
+        reach = uncertainty * stdtrit(np.where(total > 0, freedom, 1), (1 + _CONFIDENCE) / 2)
     notes = [_TYPE_A]
     if not np.isfinite(ratio).any():
         notes.append(f"{above.name} and {below.name} have no strain in common")

@@ -24,13 +24,12 @@ from reduction.moduli.hyperelastic import (
     Law,
     hyperelastic_stress,
     ogden_columns,
+    ogden_slopes,
     polynomial_columns,
 )
 from reduction.moduli.product import ElastomerFit
 from reduction.moduli.separable import fit_separable, lag_one_inflation
 from reduction.record import Floats
-
-__all__ = ["even_grid", "fit_elastomers", "is_stable", "mooney_plot"]
 
 GRID_POINTS = 200
 FEWEST_POINTS = 12
@@ -178,7 +177,10 @@ def _fit(law: Law, strain: Floats, stress: Floats) -> tuple[Floats, Floats, Floa
     if law == "ogden-2":
         stretch = 1 + strain
         fit = fit_separable(
-            lambda exponents: ogden_columns(stretch, exponents),
+            lambda exponents: (
+                ogden_columns(stretch, exponents[:, None, :]),
+                ogden_slopes(stretch, exponents[:, None, :]),
+            ),
             stress,
             starts=list(combinations(STARTING_EXPONENTS, 2)),
         )
@@ -228,7 +230,10 @@ def fit_elastomers(
     is left over is mostly the law and not noise (type A).  AICc ranks the laws:
     :math:`n \ln(S/n) + 2p + 2p(p+1)/(n-p-1)`, p counting the variance; with correlated
     residuals it favours the longer law.  Two Ogden terms may fit equally well with very
-    different parameters ([3]_); the best of 15 starts is reported.
+    different parameters ([3]_); the best of 15 starts is reported, and of several as good the one
+    with the smallest exponents: a steep term of exponent a and one of exponent -2a with the
+    opposite modulus give nearly the same uniaxial curve.  Terms stand in the order of their
+    exponents.
 
     A law fitted to one deformation says little of another, and nothing beyond its range.
 

@@ -19,8 +19,6 @@ from reduction.moduli.secant import chord_modulus, secant_modulus
 from reduction.moduli.tangent import pair_specimens
 from reduction.samples.blocks import take_samples
 
-__all__ = ["end_moduli"]
-
 
 def end_moduli(
     strain: ArrayLike, tension: ArrayLike, *, area: ArrayLike, cycles: Cycles

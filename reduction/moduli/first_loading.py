@@ -33,8 +33,6 @@ from reduction.samples.search import first_sample
 from reduction.settings import ModulusSettings
 from reduction.workers import run_blocks
 
-__all__ = ["first_loading_curves"]
-
 _BAND = 0.01  # of the rise: a sample this far below the greatest strain so far has unloaded
 _NEIGHBOURS = 25  # on each side, to tell the usual step from a spike
 _SPIKE_STEPS = 6  # usual steps above both neighbours

@@ -24,8 +24,6 @@ from reduction.record import Floats
 from reduction.samples.blocks import take_samples
 from reduction.settings import ModulusSettings
 
-__all__ = ["StrainGrid", "strain_grid"]
-
 _STROKE_SHARE = 40  # bins a stroke
 _WIDEST_WINDOW = 0.25  # of the stroke, to gather samples; the curve is blurred beyond it
 _BRANCHES_READ = 25  # enough for a median, few enough to cost nothing

@@ -16,9 +16,7 @@ import numpy as np
 
 from reduction.cycles.product import Cycles
 from reduction.errors import DataError
-from reduction.record import Bools, Integers, freeze_arrays
-
-__all__ = ["CycleGroups", "select_cycles"]
+from reduction.record import Bools, Integers, read_only_arrays
 
 # Large enough that threads do not wait for the interpreter between the steps of a block;
 # twice as large, and the system hands out fresh memory for every step, which costs more.
@@ -64,16 +62,13 @@ def select_cycles(n_cycles: int, *, longest: int) -> Integers:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CycleGroups:
     """Consecutive cycles that give one curve; group g holds cycles first[g]..first[g+1]-1."""
 
     first: Integers
     of_cycle: Integers  # by cycle number, index 0 (outside cycles) is -1
     is_break_in: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @classmethod
     def of(cls, n_cycles: int, break_in_cycles: int, pooled: int) -> CycleGroups:

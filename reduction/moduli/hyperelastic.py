@@ -27,16 +27,6 @@ from reduction.checks import as_positive
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = [
-    "LAWS",
-    "PARAMETERS",
-    "Deformation",
-    "Law",
-    "hyperelastic_stress",
-    "ogden_columns",
-    "polynomial_columns",
-]
-
 Law = Literal["neo-hookean", "mooney-rivlin", "yeoh", "ogden-2"]
 Deformation = Literal["uniaxial", "equibiaxial", "pure-shear"]
 LAWS: tuple[Law, ...] = ("neo-hookean", "mooney-rivlin", "yeoh", "ogden-2")
@@ -132,14 +122,14 @@ def ogden_columns(
     ----------
     stretch_ratio : ndarray, shape (n_samples,)
         1 + strain. [1]
-    exponents : ndarray, shape (n_terms,)
-        :math:`\alpha_i`; complex ones give derivatives. [1]
+    exponents : ndarray, shape (n_terms,) or (..., 1, n_terms)
+        :math:`\alpha_i`, or several sets of them. [1]
     deformation : str, optional
         ``uniaxial``, ``equibiaxial`` or ``pure-shear``.
 
     Returns
     -------
-    columns : ndarray, shape (n_samples, n_terms)
+    columns : ndarray, shape (..., n_samples, n_terms)
         One a term. [1]
 
     Raises
@@ -165,6 +155,41 @@ def ogden_columns(
         (LATERAL[deformation] * exponents - 1) * log
     )
     return columns
+
+
+def ogden_slopes(
+    stretch_ratio: Floats, exponents: Floats, *, deformation: Deformation = "uniaxial"
+) -> Floats:
+    r"""Derivatives of the columns of Ogden's law, each by its own exponent.
+
+    .. math:: \ln\lambda \, (\lambda^{\alpha_i - 1} - q \lambda^{q \alpha_i - 1})
+
+    Parameters
+    ----------
+    stretch_ratio, exponents, deformation
+        As for `ogden_columns`. [1], [1]
+
+    Returns
+    -------
+    slopes : ndarray, shape (..., n_samples, n_terms)
+        One a term. [1]
+
+    Raises
+    ------
+    DataError
+        If a stretch ratio is not positive, or the deformation is unknown.
+
+    Examples
+    --------
+    >>> print(ogden_slopes(np.array([2.0]), np.array([2.0])).round(4))
+    [[1.4729]]
+    """
+    log = np.log(_checked(stretch_ratio, deformation))[:, None]
+    lateral = LATERAL[deformation]
+    slopes: Floats = log * (
+        np.exp((exponents - 1) * log) - lateral * np.exp((lateral * exponents - 1) * log)
+    )
+    return slopes
 
 
 def hyperelastic_stress(

@@ -20,8 +20,6 @@ from reduction.record import Floats
 from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.workers import run_blocks
 
-__all__ = ["check_identity"]
-
 _MOST_PIECES = 4  # of a stroke: more follow its curvature better, with more noise
 _PIECE_SAMPLES = 6
 _FEWEST_SAMPLES = 3  # in a piece

@@ -15,8 +15,6 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["curve_at"]
-
 
 def curve_at(
     strain: ArrayLike, strain_bin: ArrayLike, values: ArrayLike, *, spacing: float | None

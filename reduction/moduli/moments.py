@@ -23,9 +23,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from reduction.errors import DataError
 from reduction.moduli.cells import sums_by_cell
 from reduction.moduli.grid import StrainGrid
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = ["BranchMoments", "LocalFits", "accumulate_moments", "fit_windows"]
+from reduction.record import Floats, Integers, read_only_arrays
 
 _N_SUMS = 9
 # Shares of what samples spread evenly over the window would give.
@@ -35,6 +33,7 @@ _FURTHEST_CENTRE = 0.125  # of the window: mean strain of the samples off the bi
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class BranchMoments:
     """Nine sums of each curve and bin; moments of one grid and reference add up.
 
@@ -53,10 +52,6 @@ class BranchMoments:
     sums: Floats
     grid: StrainGrid
     tension_reference: float
-
-    def __post_init__(self) -> None:
-        """Make the array read-only."""
-        freeze_arrays(self)
 
     def __add__(self, other: BranchMoments) -> BranchMoments:
         """Moments of both pieces together."""
@@ -78,6 +73,7 @@ class BranchMoments:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LocalFits:
     """Local regression at every bin centre; arrays have shape (n_curves, n_bins).
 
@@ -89,10 +85,6 @@ class LocalFits:
     slope_variance: Floats
     tension: Floats
     tension_variance: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def accumulate_moments(

@@ -13,8 +13,6 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.samples.blocks import sample_blocks
 
-__all__ = ["sample_noise"]
-
 
 def sample_noise(values: ArrayLike) -> tuple[float, float]:
     """Noise of single samples and the step of the digitizer, from the series itself.

@@ -18,9 +18,7 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite, as_increasing, as_positive, as_same_shape
 from reduction.errors import DataError
-from reduction.record import Bools, Floats, Integers, freeze_arrays
-
-__all__ = ["PiecewiseLine", "fit_piecewise_lines"]
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 
 _SHORTEST_POINTS = 3  # of a segment: two make any slope
 _SHORTEST_SHARE = 10  # a segment is at least a tenth of the points
@@ -28,6 +26,7 @@ _MOST_CANDIDATES = 48  # of breakpoints; all their combinations are tried
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class PiecewiseLine:
     """Best continuous line of a number of segments.
 
@@ -48,10 +47,6 @@ class PiecewiseLine:
     ordinate: Floats
     covariance: Floats
     chi_square: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)

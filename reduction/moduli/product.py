@@ -10,22 +10,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reduction.record import Bools, Floats, Integers, freeze_arrays
-
-__all__ = [
-    "AmplitudeSummary",
-    "CycleIdentity",
-    "ElastomerFit",
-    "EndModuli",
-    "ModulusCurves",
-    "PeakTrend",
-    "Ratio",
-    "Segments",
-    "Slips",
-]
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ModulusCurves:
     """Tangent modulus against strain.
 
@@ -76,12 +65,9 @@ class ModulusCurves:
     notes: tuple[str, ...] = ()
     branch_tension_count: Integers | None = None
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Segments:
     """Piecewise-linear moduli, the form of Tables 5 and 6 of WHOI-2005-10.
 
@@ -102,12 +88,9 @@ class Segments:
     segment_misfit: Floats
     criterion: str
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class EndModuli:
     """Moduli from the ends of the branches, each with its standard uncertainty (noise). [Pa].
 
@@ -121,12 +104,9 @@ class EndModuli:
     chord_modulus: Floats
     chord_modulus_standard_uncertainty: Floats
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CycleIdentity:
     """Closed-cycle identity, checked on every cycle; arrays (n_specimens, n_cycles).
 
@@ -145,12 +125,9 @@ class CycleIdentity:
     mean_identity_residual_standard_uncertainty: Floats
     notes: tuple[str, ...] = ()
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class AmplitudeSummary:
     """Dynamic quantities of a test at its frequency, means and amplitudes.
 
@@ -172,12 +149,9 @@ class AmplitudeSummary:
     slope_reading_spread: Floats
     uncertainty: dict[str, Floats]
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class PeakTrend:
     """Peak tension and modulus against the logarithm of cycle number, shape (n_specimens,).
 
@@ -193,12 +167,9 @@ class PeakTrend:
     peak_tension_change: Floats
     peak_tension_change_standard_uncertainty: Floats
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Slips:
     """Steps of peak tension that steady creep does not explain, one row a step.
 
@@ -229,12 +200,9 @@ class Slips:
     creep_per_cycle: Floats
     notes: tuple[str, ...] = ()
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Ratio:
     """Ratio of two specimens' (or two tests') modulus on one strain axis.
 
@@ -252,10 +220,6 @@ class Ratio:
     is_different: Bools
     notes: tuple[str, ...] = ()
     degrees_of_freedom: Floats = field(default_factory=lambda: np.array(np.inf))
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)

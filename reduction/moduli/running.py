@@ -12,12 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["RunningStatistics"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class RunningStatistics:
     """Statistics over the curves seen so far, NaN left out; arrays of one shape.
 
@@ -40,10 +39,6 @@ class RunningStatistics:
     minimum: Floats
     maximum: Floats
     variance: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @classmethod
     def of(cls, values: Floats, variance: Floats, *, weight: Floats) -> RunningStatistics:

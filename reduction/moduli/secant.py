@@ -16,8 +16,6 @@ from reduction.checks import as_positive
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["chord_modulus", "secant_modulus"]
-
 
 def secant_modulus(strain: ArrayLike, tension: ArrayLike, *, area: ArrayLike) -> Floats:
     r"""Stress over strain, from the unstretched state.

@@ -19,8 +19,6 @@ from reduction.moduli.product import ModulusCurves, Segments
 from reduction.record import Bools, Floats
 from reduction.settings import ModulusSettings
 
-__all__ = ["find_segments"]
-
 _REACHED = 0.9  # of the cycles: a bin that fewer reach has the mean tension of those few
 _FEWEST_BINS = 6  # two shortest segments
 _FEWEST_CYCLES = 4  # with a curve of their own, for a scatter

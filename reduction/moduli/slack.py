@@ -16,22 +16,15 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_positive, as_same_shape
 from reduction.errors import DataError
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Bools, Floats, read_only_arrays
 from reduction.samples.search import first_sample, last_sample
-
-__all__ = [
-    "SlackCrossings",
-    "SlackStrain",
-    "slack_crossings",
-    "slack_position",
-    "slack_strain_at_unloading",
-]
 
 FEWEST_SAMPLES = 3
 REACH = 4.0
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SlackCrossings:
     """Where a record first becomes taut and last goes slack; arrays have shape (2,).
 
@@ -54,12 +47,9 @@ class SlackCrossings:
     rate: Floats
     reason: str
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SlackStrain:
     """Strain at which specimens go slack when a test unloads; arrays have shape (n_specimens,).
 
@@ -80,10 +70,6 @@ class SlackStrain:
     by_tension: Floats
     by_lag: Floats
     remarks: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def slack_position(

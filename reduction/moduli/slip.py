@@ -24,8 +24,6 @@ from reduction.moduli.stepsize import Step, step_sizes
 from reduction.record import Floats
 from reduction.settings import SlipSettings
 
-__all__ = ["find_slips"]
-
 
 def _filled(series: Floats) -> Floats:
     """Bridge missing cycles linearly."""

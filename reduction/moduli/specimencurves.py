@@ -20,8 +20,6 @@ from reduction.record import Floats, Integers
 from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.workers import run_blocks
 
-__all__ = ["SpecimenCurves"]
-
 _PART = 1 << 18  # samples of a block of which sums are taken together
 
 

@@ -20,7 +20,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import chi2, norm
+from scipy.special import chdtri, ndtri
 
 from reduction.checks import as_finite
 from reduction.errors import DataError
@@ -28,9 +28,10 @@ from reduction.moduli.noise import sample_noise
 from reduction.moduli.stepscan import (
     SHORTEST_WINDOW,
     Candidate,
+    fit_kinks,
+    fit_ramps,
     neighbour_noise,
     noise_memory,
-    power_beyond_parabola,
     ramp_of,
     strongest_response,
     without_background,
@@ -39,8 +40,6 @@ from reduction.moduli.stepscan import (
 )
 from reduction.moduli.stepsize import Step, step_sizes
 from reduction.record import Floats
-
-__all__ = ["find_steps"]
 
 MOST_STEPS = 30
 
@@ -61,16 +60,14 @@ def _refine(values: Floats, candidate: Candidate, sigma: float) -> tuple[Step, b
     onset, extent = (grid.ravel() for grid in np.meshgrid(onsets, extents, indexing="ij"))
     inside = onset + extent <= n_local - 2
     onset, extent = onset[inside], extent[inside]
-    ramps = ramp_of(n_local, onset=onset, extent=extent)
-    power = power_beyond_parabola(ramps)
-    product = ramps @ local  # the parabola of a ramp adds nothing: none is left in `local`
+    product, power = fit_ramps(local, onset=onset, extent=extent)
     gain, sizes = product**2 / power, product / power
     best = int(np.argmax(gain))
     variance = max(sigma**2, (float(local @ local) - float(gain[best])) / max(1, n_local - 6))
-    near = gain >= gain[best] - variance * float(chi2.isf(0.05, 2))
+    near = gain >= gain[best] - variance * float(chdtri(2, 0.05))
 
-    kinks = np.maximum(0.0, np.arange(n_local) - onsets[:, None])
-    kink_gain = float(np.max((kinks @ local) ** 2 / power_beyond_parabola(kinks)))
+    kink, kink_power = fit_kinks(local, onset=onsets)
+    kink_gain = float(np.max(kink**2 / kink_power))
     is_step = float(gain[best]) - kink_gain > variance * 10 and extent[best] < widest
     step = Step(
         onset=int(onset[best]) + first,
@@ -199,7 +196,7 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
         candidate, tried = strongest_response(
             without_background(remaining), noise=sigma, allowed=allowed
         )
-        threshold = float(norm.isf(false_alarm / (2 * max(1, tried))))
+        threshold = -float(ndtri(false_alarm / (2 * max(1, tried))))
         if candidate is None or abs(candidate.score) < threshold:
             break
         guess = ramp_of(series.size, onset=[candidate.onset], extent=[candidate.extent])

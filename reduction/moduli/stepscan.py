@@ -14,13 +14,11 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.signal import oaconvolve
 
 from reduction.errors import DataError
 from reduction.record import Bools, Floats, Integers
-
-__all__ = ["Candidate", "ramp_of", "strongest_response"]
 
 SHORTEST_WINDOW = 8
 LONGEST_WINDOW = 128
@@ -106,13 +104,69 @@ def without_parabola(rows: Floats) -> Floats:
     return level
 
 
-def power_beyond_parabola(rows: Floats) -> Floats:
-    """Sum of squares of rows less the parabola that fits each best."""
-    share = np.einsum("...i,ij->...j", rows, _parabola(rows.shape[-1]))
-    power: Floats = np.einsum("...i,...i->...", rows, rows) - np.einsum(
-        "...j,...j->...", share, share
+def fit_ramps(level: Floats, *, onset: Integers, extent: Integers) -> tuple[Floats, Floats]:
+    r"""Least squares of a ramp and a parabola on a series, for many ramps and without making them.
+
+    .. math:: g = r \cdot y, \qquad s = r \cdot r - \sum_j (p_j \cdot r)^2
+
+    with r the ramp of `ramp_of`, y the series and p an orthonormal basis of the parabolas.  A
+    product with a ramp of onset o and extent w is that of a slope from o on and of ones from its
+    end on, :math:`\frac{1}{w} \sum_{i=o}^{o+w-1} (i - o + 1) c_i + \sum_{i \ge o+w} c_i`, which are
+    differences of running sums of :math:`c_i` and :math:`i c_i`.
+
+    Parameters
+    ----------
+    level : ndarray, shape (n_samples,)
+        Series, the parabola that fits it taken out. [any unit]
+    onset, extent : ndarray of int, shape (n_ramps,)
+        Of the ramps, each of which ends within the series. [1]
+
+    Returns
+    -------
+    product : ndarray, shape (n_ramps,)
+        Of each ramp with the series; over the power it is the size of the step, and its square over
+        the power what the step takes from the sum of squares. [unit of the series]
+    power : ndarray, shape (n_ramps,)
+        Sum of squares of the ramp less the parabola that fits it best. [1]
+
+    Raises
+    ------
+    IndexError
+        If a ramp does not end within the series.
+
+    Examples
+    --------
+    >>> level = without_parabola(3.0 * ramp_of(40, onset=15, extent=4))
+    >>> product, power = fit_ramps(level, onset=np.array([15]), extent=np.array([4]))
+    >>> print((product / power).round(6))
+    [3.]
+    """
+    ones, slopes = _sums_from(level)
+    end, width = onset + extent, extent.astype(np.float64)
+    rising = slopes[onset] - slopes[end] + (1.0 - onset)[:, None] * (ones[onset] - ones[end])
+    products = rising / width[:, None] + ones[end]
+    squares = (width + 1) * (2 * width + 1) / (6 * width) + (level.size - end)
+    return products[:, 0], squares - np.sum(products[:, 1:] ** 2, axis=1)
+
+
+def fit_kinks(level: Floats, *, onset: Integers) -> tuple[Floats, Floats]:
+    """As `fit_ramps`, of changes of slope that begin after an onset and go on to the end."""
+    ones, slopes = _sums_from(level)
+    products = slopes[onset] - onset[:, None] * ones[onset]
+    last = (level.size - 1 - onset).astype(np.float64)
+    squares = last * (last + 1) * (2 * last + 1) / 6
+    return products[:, 0], squares - np.sum(products[:, 1:] ** 2, axis=1)
+
+
+def _sums_from(level: Floats) -> tuple[Floats, Floats]:
+    """Sums from each sample on: of a series and parabolas, and of both times the index."""
+    columns = np.column_stack([level, _parabola(level.size)])
+    count = np.arange(level.size)[:, None]
+    ones, slopes = (
+        np.concatenate([np.cumsum(part[::-1], axis=0)[::-1], np.zeros((1, columns.shape[1]))])
+        for part in (columns, columns * count)
     )
-    return power
+    return ones, slopes
 
 
 def without_background(values: Floats, ramps: Floats | None = None) -> Floats:
@@ -232,9 +286,13 @@ def strongest_response(
     best: Candidate | None = None
     tried = 0
     inflation = 1.0
+    length = scipy.fft.next_fast_len(max(1, values.size), real=True)
+    spectrum = scipy.fft.rfft(values, length)
     for window, extent in _windows(values.size):
         kernel = _kernel(window, extent)
-        size = oaconvolve(values, kernel[::-1], mode="valid")
+        # product with the kernel at every place; those that run over the end are left out
+        product = scipy.fft.irfft(spectrum * scipy.fft.rfft(kernel, length).conj(), length)
+        size = product[: values.size - kernel.size + 1]
         onset = np.arange(size.size) + window
         keep = (onset >= max(2 * window, window + FIRST_SAMPLE)) & allowed[onset]
         if not keep.any():

@@ -17,8 +17,6 @@ from reduction.checks import as_finite
 from reduction.moduli.stepscan import ramp_of, without_background, without_parabola
 from reduction.record import Floats
 
-__all__ = ["Step", "step_sizes"]
-
 
 @dataclass(frozen=True)
 class Step:

@@ -23,12 +23,11 @@ from reduction.moduli.weights import (
     recover_gauge_length,
     step_branches,
 )
-from reduction.record import Bools, Floats, Integers, StepReadings, freeze_arrays
-
-__all__ = ["StepwiseResult", "greatest_step_strain", "reduce_stepwise"]
+from reduction.record import Bools, Floats, Integers, StepReadings, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class StepwiseResult:
     """A stepwise test reduced; per-step arrays have shape (n_steps,).
 
@@ -91,10 +90,6 @@ class StepwiseResult:
     notes: tuple[str, ...] = ()
     length_standard_uncertainty: float = float("nan")
     tension_standard_uncertainty: float = float("nan")
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def _gauge_notes(

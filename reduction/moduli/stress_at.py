@@ -20,8 +20,6 @@ from reduction.checks import as_positive, as_same_shape
 from reduction.record import Bools, Floats, Integers
 from reduction.samples.search import first_sample, last_sample
 
-__all__ = ["stress_at_strain"]
-
 # samples before the level that make the line, and the strain that it may span
 _SAMPLES = 12
 _SPAN = 0.1

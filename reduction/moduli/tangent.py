@@ -25,8 +25,6 @@ from reduction.moduli.specimencurves import SpecimenCurves, reduce_specimens
 from reduction.record import Floats
 from reduction.settings import ModulusSettings
 
-__all__ = ["tangent_curves"]
-
 
 def pair_specimens(
     strain: ArrayLike, tension: ArrayLike, area: ArrayLike

@@ -21,8 +21,6 @@ from reduction.samples.blocks import BLOCK, count_samples, sample_blocks, take_s
 from reduction.samples.search import thinned
 from reduction.workers import run_blocks
 
-__all__ = ["cycle_tension_level"]
-
 N_BINS = 32
 SAMPLES_PER_CYCLE = 64
 FEWEST_SAMPLES = 8

@@ -23,8 +23,6 @@ from reduction.moduli.product import PeakTrend
 from reduction.moduli.separable import lag_one_inflation
 from reduction.record import Floats
 
-__all__ = ["change_of_ends", "cycles_at_an_end", "fit_peak_trend", "slope_per_decade"]
-
 FEWEST_CYCLES = 3
 
 

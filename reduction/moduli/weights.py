@@ -18,14 +18,6 @@ from reduction.checks import as_finite, as_positive, as_same_shape
 from reduction.errors import DataError
 from reduction.record import Bools, Floats, Integers
 
-__all__ = [
-    "STRAIN_DIGIT",
-    "find_inconsistent_readings",
-    "interval_slopes",
-    "recover_gauge_length",
-    "step_branches",
-]
-
 STRAIN_DIGIT = 0.01
 """A recorded elongation is a whole per cent; readings that differ by less agree. [1]"""
 _ASCENDING, _DESCENDING = 1, 2

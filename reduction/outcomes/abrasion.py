@@ -16,12 +16,10 @@ from __future__ import annotations
 from math import exp, log, log1p, sqrt
 
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import stdtrit
 
 from reduction.errors import DataError
 from reduction.outcomes.life import fit_life
-
-__all__ = ["ratio_to_published_life"]
 
 
 def ratio_to_published_life(
@@ -86,7 +84,7 @@ def ratio_to_published_life(
     fit = fit_life(cycles, is_suspended, distribution="lognormal", confidence=confidence)
     spread = log1p((reference_standard_deviation / reference_mean) ** 2)
     reference = log(reference_mean) - spread / 2
-    half = float(stats.t.ppf((1 + confidence) / 2, reference_n - 1)) * sqrt(spread / reference_n)
+    half = float(stdtrit(reference_n - 1, (1 + confidence) / 2)) * sqrt(spread / reference_n)
     if not fit.life > 0:
         return float("nan"), float("nan"), float("nan")
     own = log(fit.life)

@@ -28,8 +28,6 @@ from scipy.special import log_ndtr, ndtri
 from reduction.errors import DataError, FitError
 from reduction.record import Bools, Floats
 
-__all__ = ["CensoredFit", "Scatter", "fit_censored", "scatter_quantile"]
-
 Scatter = Literal["normal", "smallest_extreme_value"]
 
 _MOST_STEPS = 200

@@ -9,14 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = [
-    "EXPOSURE_COLUMNS",
-    "FATIGUE_COLUMNS",
-    "LOAD_LIFE_COLUMNS",
-    "STRENGTH_COLUMNS",
-    "OutcomeColumn",
-]
-
 
 @dataclass(frozen=True)
 class OutcomeColumn:

@@ -13,13 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import fdtrc, fdtri, stdtrit
 
 from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError
 from reduction.outcomes.product import OneWay, RatioOfMeans, reason_codes
-
-__all__ = ["one_way", "ratio_of_means"]
 
 
 def ratio_of_means(
@@ -96,7 +94,7 @@ def ratio_of_means(
         v0 = np.where(has_both, s0**2 / n0, np.nan)
         variance = v1 + ratio**2 * v0
         freedom = variance**2 / (v1**2 / (n1 - 1) + ratio**4 * v0**2 / (n0 - 1))
-        t = stats.t.ppf((1 + confidence) / 2, freedom)
+        t = stdtrit(freedom, (1 + confidence) / 2)
         # roots of the quadratic in rho; the leading term is above zero for a closed interval
         lead = m0**2 - t**2 * v0
         root = t * np.sqrt(v0 * m1**2 + v1 * m0**2 - t**2 * v0 * v1)
@@ -194,12 +192,12 @@ def one_way(
         f_statistic=statistic,
         between=np.full(within.shape, k - 1, dtype=np.intp),
         within=within,
-        p_value=np.asarray(stats.f.sf(statistic, k - 1, within), dtype=np.float64),
-        critical=np.asarray(stats.f.isf(significance, k - 1, within), dtype=np.float64),
+        p_value=np.asarray(fdtrc(k - 1, within, statistic), dtype=np.float64),
+        critical=np.asarray(fdtri(k - 1, within, 1 - significance), dtype=np.float64),
         pooled_standard_deviation=np.sqrt(pooled),
         welch_f_statistic=welch,
         welch_within=welch_within,
-        welch_p_value=np.asarray(stats.f.sf(welch, k - 1, welch_within), dtype=np.float64),
+        welch_p_value=np.asarray(fdtrc(k - 1, welch_within, welch), dtype=np.float64),
         significance=significance,
         reason=reason_codes(within.shape, [(~(pooled > 0), 4)]),
     )

@@ -10,14 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import fdtrc, stdtrit
 
 from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError, FitError
 from reduction.outcomes.product import ExposureTrend
 from reduction.record import Bools, Floats
-
-__all__ = ["fit_exposure_trend", "share_lost_per_year", "strength_after"]
 
 
 def fit_exposure_trend(
@@ -120,7 +118,7 @@ def fit_exposure_trend(
         residual_standard_deviation=float(np.sqrt(variance)),
         degrees_of_freedom=free,
         lack_of_fit_f=ratio,
-        lack_of_fit_p_value=float(stats.f.sf(ratio, lack, pure)) if fits else float("nan"),
+        lack_of_fit_p_value=float(fdtrc(lack, pure, ratio)) if fits else float("nan"),
         lack_of_fit_degrees_of_freedom=(lack, pure),
         exposure_low=float(levels[0]),
         exposure_high=float(levels[-1]),
@@ -176,7 +174,7 @@ def strength_after(
         + years**2 * trend.covariance[1, 1]
         + (trend.residual_standard_deviation**2 if of_one_break else 0.0)
     )
-    half = stats.t.ppf((1 + confidence) / 2, trend.degrees_of_freedom) * np.sqrt(variance)
+    half = stdtrit(trend.degrees_of_freedom, (1 + confidence) / 2) * np.sqrt(variance)
     is_inside = (years >= trend.exposure_low) & (years <= trend.exposure_high)
     return strength, strength - half, strength + half, np.asarray(is_inside)
 
@@ -213,7 +211,7 @@ def share_lost_per_year(
     """
     if trend.intercept <= 0:
         raise FitError("the line has no strength when new", found=f"{trend.intercept:g}")
-    t = float(stats.t.ppf((1 + confidence) / 2, trend.degrees_of_freedom))
+    t = float(stdtrit(trend.degrees_of_freedom, (1 + confidence) / 2))
     (v_new, v_both), (_, v_slope) = trend.covariance
     lead = trend.intercept**2 - t**2 * v_new
     middle = -(trend.slope * trend.intercept - t**2 * v_both)

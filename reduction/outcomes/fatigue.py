@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import chdtrc, stdtrit
 
 from reduction.checks import as_positive
 from reduction.errors import DataError, FitError
@@ -19,8 +19,6 @@ from reduction.outcomes.censored import Scatter, fit_censored, scatter_quantile
 from reduction.outcomes.life import SCATTER_OF, as_log_lives
 from reduction.outcomes.life_product import LifeDistribution, LoadLife
 from reduction.record import Bools, Floats, Integers
-
-__all__ = ["LEVEL_WIDTH", "fit_load_life", "life_at_load", "load_levels"]
 
 LEVEL_WIDTH = 0.01
 """Peak loads no further apart, in rated break strengths, are one level: a machine does not
@@ -155,7 +153,7 @@ def fit_load_life(
     if n_levels > 2 and n_failed > n_failed_levels:
         best, n_levels = _log_likelihood_of_levels(about, load, suspended, scatter)
         chi_square = max(2 * (best - fit.log_likelihood), 0.0)
-        p_value = float(stats.chi2.sf(chi_square, n_levels - 2))
+        p_value = float(chdtrc(n_levels - 2, chi_square))
     return LoadLife(
         distribution=distribution,
         reference_load_ratio=reference,
@@ -227,7 +225,7 @@ def life_at_load(
     middle = row @ np.array([fit.log_life, fit.exponent, fit.log_scale])
     variance = np.einsum("...i,ij,...j->...", row, fit.covariance, row)
     free = fit.n_failed - 2
-    t = stats.t.ppf((1 + confidence) / 2, free) if free > 0 else np.nan
+    t = stdtrit(free, (1 + confidence) / 2) if free > 0 else np.nan
     half = t * np.sqrt(variance)
     is_inside = (load >= fit.load_ratio_low) & (load <= fit.load_ratio_high)
     with np.errstate(over="ignore"):

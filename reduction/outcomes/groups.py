@@ -19,8 +19,6 @@ from reduction.outcomes.product import Outcome, OutcomeQuantity
 from reduction.outcomes.strength import EXCLUDED, LOWER_BOUND, VALUE
 from reduction.record import Floats, Integers, Specimen
 
-__all__ = ["Group", "Grouped", "complete_from_specimens", "group_outcomes", "reference_of"]
-
 _USE = {"value": VALUE, "lower_bound": LOWER_BOUND, "excluded": EXCLUDED}
 
 

@@ -23,8 +23,6 @@ from reduction.outcomes.life_product import LifeDistribution, LifeFit
 from reduction.outcomes.profile import cutoff, profile_bounds
 from reduction.record import Bools, Floats
 
-__all__ = ["SCATTER_OF", "as_log_lives", "fit_life", "ratio_of_lives", "runout_bound"]
-
 SCATTER_OF: dict[LifeDistribution, Scatter] = {
     "lognormal": "normal",
     "weibull": "smallest_extreme_value",

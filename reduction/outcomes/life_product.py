@@ -11,9 +11,7 @@ from dataclasses import dataclass
 from math import nan
 from typing import Literal
 
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = ["LifeDistribution", "LifeFit", "LoadLife", "SnapLevels"]
+from reduction.record import Floats, Integers, read_only_arrays
 
 LifeDistribution = Literal["weibull", "lognormal"]
 
@@ -56,6 +54,7 @@ class LifeFit:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LoadLife:
     """Life against peak load: ln N = ``log_life`` - ``exponent`` ln(S / S_0) + scatter.
 
@@ -94,12 +93,9 @@ class LoadLife:
     n_failed: int
     n_suspended: int
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SnapLevels:
     """What tests with a slack line in each cycle say, by level of peak load, rising.
 
@@ -136,7 +132,3 @@ class SnapLevels:
     n_never_slack: int
     confidence: float
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)

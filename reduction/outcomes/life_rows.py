@@ -23,8 +23,6 @@ from reduction.outcomes.series import load_series
 from reduction.outcomes.strength import EXCLUDED, VALUE, group_statistics
 from reduction.record import Integers
 
-__all__ = ["fatigue_rows", "load_life_rows"]
-
 
 def _levels_of(grouped: Grouped, place: int) -> list[Integers]:
     """Rows of a group by level of peak load, rising; those without a load last."""

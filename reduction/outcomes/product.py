@@ -16,21 +16,7 @@ import numpy as np
 from numpy import int8
 from numpy.typing import ArrayLike, NDArray
 
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = [
-    "IN_THE_TERMINATION",
-    "REASONS",
-    "CensoredMean",
-    "ExposureTrend",
-    "GroupStatistics",
-    "OneWay",
-    "Outcome",
-    "OutcomeQuantity",
-    "Place",
-    "RatioOfMeans",
-    "reason_codes",
-]
+from reduction.record import Floats, Integers, read_only_arrays
 
 OutcomeQuantity = Literal[
     "tensile_strength", "strain_at_failure", "cycles_to_failure", "abrasion_cycles"
@@ -121,6 +107,7 @@ class Outcome:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class GroupStatistics:
     """Mean and deviation of groups, shape (n_groups,); NaN with a reason where there is none.
 
@@ -154,12 +141,9 @@ class GroupStatistics:
     lower_bound_mean: Floats
     reason: NDArray[int8]
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class RatioOfMeans:
     """A mean over a reference mean, and its change; every array has the shape of the input.
 
@@ -177,12 +161,9 @@ class RatioOfMeans:
     confidence: float
     reason: NDArray[int8]
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class OneWay:
     """One-way analysis of groups; every array has the shape of the input without its last axis.
 
@@ -201,10 +182,6 @@ class OneWay:
     welch_p_value: Floats
     significance: float
     reason: NDArray[int8]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)
@@ -225,6 +202,7 @@ class CensoredMean:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ExposureTrend:
     """Strength against exposure as a straight line: ``intercept + slope * exposure``.
 
@@ -259,10 +237,6 @@ class ExposureTrend:
     exposure_low: float
     exposure_high: float
     n: int
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def reason_codes(shape: tuple[int, ...], cases: Sequence[tuple[ArrayLike, int]]) -> NDArray[int8]:

@@ -11,12 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import inf, log1p
 
-from scipy.optimize import brentq
-from scipy.stats import t as student
+import scipy
+from scipy.special import stdtrit
 
 from reduction.errors import DataError
-
-__all__ = ["cutoff", "profile_bounds"]
 
 _MOST_DOUBLINGS = 60
 
@@ -67,7 +65,7 @@ def cutoff(confidence: float, *, n_failed: int, n_coefficients: int) -> float:
     free = n_failed - n_coefficients
     if free < 1:
         return float("nan")
-    quantile = float(student.ppf((1 + confidence) / 2, free))
+    quantile = float(stdtrit(free, (1 + confidence) / 2))
     return n_failed * log1p(quantile**2 / free)
 
 
@@ -123,7 +121,9 @@ def profile_bounds(
         for _ in range(_MOST_DOUBLINGS):
             far = estimate + sign * width
             if excess(far) >= 0:
-                return float(brentq(excess, near, far, xtol=1e-12 * step, rtol=1e-12))
+                return float(
+                    scipy.optimize.brentq(excess, near, far, xtol=1e-12 * step, rtol=1e-12)
+                )
             near, width = far, 2 * width
         return sign * inf
 

@@ -13,8 +13,6 @@ from math import nan
 from reduction.outcomes.columns import OutcomeColumn
 from reduction.outcomes.groups import Group
 
-__all__ = ["Row", "empty_row", "labels_of"]
-
 Row = dict[str, float | int | str]
 
 

@@ -20,8 +20,6 @@ from reduction.outcomes.row import Row, empty_row, labels_of
 from reduction.outcomes.series import exposure_series
 from reduction.outcomes.strength import EXCLUDED, VALUE, censored_mean, group_statistics
 
-__all__ = ["exposure_rows", "strength_rows"]
-
 _OF_LINE = ("line", "material", "construction", "diameter")
 
 

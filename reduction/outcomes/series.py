@@ -19,12 +19,11 @@ from reduction.outcomes.groups import Group, group_outcomes
 from reduction.outcomes.life_product import LifeDistribution, LoadLife
 from reduction.outcomes.product import ExposureTrend, Outcome
 from reduction.outcomes.strength import EXCLUDED, VALUE
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["ExposureSeries", "LoadSeries", "exposure_series", "load_series"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ExposureSeries:
     """Breaks of one line by time in the field.
 
@@ -54,12 +53,9 @@ class ExposureSeries:
     fit: ExposureTrend | None = None
     reason: str = ""
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LoadSeries:
     """Cycle tests of one group by peak load.
 
@@ -89,10 +85,6 @@ class LoadSeries:
     n_unused: int
     fit: LoadLife | None = None
     reason: str = ""
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def exposure_series(outcomes: Iterable[Outcome]) -> tuple[ExposureSeries, ...]:

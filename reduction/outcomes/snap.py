@@ -18,8 +18,6 @@ from reduction.outcomes.fatigue import load_levels
 from reduction.outcomes.life_product import SnapLevels
 from reduction.record import Bools, Floats, Integers
 
-__all__ = ["summarise_snap_loading"]
-
 
 def _threshold(
     load: Floats, failed: Integers, suspended: Integers

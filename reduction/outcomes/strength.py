@@ -19,8 +19,6 @@ from reduction.outcomes.product import CensoredMean, GroupStatistics, reason_cod
 from reduction.outcomes.profile import cutoff, profile_bounds
 from reduction.record import Floats, Integers
 
-__all__ = ["EXCLUDED", "LOWER_BOUND", "VALUE", "censored_mean", "group_statistics"]
-
 VALUE, LOWER_BOUND, EXCLUDED = 0, 1, 2
 """What a value says of the line: itself, that it is at least this, nothing."""
 

@@ -16,8 +16,6 @@ from reduction.samples.blocks import BLOCK, sample_blocks
 from reduction.samples.intervals import over_intervals
 from reduction.samples.scratch import empty_like
 
-__all__ = ["block_extremes", "still_blocks"]
-
 _AWAY = 4.0  # tolerances
 
 

@@ -19,8 +19,6 @@ from reduction.phases.standstill import Standstills, describe_standstills, find_
 from reduction.samples.blocks import mean_of_rows
 from reduction.settings import PhaseSettings
 
-__all__ = ["find_tension_stands"]
-
 
 def find_tension_stands(
     time: ArrayLike, position: ArrayLike, tension: ArrayLike, *, settings: PhaseSettings

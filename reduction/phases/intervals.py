@@ -19,8 +19,6 @@ from reduction.record import Floats, Integers
 from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.samples.intervals import over_intervals
 
-__all__ = ["FEWEST_SAMPLES", "interval_means", "median_step", "still_intervals"]
-
 FEWEST_SAMPLES = 4  # two equal samples may be the two sides of a peak
 _STEPS_READ = 100_001
 

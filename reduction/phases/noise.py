@@ -19,8 +19,6 @@ from reduction.record import Floats
 from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.samples.scratch import empty_like
 
-__all__ = ["estimate_noise", "noise_range"]
-
 _STRETCHES, _STRETCH_SAMPLES = 64, 1024
 _ORDERS = (2, 4, 6)
 _TINY = 1e-12  # a channel that is zero throughout has a range to stay within, too

@@ -18,17 +18,16 @@ from reduction.checks import as_same_shape
 from reduction.errors import DataError
 from reduction.phases.intervals import FEWEST_SAMPLES, interval_means, still_intervals
 from reduction.phases.noise import noise_range
-from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 from reduction.samples.blocks import sample_blocks, take_samples
 from reduction.settings import PhaseSettings
-
-__all__ = ["Standstills", "describe_standstills", "find_standstills"]
 
 _SLACK_SHARE = 0.02
 _STEPS_READ = 100_001
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Standstills:
     """Every interval in which the crosshead stands still, in order of time.
 
@@ -63,10 +62,6 @@ class Standstills:
     position_tolerance: float
     slack_tension: float
     tension_tolerance: float | None = None
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def n_standstills(self) -> int:

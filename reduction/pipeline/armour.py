@@ -31,8 +31,6 @@ from reduction.predict.armourspacing import fill_factor, wire_gap
 from reduction.predict.cablestrength import CableStrength, cable_strength
 from reduction.record import Floats
 
-__all__ = ["PredictedArmour", "predict_armour_case", "wound_at_all_angles"]
-
 _UNBALANCED = 0.1
 _ANGLES = np.radians(np.arange(5.0, 85.5, 0.5))
 

@@ -16,8 +16,6 @@ from reduction.strain.evaluate import extrapolated, strain_by_model
 from reduction.strain.model import StrainModel
 from reduction.workers import run_blocks
 
-__all__ = ["flagged_record", "parts_of_stress", "strain_of_record"]
-
 
 def strain_of_record(
     record: Record, position: Floats, tension: Floats, models: Sequence[StrainModel]

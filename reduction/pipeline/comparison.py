@@ -11,8 +11,6 @@ from reduction.moduli.product import ModulusCurves, Ratio
 from reduction.product import History
 from reduction.record import Specimen
 
-__all__ = ["compare_specimens"]
-
 _SAME_STRAIN = 0.05  # share by which equal greatest strains may differ: one crosshead, two splices
 
 

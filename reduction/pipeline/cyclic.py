@@ -19,12 +19,9 @@ from reduction.moduli.tensionlevel import cycle_tension_level
 from reduction.moduli.trend import fit_peak_trend
 from reduction.pipeline.comparison import compare_specimens
 from reduction.pipeline.locate import Located
-from reduction.pipeline.recall import Recall, plainly
 from reduction.product import History
 from reduction.record import Floats, Specimen, areas_of
 from reduction.settings import ReductionSettings
-
-__all__ = ["parts_of_cycles"]
 
 # cycles at each end of a long test of which the kept curves are compared
 ENDS = 6
@@ -38,7 +35,6 @@ def parts_of_cycles(
     specimens: tuple[Specimen, ...],
     history: History | None,
     settings: ReductionSettings,
-    recall: Recall = plainly,
 ) -> dict[str, Any]:
     """Loops, curves, segments and what follows from them, by field of `ReducedTest`."""
     record, cycles = located.record, located.cycles
@@ -74,8 +70,8 @@ def parts_of_cycles(
             located.position, tension, cycle_number=cycles.cycle_number,
             branch=cycles.branch, n_cycles=cycles.n_cycles,
         )  # fmt: skip
-        parts["slips"] = recall(
-            find_slips, loops, specimens=record.specimens, settings=settings.slip,
+        parts["slips"] = find_slips(
+            loops, specimens=record.specimens, settings=settings.slip,
             tension_level=level, tension_slope=slope,
         )  # fmt: skip
         kept = curves.selected_cycle

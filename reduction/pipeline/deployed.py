@@ -15,10 +15,8 @@ from reduction.lookup.source import PieceSource
 from reduction.lookup.splices import deployed_model
 from reduction.lookup.tethers import SeriesPart, Tether, equal_tethers, unequal_tethers
 from reduction.lookup.working import LoadSharing, WorkingPoint, working_point, worst_sharing
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, read_only_arrays
 from reduction.strain.model import StrainModel
-
-__all__ = ["DeployedAssembly", "DeployedLine", "WorkingLevel", "WorkingState", "deploy"]
 
 _SPAN = 0.05
 """Share of a length to each side over which a secant is taken where no amplitude is stated."""
@@ -37,6 +35,7 @@ class WorkingLevel:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class WorkingState:
     """An assembly at one working level.
 
@@ -59,12 +58,9 @@ class WorkingState:
     is_moved: bool
     sharing: LoadSharing | None
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class DeployedAssembly:
     """An assembly and its work; arrays have the shape (n,) of the nodes of its curve.
 
@@ -93,10 +89,6 @@ class DeployedAssembly:
     free_length: tuple[float, ...]
     working: tuple[WorkingState, ...]
     notes: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)

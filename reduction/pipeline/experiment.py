@@ -41,8 +41,6 @@ from reduction.surface.stiffness_product import FormQuality, StiffnessForm
 from reduction.surface.surfaces import fit_surfaces
 from reduction.surface.transform import Transform
 
-__all__ = ["fit_experiment"]
-
 _PREFIX: dict[str, Transform] = {"log_": "log", "box_cox_": "box-cox"}
 _FROM_SLOW_PULL = {"dissipation_spring_constant", "relaxation_time", "dashpot_coefficient"}
 _SHARED = (

@@ -19,15 +19,6 @@ from reduction.samples.search import first_sample, thinned
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
 
-__all__ = [
-    "Extremes",
-    "Samples",
-    "extremes_of_readings",
-    "extremes_of_test",
-    "greatest_strain",
-    "growth_of_slack_length",
-]
-
 # share of the greatest tension up to which the first rise is kept, to tell where slack ends
 _FIRST_RISE = 0.5
 _MOST_KEPT = 1 << 20  # samples, or up to twice as many

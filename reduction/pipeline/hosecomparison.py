@@ -15,8 +15,6 @@ from reduction.errors import DataError
 from reduction.prediction import HosePlan
 from reduction.record import Floats, Integers
 
-__all__ = ["compare_record", "loading_of"]
-
 _STATIC = ("quasi-static", "tensile")
 _WAY_BACK = 0.5
 """Share of the stroke that a way back has, to be a branch of its own."""

@@ -13,8 +13,6 @@ from reduction.predict.hosedesign import design_angle, design_diameters, design_
 from reduction.predict.product import HoseDesign, HoseEvents
 from reduction.prediction import HosePlan, HoseTarget
 
-__all__ = ["DesignedHose", "design_hoses"]
-
 
 @dataclass(frozen=True)
 class DesignedHose:

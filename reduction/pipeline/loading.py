@@ -13,14 +13,11 @@ from reduction.moduli.first_loading import first_loading_curves
 from reduction.moduli.product import ElastomerFit, ModulusCurves
 from reduction.moduli.stress_at import stress_at_strain
 from reduction.pipeline.locate import Located
-from reduction.pipeline.recall import Recall, plainly
 from reduction.product import History
 from reduction.record import Bools, Floats, Specimen, areas_of
 from reduction.samples.search import first_sample
 from reduction.settings import ReductionSettings
 from reduction.workers import run_blocks
-
-__all__ = ["parts_of_first_loading"]
 
 
 def _elastomers(
@@ -30,7 +27,6 @@ def _elastomers(
     earlier_maximum_strain: float,
     *,
     is_first: bool,
-    recall: Recall,
 ) -> tuple[tuple[ElastomerFit, ...], str]:
     """Hyperelastic laws of one first loading, or the reason why there are none."""
     known = np.isfinite(stress)
@@ -43,7 +39,7 @@ def _elastomers(
             f"({reached}); is the kind of the test right, and where strain is zero?"
         )
     try:
-        fits = recall(fit_elastomers, strain[known], stress[known], specimen=name)
+        fits = fit_elastomers(strain[known], stress[known], specimen=name)
     except (DataError, FitError) as error:
         return (), f"{name}: no hyperelastic law from the first loading: {error}"
     if is_first:
@@ -88,7 +84,6 @@ def parts_of_first_loading(
     history: History | None,
     *,
     kind: str,
-    recall: Recall = plainly,
 ) -> tuple[dict[str, Any], list[str]]:
     """The first rise of a record that begins slack: curve; of rubber, stress and laws too.
 
@@ -152,7 +147,6 @@ def parts_of_first_loading(
             rise[index] / area[index],
             float(earlier[index]),
             is_first=is_first[index],
-            recall=recall,
         )
         for index, name in enumerate(names)
         if rubber[index]

@@ -17,8 +17,6 @@ from reduction.samples.blocks import copied, sample_blocks
 from reduction.samples.scratch import empty_like
 from reduction.settings import ReductionSettings
 
-__all__ = ["HELD", "PULLED", "Located", "locate", "usable"]
-
 CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")
 PULLED = ("quasi-static", "tensile")
 HELD = ("relaxation", "creep")

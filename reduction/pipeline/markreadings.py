@@ -8,8 +8,6 @@ from reduction.pipeline.locate import Located
 from reduction.record import Floats, SpliceMarks
 from reduction.strain.marks import MarkReading, measure_mark_tension
 
-__all__ = ["tension_at_marks"]
-
 
 def tension_at_marks(
     located: Located, marks: Mapping[str, SpliceMarks], specimens: Sequence[str], *, log: str

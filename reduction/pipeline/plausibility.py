@@ -15,8 +15,6 @@ from reduction.record import Floats
 from reduction.samples.blocks import count_samples, finite_extremes
 from reduction.samples.intervals import over_intervals
 
-__all__ = ["plausibility_notes"]
-
 _GREATEST_STRAIN = 10.0  # no rubber is stretched to eleven times its length
 # a sine logged thirteen times a cycle misses 1.5 % of its range, a triangle has 23 % more
 _OFF_THE_SINE = 0.05

@@ -15,8 +15,6 @@ from reduction.predict.uncertainty import propagate_hose
 from reduction.prediction import HelicalLayer, HosePlan, LayerResponse, PredictedHose
 from reduction.record import Bools, Floats
 
-__all__ = ["predict_from_plan"]
-
 _MOST_POINTS = 20_000
 _HIGH_UNCERTAINTY = 0.2
 

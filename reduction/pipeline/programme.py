@@ -25,8 +25,6 @@ from reduction.record import Floats, Integers, Specimen
 from reduction.samples.search import last_sample
 from reduction.settings import RopeSettings
 
-__all__ = ["rope_step"]
-
 _NAMES = {
     "bedding-in": "bedding-in",
     "cyclic": "dynamic stiffness",

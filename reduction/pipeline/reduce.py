@@ -26,7 +26,6 @@ from reduction.pipeline.cyclic import parts_of_cycles
 from reduction.pipeline.loading import parts_of_first_loading
 from reduction.pipeline.locate import PULLED, Located
 from reduction.pipeline.programme import rope_step
-from reduction.pipeline.recall import Recall, plainly
 from reduction.pipeline.rope import PullConditions, parts_of_line, pull_specimens
 from reduction.pipeline.shared.contributions import (
     contributions_of_test,
@@ -53,8 +52,6 @@ from reduction.strain.stress import check_constant_volume
 from reduction.uncertainty.join import merged
 from reduction.uncertainty.product import Contributions, InstrumentErrors
 
-__all__ = ["reduce_stepwise_test", "reduce_test"]
-
 
 def reduce_test(
     located: Located,
@@ -70,7 +67,6 @@ def reduce_test(
     pull_origins: Sequence[PullOrigin | None] = (),
     pull_conditions: PullConditions | None = None,
     instruments: Sequence[InstrumentErrors] = (),
-    recall: Recall = plainly,
 ) -> ReducedTest:
     """Reduce one located test.
 
@@ -100,9 +96,6 @@ def reduce_test(
         What a slow pull cannot tell of itself.
     instruments : sequence of InstrumentErrors, length n_specimens, optional
         What is known of the errors that all samples share; nothing where it is left out.
-    recall : Recall
-        Calls the stages that take longest; one that remembers them makes another reduction of
-        the same log quick.
 
     Returns
     -------
@@ -122,11 +115,9 @@ def reduce_test(
     stated = replace(located, record=with_readings(record, readings))
     of_cycles = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings,
-        recall=recall,
     )  # fmt: skip
     of_first_rise, first_rise_notes = parts_of_first_loading(
         located, strain, tension, specimens, settings, history, kind=description.kind,
-        recall=recall,
     )  # fmt: skip
     of_line = (
         parts_of_line(of_cycles["loops"], pulls, settings.cycles)
@@ -141,8 +132,8 @@ def reduce_test(
         if description.kind in PULLED
         else ((), ())
     )  # fmt: skip
-    holds = recall(
-        reduce_holds, record.time, position, tension, strain, standstills,
+    holds = reduce_holds(
+        record.time, position, tension, strain, standstills,
         specimens=record.specimens, settings=settings.holds,
         kind="relaxation" if standstills.tension_tolerance is None else "creep",
     )  # fmt: skip

@@ -20,8 +20,6 @@ from reduction.record import Floats, Specimen
 from reduction.settings import CycleSettings
 from reduction.strain.model import StrainModel
 
-__all__ = ["PullConditions", "parts_of_line", "pull_specimens"]
-
 
 @dataclass(frozen=True)
 class PullConditions:

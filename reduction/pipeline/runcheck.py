@@ -18,16 +18,6 @@ from reduction.surface.product import ResponseSurfaces
 from reduction.surface.reached import ON_PLAN, levels_off_plan
 from reduction.surface.runsheet import RunSheet
 
-__all__ = [
-    "cautions_of_runs",
-    "listed",
-    "missing_surfaces",
-    "places_in_order",
-    "remarks_of_runs",
-    "require_screening_levels",
-    "surface_levels_off_plan",
-]
-
 _OFF_SCREENING = 0.1
 _WRONG_HALF = 0.5
 """Coded distance from which a level of a screening is no more that of its column."""

@@ -20,15 +20,6 @@ from reduction.surface.stiffness_forms import compare_stiffness_forms
 from reduction.surface.stiffness_product import FormQuality, StiffnessForm
 from reduction.surface.surfaces import fit_surfaces
 
-__all__ = [
-    "REFUSALS",
-    "LineOfRuns",
-    "derived_line",
-    "single_time_of_runs",
-    "specimen_blocks",
-    "stiffness_of_runs",
-]
-
 REFUSALS = (DataError, FitError, SettingsError)
 """What makes a part of an experiment a note in place of a result."""
 

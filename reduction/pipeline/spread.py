@@ -25,8 +25,6 @@ from reduction.uncertainty.points import with_diameter
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 from reduction.vocabulary import PHASE_VALUES
 
-__all__ = ["channel_contributions", "reading_spread", "readings_of", "with_readings"]
-
 _SAMPLES = 4096  # spread over the record: the uncertainty changes slowly with strain
 
 

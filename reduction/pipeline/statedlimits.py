@@ -18,8 +18,6 @@ from reduction.record import Floats
 from reduction.samples.blocks import finite_extremes, take_samples
 from reduction.uncertainty.product import InstrumentErrors
 
-__all__ = ["check_stated_errors"]
-
 _TIMES = 10.0  # the greatest reading of a log
 _RECORD = 0.25  # of a record without cycles, for a lag
 _LINEAR = 0.05  # of a cycle: a loop that is turned by more has lost 5 % of its stiffness

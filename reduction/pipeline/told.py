@@ -15,8 +15,6 @@ from reduction.settings import ReductionSettings
 from reduction.strain.model import StrainModel
 from reduction.strain.stress import check_constant_volume
 
-__all__ = ["notes_of_test", "stage_lines"]
-
 
 def notes_of_test(
     located: Located,

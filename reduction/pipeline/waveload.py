@@ -20,8 +20,6 @@ from reduction.predict.theorytable import WaveTheoryName
 from reduction.predict.wavetheory import WaveTheory, describe_wave, regular_wave
 from reduction.record import Floats
 
-__all__ = ["PredictedWaveLoad", "predict_wave_load"]
-
 _LINEAR = 0.6
 """Share of the breaking height above which the neglected terms are no small ones."""
 

@@ -20,8 +20,6 @@ from reduction.predict.armourdesign import ArmourDesign, ArmourResponse, ArmourT
 from reduction.predict.armourexact import predict_conjugate, predict_exact
 from reduction.record import Floats
 
-__all__ = ["predict_armour"]
-
 _PREDICT: dict[ArmourTheory, Callable[[ArmourDesign, Floats], ArmourResponse]] = {
     "small": predict_small,
     "intermediate": predict_intermediate,

@@ -18,8 +18,6 @@ import numpy as np
 from reduction.predict.armourdesign import ArmourDesign, ArmourResponse, Deformed, Wire, respond
 from reduction.record import Floats
 
-__all__ = ["predict_intermediate", "predict_large", "predict_small"]
-
 
 def predict_intermediate(design: ArmourDesign, strain: Floats) -> ArmourResponse:
     r"""Response of a wire to the first order in the strain.

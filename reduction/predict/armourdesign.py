@@ -20,9 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.errors import SettingsError
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["ARMOUR_THEORIES", "ArmourDesign", "ArmourResponse", "ArmourTheory"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 ArmourTheory = Literal["small", "intermediate", "large", "exact", "conjugate"]
 
@@ -37,6 +35,7 @@ ARMOUR_THEORIES: tuple[ArmourTheory, ...] = (
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ArmourDesign:
     """Round wires in a helix on a rigid core, one layer or many designs at once.
 
@@ -67,7 +66,6 @@ class ArmourDesign:
 
     def __post_init__(self) -> None:
         """Check ranges, and make the arrays read-only."""
-        freeze_arrays(self)
         angle = np.asarray(self.winding_angle, dtype=np.float64)
         _need("winding_angle", angle, (angle > 0) & (angle < pi / 2), "between 0 and 90 deg")
         for name in ("wire_radius", "core_radius", "elastic_modulus"):
@@ -119,6 +117,7 @@ def _need(name: str, value: Floats, is_good: Bools, needed: str) -> None:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ArmourResponse:
     """Response of one wire at each strain of the cable.  Arrays have the shape (..., n_strain).
 
@@ -169,10 +168,6 @@ class ArmourResponse:
     torque: Floats
     contact_line_load: Floats
     is_lifted: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)

@@ -19,16 +19,7 @@ from reduction.checks import as_increasing
 from reduction.errors import SettingsError
 from reduction.predict.armour import predict_armour
 from reduction.predict.armourdesign import ArmourDesign, ArmourResponse, ArmourTheory
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = [
-    "ARMOUR_QUANTITIES",
-    "AnglesOfUse",
-    "TheoryErrors",
-    "angles_of_use",
-    "theory_errors",
-    "thinning_loss",
-]
+from reduction.record import Bools, Floats, read_only_arrays
 
 ARMOUR_QUANTITIES = ("axial_force", "shear_force", "bending_moment", "torsion_moment")
 """The stresses go with the axial force and the moments, and have their errors."""
@@ -39,6 +30,7 @@ _SIMPLER: tuple[ArmourTheory, ...] = ("small", "intermediate", "large")
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class TheoryErrors:
     """Error of each theory.
 
@@ -59,10 +51,6 @@ class TheoryErrors:
     quantity: tuple[str, ...]
     reference: Reference
     error: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def theory_errors(
@@ -127,6 +115,7 @@ def _table(response: ArmourResponse) -> Floats:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class AnglesOfUse:
     """Where each theory holds.
 
@@ -151,10 +140,6 @@ class AnglesOfUse:
     least_angle: Floats
     greatest_angle: Floats
     statement: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def angles_of_use(

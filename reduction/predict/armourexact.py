@@ -50,8 +50,6 @@ from reduction.predict.armourdesign import ArmourDesign, ArmourResponse, Deforme
 from reduction.predict.cord import cord_stretch_ratio
 from reduction.record import Floats
 
-__all__ = ["predict_conjugate", "predict_exact"]
-
 
 def _deform(wire: Wire, strain: Floats, *, torsion_per_rest_length: bool) -> Deformed:
     """Deform the helix; every difference is a product, so that small strains lose no digits."""

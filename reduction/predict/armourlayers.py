@@ -27,9 +27,7 @@ from reduction.predict.armourdesign import ArmourDesign, ArmourResponse, ArmourT
 from reduction.predict.armourspacing import wire_gap
 from reduction.predict.armourstiffness import layer_stiffness
 from reduction.predict.armouryield import wire_stress
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["ArmourLayers", "Lay", "LayersResponse", "cable_stiffness", "predict_layers"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 Lay = Literal["right", "left"]
 
@@ -37,6 +35,7 @@ _TOUCH = 1e-9  # of a wire radius: layers and wires that just touch have roundin
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ArmourLayers:
     """Layers of one cable, the innermost first.
 
@@ -56,7 +55,6 @@ class ArmourLayers:
 
     def __post_init__(self) -> None:
         """Check that the layers pair up, that each has room, and that its wires have."""
-        freeze_arrays(self)
         count = len(self.lay)
         for name, shape in (
             ("the armour", self.design.shape),
@@ -117,6 +115,7 @@ def _first(bad: Bools) -> int:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LayersResponse:
     """Response of the cable at each strain; a layer has the shape (n_layers, n_strain).
 
@@ -151,10 +150,6 @@ class LayersResponse:
     core_pressure: Floats
     wire_stress: Floats
     is_yielding: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def predict_layers(

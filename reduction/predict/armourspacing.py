@@ -16,8 +16,6 @@ import numpy as np
 from reduction.predict.armourdesign import ArmourDesign
 from reduction.record import Floats
 
-__all__ = ["fill_factor", "wire_gap"]
-
 _STEPS = 40  # each doubles the digits once it is near; the slowest start needs about ten
 
 

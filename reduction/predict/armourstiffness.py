@@ -22,12 +22,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from reduction.predict.armourdesign import ArmourDesign
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["LayerStiffness", "layer_stiffness"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LayerStiffness:
     """Stiffness of layers at rest; arrays have the shape (...) of the designs.
 
@@ -47,10 +46,6 @@ class LayerStiffness:
     tension_per_strain: Floats
     torque_per_strain: Floats
     torque_per_twist: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def free_tension_per_strain(self) -> Floats:

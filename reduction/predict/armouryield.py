@@ -20,8 +20,6 @@ from reduction.predict.armourexact import predict_conjugate, predict_exact
 from reduction.predict.cord import hose_stretch_ratio
 from reduction.record import Floats
 
-__all__ = ["YieldCriterion", "layer_strength", "wire_stress", "yield_strain"]
-
 YieldCriterion = Literal["axial", "normal", "von-mises"]
 
 _STEPS = 100

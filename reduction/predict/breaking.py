@@ -24,8 +24,6 @@ from reduction.checks import as_positive
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["GREATEST_HEIGHT_TO_DEPTH", "GREATEST_STEEPNESS", "breaking_height", "refuse_breaking"]
-
 GREATEST_STEEPNESS = 0.142
 """Height over length of the steepest wave on deep water (Miche). [1]"""
 GREATEST_HEIGHT_TO_DEPTH = 0.78

@@ -16,12 +16,11 @@ import numpy as np
 from reduction.errors import SettingsError
 from reduction.predict.armourlayers import ArmourLayers, predict_layers
 from reduction.predict.armouryield import YieldCriterion, layer_strength, yield_strain
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["CableStrength", "cable_strength"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CableStrength:
     """First yield of a cable.
 
@@ -44,10 +43,6 @@ class CableStrength:
     governing_layer: int
     strain: float
     tension: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def cable_strength(

@@ -26,20 +26,7 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_finite, as_positive
 from reduction.predict.harmonics import WaveHarmonics
 from reduction.predict.phaseseries import cosine_series, phase_derivative, root_phases, sum_at
-from reduction.record import Floats, freeze_arrays
-
-__all__ = [
-    "CODE_OF_HYDROLOGY",
-    "GREATEST_DIAMETER_TO_LENGTH",
-    "PUBLISHED_COEFFICIENTS",
-    "SEAWATER_VISCOSITY",
-    "FlowRegime",
-    "PublishedCoefficients",
-    "drag_to_inertia",
-    "flow_regime",
-    "keulegan_carpenter_number",
-    "reynolds_number",
-]
+from reduction.record import Floats, read_only_arrays
 
 SEAWATER_VISCOSITY = 1.1892e-6
 """Kinematic, of standard seawater at 15 deg C ([3]_). [m2 s-1]"""
@@ -101,6 +88,7 @@ CODE_OF_HYDROLOGY = PublishedCoefficients(
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class FlowRegime:
     """Where a hose in a wave stands; arrays have the shape (...) of the diameters.
 
@@ -124,10 +112,6 @@ class FlowRegime:
     frequency_parameter: Floats
     drag_to_inertia: Floats
     diameter_to_length: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def keulegan_carpenter_number(

@@ -26,13 +26,6 @@ from reduction.checks import as_positive
 from reduction.predict.helix import Core, check_core, squared_radius_ratio, squares_of_angle
 from reduction.record import Floats
 
-__all__ = [
-    "cord_stretch_ratio",
-    "hose_stretch_ratio",
-    "pick_up_stretch_ratio",
-    "slackest_stretch_ratio",
-]
-
 
 def cord_stretch_ratio(
     stretch_ratio: ArrayLike, wrap_angle: ArrayLike, *, core: Core = "isochoric"

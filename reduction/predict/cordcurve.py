@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from reduction.errors import SettingsError
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["CordCurve"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CordCurve:
     """Measured points of a cord, the last one its break.
 
@@ -29,7 +28,6 @@ class CordCurve:
 
     def __post_init__(self) -> None:
         """Check that the curve begins at zero and rises, and make the arrays read-only."""
-        freeze_arrays(self)
         if self.strain.ndim != 1 or self.strain.shape != self.load.shape or self.strain.size < 2:
             raise SettingsError(
                 "the points of the cord curve do not pair up",

@@ -24,8 +24,6 @@ from reduction.predict.cordcurve import CordCurve
 from reduction.predict.cordpieces import CordPieces, evaluate_into, piece_of, pieces_of
 from reduction.record import Floats
 
-__all__ = ["cord_energy", "cord_load", "cord_stiffness", "cord_strain_at"]
-
 MOST_STEPS = 100
 """Of the inverse of a cord curve; some six are usual, and halving alone needs fifty-three."""
 

@@ -15,13 +15,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from reduction.predict.cordcurve import CordCurve
 from reduction.record import Floats
-
-__all__ = ["CordPieces", "evaluate_into", "piece_of", "pieces_of"]
 
 FEW_KNOTS = 32
 """Up to here a comparison with every knot is quicker than a search."""
@@ -76,7 +74,7 @@ def pieces_of(curve: CordCurve, *, order: Literal[0, 1, -1] = 0) -> CordPieces:
     >>> print(line.coefficient[-2])
     [ 0. 650. nan]
     """
-    cubic = PchipInterpolator(curve.strain, curve.load)
+    cubic = scipy.interpolate.PchipInterpolator(curve.strain, curve.load)
     match order:
         case 1:
             coefficient = cubic.derivative().c

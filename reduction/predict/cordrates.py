@@ -17,8 +17,6 @@ from numpy.typing import ArrayLike
 from reduction.predict.cord import hose_stretch_ratio
 from reduction.record import Floats
 
-__all__ = ["stretch_ratio_per_angle", "stretch_ratio_per_cord_stretch"]
-
 
 def stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
     r"""How the stretch of a water-filled hose at a given stretch of its cords goes with the angle.

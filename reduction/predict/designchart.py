@@ -18,12 +18,11 @@ from reduction.checks import as_finite
 from reduction.errors import DataError
 from reduction.predict.cord import cord_stretch_ratio, pick_up_stretch_ratio, slackest_stretch_ratio
 from reduction.predict.helix import NEUTRAL_ANGLE
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["CordStrainChart", "cord_strain_chart"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class CordStrainChart:
     """Cord strain over hose strain for a family of wrap angles.
 
@@ -52,10 +51,6 @@ class CordStrainChart:
     slackest_cord_strain: Floats
     pick_up_strain: Floats
     neutral_angle: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def cord_strain_chart(

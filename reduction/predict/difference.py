@@ -16,12 +16,11 @@ import numpy as np
 from reduction.errors import SettingsError
 from reduction.predict.extremes import LoadExtremes
 from reduction.predict.morison import WaveLoad
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["LoadDifference", "load_difference"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LoadDifference:
     """Classic less improved load over the classic one.
 
@@ -44,10 +43,6 @@ class LoadDifference:
     vertical_of_maximum: Floats
     vertical_of_minimum: Floats
     minimum_share: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def load_difference(

@@ -28,13 +28,6 @@ from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError, FitError
 from reduction.record import Floats
 
-__all__ = [
-    "STANDARD_GRAVITY",
-    "group_velocity",
-    "wave_number",
-    "wave_period_of",
-]
-
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of free fall. [m s-2]"""
 

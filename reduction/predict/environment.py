@@ -25,15 +25,14 @@ from reduction.predict.extremes import LoadRange, find_extremes
 from reduction.predict.harmonics import WaveHarmonics
 from reduction.predict.immersion import ImmersedSection
 from reduction.predict.morison import SEAWATER_DENSITY, load_factors
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["AIR_DENSITY", "AnchorForce", "anchor_force", "current_load", "wind_load"]
+from reduction.record import Floats, read_only_arrays
 
 AIR_DENSITY = 1.225
 """At sea level, 15 deg C ([2]_). [kg m-3]"""
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class AnchorForce:
     """Horizontal force on a length of hose; arrays have the shape (...), positive along the wave.
 
@@ -57,10 +56,6 @@ class AnchorForce:
     separate: Floats
     combined: Floats
     difference: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def wind_load(

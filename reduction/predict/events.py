@@ -27,8 +27,6 @@ from reduction.predict.product import HoseDesign, HoseEvent, HoseEvents
 from reduction.predict.rubber import rubber_tension
 from reduction.record import Floats
 
-__all__ = ["find_events"]
-
 
 def find_events(design: HoseDesign) -> HoseEvents:
     """Where cords are shortest, pick up, reach their working load, and break.

@@ -37,17 +37,11 @@ from reduction.predict.phaseseries import (
     sine_series,
     sum_at,
 )
-from reduction.record import Floats, freeze_arrays
-
-__all__ = [
-    "LoadExtremes",
-    "LoadRange",
-    "find_extremes",
-    "load_range",
-]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LoadRange:
     """Greatest and least value over a period; arrays have the shape (...).
 
@@ -58,10 +52,6 @@ class LoadRange:
     minimum: Floats
     time_of_maximum: Floats
     time_of_minimum: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def greatest(self) -> Floats:

@@ -26,11 +26,6 @@ from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = [
-    "number_of_cords",
-    "ribbon_width",
-]
-
 
 def ribbon_width(wrap_diameter: ArrayLike, wrap_angle: ArrayLike) -> Floats:
     r"""Width to which the ribbon of one layer is cut.

@@ -12,12 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reduction.errors import DataError
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["WaveHarmonics"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class WaveHarmonics:
     """Amplitudes of the first harmonic and those above it.
 
@@ -50,7 +49,6 @@ class WaveHarmonics:
 
     def __post_init__(self) -> None:
         """Check that every quantity has the same harmonics, and make the arrays read-only."""
-        freeze_arrays(self)
         shapes = {
             name: getattr(self, name).shape
             for name in (

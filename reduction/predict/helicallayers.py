@@ -29,12 +29,11 @@ from reduction.checks import as_finite
 from reduction.errors import DataError
 from reduction.predict.cord import cord_stretch_ratio, slackest_stretch_ratio
 from reduction.predict.wrapangle import wrap_angle_for
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["LayerRange", "greatest_layer_angle", "layer_range", "least_layer_angle"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LayerRange:
     """Strain of a helical layer while the hose goes from rest to a strain.
 
@@ -59,10 +58,6 @@ class LayerRange:
     final_strain: Floats
     is_compressed: Bools
     is_over_limit: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def layer_range(

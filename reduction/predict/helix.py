@@ -20,8 +20,6 @@ from numpy.typing import ArrayLike
 from reduction.errors import SettingsError
 from reduction.record import Floats
 
-__all__ = ["NEUTRAL_ANGLE", "Core", "check_core", "squared_radius_ratio", "squares_of_angle"]
-
 Core = Literal["isochoric", "rigid"]
 
 NEUTRAL_ANGLE = atan(sqrt(2.0))

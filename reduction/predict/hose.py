@@ -45,8 +45,6 @@ from reduction.predict.rubber import rubber_energy, tension_into
 from reduction.record import Floats
 from reduction.workers import run_blocks
 
-__all__ = ["hose_energy", "predict_hose"]
-
 BLOCK = 131_072
 """Values a block: few enough for a cache, so many that threads seldom wait for the interpreter."""
 

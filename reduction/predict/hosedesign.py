@@ -45,8 +45,6 @@ from reduction.predict.rubber import rubber_tension
 from reduction.predict.wrapangle import wrap_angle_for
 from reduction.record import Bools, Floats
 
-__all__ = ["design_angle", "design_diameters", "design_fabric"]
-
 
 def design_angle(like: HoseDesign, *, strain: ArrayLike) -> HoseDesign:
     """Wrap angle that gives a wanted stretch at the working load.

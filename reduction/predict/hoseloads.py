@@ -19,8 +19,6 @@ import numpy as np
 from reduction.predict.product import HoseDesign
 from reduction.record import Floats
 
-__all__ = ["HoseLoads", "HoseNumbers", "loads_at", "numbers_of"]
-
 
 @dataclass(frozen=True)
 class HoseNumbers:

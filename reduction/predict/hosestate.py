@@ -31,8 +31,6 @@ from reduction.predict.helix import NEUTRAL_ANGLE
 from reduction.predict.product import HoseDesign
 from reduction.record import Floats
 
-__all__ = ["HoseState", "Rates"]
-
 Rates = Mapping[str, Floats]
 
 

@@ -24,9 +24,7 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError, FitError
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["ImmersedSection", "immerse_hose", "immersion_depth_of"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 _STEP = 1e-14  # last Newton step over the root, at most
 _MOST_STEPS = 50
@@ -34,6 +32,7 @@ _SERIES_TERMS = 10  # of beta - sin beta up to beta = 1: the last is below 1e-21
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ImmersedSection:
     """Cross section of a floating hose, still water.  Arrays have the shape (...) of the hoses.
 
@@ -50,10 +49,6 @@ class ImmersedSection:
     outer_diameter: Floats
     submerged_section_area: Floats
     immersion_depth: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def section_area(self) -> Floats:

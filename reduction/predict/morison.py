@@ -28,16 +28,7 @@ from reduction.predict.coefficients import CODE_OF_HYDROLOGY
 from reduction.predict.harmonics import WaveHarmonics
 from reduction.predict.immersion import ImmersedSection
 from reduction.predict.motion import particle_motion
-from reduction.record import Floats, freeze_arrays
-
-__all__ = [
-    "SEAWATER_DENSITY",
-    "LoadFactors",
-    "VerticalWidth",
-    "WaveLoad",
-    "load_factors",
-    "wave_load",
-]
+from reduction.record import Floats, read_only_arrays
 
 VerticalWidth = Literal["submerged", "immersion depth"]
 
@@ -46,6 +37,7 @@ SEAWATER_DENSITY = 1025.0
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LoadFactors:
     """What u|u| and the acceleration are multiplied with; arrays have the shape (...).
 
@@ -59,12 +51,9 @@ class LoadFactors:
     classic_drag: Floats
     classic_inertia: Floats
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class WaveLoad:
     """Load per length of hose over time; loads have the shape (..., n_times).
 
@@ -90,10 +79,6 @@ class WaveLoad:
     horizontal_drag: Floats
     vertical_drag: Floats
     section: ImmersedSection
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def load_factors(

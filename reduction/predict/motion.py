@@ -15,12 +15,11 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite
 from reduction.predict.harmonics import WaveHarmonics
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["ParticleMotion", "particle_motion"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ParticleMotion:
     """Surface and water at one place over time; arrays have the shape (n_times,).
 
@@ -33,10 +32,6 @@ class ParticleMotion:
     vertical_velocity: Floats
     horizontal_acceleration: Floats
     vertical_acceleration: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def particle_motion(wave: WaveHarmonics, time: ArrayLike, position: float = 0.0) -> ParticleMotion:

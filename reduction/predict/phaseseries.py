@@ -22,16 +22,6 @@ from numpy.typing import NDArray
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = [
-    "Coefficients",
-    "cosine_series",
-    "phase_derivative",
-    "root_phases",
-    "series_product",
-    "sine_series",
-    "sum_at",
-]
-
 Coefficients = NDArray[np.complex128]
 
 _ZERO = 1e-14  # outermost coefficients below this share of the largest are rounding

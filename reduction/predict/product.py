@@ -16,16 +16,7 @@ import numpy as np
 
 from reduction.errors import SettingsError
 from reduction.predict.cordcurve import CordCurve
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = [
-    "HOSE_PARAMETERS",
-    "HoseDesign",
-    "HoseEvent",
-    "HoseEvents",
-    "HosePrediction",
-    "RubberLaw",
-]
+from reduction.record import Bools, Floats, read_only_arrays
 
 RubberLaw = Literal["neo-hookean", "linear", "linear-current", "hencky"]
 
@@ -44,6 +35,7 @@ HOSE_PARAMETERS = (
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class HoseDesign:
     """One hose, or many that share a cord curve and a rubber law.
 
@@ -94,7 +86,6 @@ class HoseDesign:
 
     def __post_init__(self) -> None:
         """Check ranges and the order of the diameters, and make the arrays read-only."""
-        freeze_arrays(self)
         inner, outer = (np.asarray(one, dtype=np.float64) for one in self.layer_diameter)
         bore = np.asarray(self.inner_diameter, dtype=np.float64)
         skin = np.asarray(self.outer_diameter, dtype=np.float64)
@@ -152,6 +143,7 @@ def _need(name: str, value: Floats, is_good: Bools, needed: str) -> None:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class HosePrediction:
     """Response of the hose at each strain.  Arrays have the shape (..., n_strain).
 
@@ -202,12 +194,9 @@ class HosePrediction:
     is_jammed: Bools
     is_bore_too_small: Bools
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class HoseEvent:
     """Where something happens to the cords.  Arrays have the shape (...) of the designs."""
 
@@ -216,10 +205,6 @@ class HoseEvent:
     fill_pressure: Floats
     cord_tension: Floats
     cord_strain: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)

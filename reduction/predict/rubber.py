@@ -37,8 +37,6 @@ from reduction.errors import SettingsError
 from reduction.predict.product import RubberLaw
 from reduction.record import Floats
 
-__all__ = ["rubber_energy", "rubber_stiffness", "rubber_tension", "tension_into"]
-
 
 def rubber_tension(
     stretch_ratio: ArrayLike, *, area: ArrayLike, modulus: ArrayLike, law: RubberLaw

@@ -43,12 +43,11 @@ from reduction.predict.hosestate import (
 )
 from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
 from reduction.predict.rubber import rubber_stiffness, rubber_tension
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["EventSensitivity", "HoseSensitivity", "hose_sensitivity"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class EventSensitivity:
     """Derivatives where something happens to the cords, shape (n_parameters, ...).
 
@@ -62,12 +61,9 @@ class EventSensitivity:
     fill_pressure: Floats
     stiffness: Floats
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class HoseSensitivity:
     """Derivatives of a prediction.
 
@@ -93,10 +89,6 @@ class HoseSensitivity:
     pick_up: EventSensitivity
     working: EventSensitivity
     cord_break: EventSensitivity
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> HoseSensitivity:

@@ -13,8 +13,6 @@ from typing import Literal
 
 from reduction.checks import as_positive
 
-__all__ = ["PrintedTheory", "WaveTheoryName", "printed_theory", "theory_by_depth"]
-
 WaveTheoryName = Literal["airy", "stokes", "cnoidal or solitary", "beyond the table"]
 PrintedTheory = Literal["airy", "stokes", "cnoidal or solitary", "none"]
 

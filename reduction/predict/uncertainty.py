@@ -28,15 +28,14 @@ from reduction.predict.events import find_events
 from reduction.predict.hose import predict_hose
 from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
 from reduction.predict.sensitivity import EventSensitivity, hose_sensitivity
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["EventUncertainty", "HoseUncertainty", "propagate_hose"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 WIDTH = 2.0
 """Standard uncertainties on either side of a kink within which a line through it is not trusted."""
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class EventUncertainty:
     """Where something happens to the cords: contributions (n_source, ...) and their sum (...)."""
 
@@ -47,12 +46,9 @@ class EventUncertainty:
     tension_standard_uncertainty: Floats
     fill_pressure_standard_uncertainty: Floats
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class HoseUncertainty:
     """What each uncertain number of a design does to its prediction.
 
@@ -93,10 +89,6 @@ class HoseUncertainty:
     cord_break: EventUncertainty
     strain_at_working_load_contribution: Floats
     strain_at_working_load_standard_uncertainty: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def propagate_hose(

@@ -17,12 +17,11 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_positive
 from reduction.predict.dispersion import STANDARD_GRAVITY, wave_number, wave_period_of
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["WaveLengthCheck", "check_wave_length"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class WaveLengthCheck:
     """A length and a period that were given together, against the dispersion relation.
 
@@ -42,10 +41,6 @@ class WaveLengthCheck:
     length_of_period: Floats
     period_mismatch: Floats
     length_mismatch: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def check_wave_length(

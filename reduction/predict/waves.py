@@ -39,8 +39,6 @@ from reduction.predict.breaking import refuse_breaking
 from reduction.predict.dispersion import STANDARD_GRAVITY
 from reduction.predict.harmonics import WaveHarmonics
 
-__all__ = ["airy_wave", "stokes_wave"]
-
 
 def airy_wave(
     *,

@@ -34,13 +34,6 @@ from reduction.predict.theorytable import (
 from reduction.predict.wavelength import check_wave_length
 from reduction.predict.waves import airy_wave, stokes_wave
 
-__all__ = [
-    "GREATEST_URSELL_NUMBER",
-    "WaveTheory",
-    "describe_wave",
-    "regular_wave",
-]
-
 GREATEST_URSELL_NUMBER = 8 * pi**2 / 3
 """Where Stokes' second order has a secondary crest over shallow water. [1]"""
 _SECONDARY_CREST = 0.25

@@ -20,8 +20,6 @@ from reduction.checks import as_positive
 from reduction.predict.helix import Core, squared_radius_ratio, squares_of_angle
 from reduction.record import Floats
 
-__all__ = ["current_wrap_angle", "wrap_angle_for"]
-
 
 def current_wrap_angle(
     stretch_ratio: ArrayLike, wrap_angle: ArrayLike, *, core: Core = "isochoric"

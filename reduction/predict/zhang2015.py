@@ -21,16 +21,6 @@ from reduction.errors import SettingsError
 from reduction.predict.harmonics import WaveHarmonics
 from reduction.predict.immersion import ImmersedSection
 
-__all__ = [
-    "DRAG_COEFFICIENT",
-    "INERTIA_COEFFICIENT",
-    "WATER_DENSITY",
-    "PrintedLoad",
-    "printed_airy_wave",
-    "printed_section",
-    "printed_stokes_wave",
-]
-
 PrintedLoad = Literal["classic", "improved"]
 
 DRAG_COEFFICIENT = 1.2

@@ -6,8 +6,6 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["Cell", "Confidence", "Erratum", "ReportId", "number_of", "printed_step"]
-
 ReportId = Literal["WHOI-2004-06", "Zhang-2015", "WHOI-2005-10", "CG-D-39-80", "Wang-2022"]
 Confidence = Literal["", "certain", "high", "open"]
 """Of a correction; open: the page is wrong or doubtful, and nothing says what is right."""

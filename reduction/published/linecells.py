@@ -9,12 +9,6 @@ import numpy as np
 from reduction.published.cell import Cell, number_of
 from reduction.units import scale_to_si
 
-__all__ = [
-    "ABSENT", "BREAK", "CRITICAL_F", "EXPOSED", "INCH", "NOT_MEASURED", "OF_SURFACE", "POUND",
-    "RESPONSES", "REST", "SCALE_OF_CUBIC", "STRAIN", "LineCells", "errata_of_cells", "in_order",
-    "number_printed", "number_used",
-]  # fmt: skip
-
 POUND, INCH = scale_to_si("lbf", "force")[0], scale_to_si("in", "length")[0]
 # tables of a response, the one of new lines first, and the SI value of its printed unit
 RESPONSES = {

@@ -29,8 +29,6 @@ from reduction.published.lineproduct import PublishedCubic, PublishedLine
 from reduction.published.lines import published_lines
 from reduction.record import Bools, Floats
 
-__all__ = ["OF_CUBIC", "curves_of_line"]
-
 OF_CUBIC = {"quasi_static_strain": "strain"}
 """Names of cubics that are looked up by another one."""
 _REST = "quasi_static_spring_constant"

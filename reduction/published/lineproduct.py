@@ -11,17 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from reduction.record import Floats, freeze_arrays
-
-__all__ = [
-    "LevelBox",
-    "OpenTerm",
-    "PublishedCubic",
-    "PublishedLine",
-    "PublishedStrength",
-    "PublishedSurface",
-    "StatedStrength",
-]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
@@ -62,6 +52,7 @@ class LevelBox:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class PublishedSurface:
     """Response surface of a line: eq. 5 of [1]_ in coded factors.
 
@@ -96,12 +87,9 @@ class PublishedSurface:
     tables: tuple[str, ...]
     errata: tuple[str, ...]
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class PublishedCubic:
     """Cubic of tension: K_0, or strain.
 
@@ -132,10 +120,6 @@ class PublishedCubic:
     tables: tuple[str, ...]
     errata: tuple[str, ...]
     note: str
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 @dataclass(frozen=True)

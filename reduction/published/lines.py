@@ -49,8 +49,6 @@ from reduction.published.lineproduct import (
 )
 from reduction.published.read import cells_of
 
-__all__ = ["published_lines"]
-
 
 def _terms(
     cells: LineCells, tables: Sequence[str], row: str, quantity: str, names: Sequence[str],

@@ -38,8 +38,6 @@ from reduction.surface.designs import box_behnken
 from reduction.surface.terms import model_matrix, quadratic_exponents
 from reduction.surface.variance import covariance_factor, variance_factor
 
-__all__ = ["published_sources"]
-
 _FACTORS = ("frequency", "mean_tension", "tension_amplitude")
 _FREEDOM = 5.0
 _FIRST = "ten cycles"

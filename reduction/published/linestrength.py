@@ -16,11 +16,6 @@ from reduction.published.lines import published_lines
 from reduction.published.read import table_of
 from reduction.units import scale_to_si
 
-__all__ = [
-    "is_documentation", "levels_told", "line_scatter", "own_strength", "scatter_told",
-    "strength_of", "strengths_told",
-]  # fmt: skip
-
 _LARGEST_OF_ITS_OWN = 0.026
 """Lines above an inch were loaded in shares of the strength of the one of an inch. [m]"""
 _SAME_STRENGTH = 1.0

@@ -22,8 +22,6 @@ from reduction.published.tethers import published_tethers
 from reduction.strain.pool import PooledMarks, fit_to_marks
 from reduction.units import scale_to_si
 
-__all__ = ["published_piece_sources"]
-
 _TO_THE_POUND = scale_to_si("lbf", "force")[0] / np.sqrt(12)
 """Standard uncertainty of a load that is printed to the pound. [N]"""
 

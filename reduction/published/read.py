@@ -10,8 +10,6 @@ from typing import cast, get_args
 from reduction.errors import DataError
 from reduction.published.cell import Cell, Confidence, Erratum, ReportId
 
-__all__ = ["REPORTS", "cells_of", "errata_of", "table_of"]
-
 REPORTS: tuple[ReportId, ...] = get_args(ReportId)
 _HEADER = [
     "table", "row", "column", "printed", "unit", "corrected", "erratum", "confidence", "page",

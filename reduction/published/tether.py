@@ -17,15 +17,6 @@ from reduction.errors import DataError
 from reduction.record import Specimen, SpliceMarks
 from reduction.settings import StrainMethod
 
-__all__ = [
-    "PublishedTether",
-    "SegmentName",
-    "TetherName",
-    "TetherSegment",
-    "TetherTest",
-    "name_of_segment",
-]
-
 TetherName = Literal["new", "used"]
 SegmentData = Literal["raw", "consolidated"]
 _SEGMENT = re.compile(

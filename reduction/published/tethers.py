@@ -25,8 +25,6 @@ from reduction.published.tether import (
 from reduction.record import Specimen, SpliceMarks, StepReadings
 from reduction.units import scale_to_si
 
-__all__ = ["TETHER_REPORT", "published_static_test", "published_tethers"]
-
 TETHER_REPORT: ReportId = "WHOI-2005-10"
 _METHOD_ERRATUM = "WH5-34"
 _INCH, _FOOT = (scale_to_si(unit, "length")[0] for unit in ("inch", "ft"))

@@ -16,8 +16,6 @@ from reduction.report.uncertainty import DRAWN, drawn_interval, factor_words
 from reduction.report.view import TestView
 from reduction.uncertainty.budget import Budget
 
-__all__ = ["AnswerBudget", "answer_budgets", "budget_sentences", "budget_table"]
-
 _ANSWERS: tuple[tuple[str, str, Kind], ...] = (
     ("segment_modulus", "", "stress"),
     ("test_apparent_spring_constant", "K_ap", "tension"),

@@ -2,24 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from reduction.laboratory import Instrument, Item, Party, ReportDetails
+from reduction.archive.laboratory import Client, Instrument, Item, Laboratory, ReportDetails
 from reduction.report.htmltable import Cell, Table, make_table, words
 from reduction.report.view import TestView, all_specimens, any_synthetic
-
-__all__ = [
-    "NOT_STATED",
-    "Entry",
-    "authorisation",
-    "calibration_table",
-    "environment",
-    "identification",
-    "item_table",
-    "method",
-    "missing_of",
-]
 
 NOT_STATED = "not stated"
 
@@ -69,15 +57,15 @@ def _revision(details: ReportDetails) -> str:
     return f"{details.revision} \N{EM DASH} AMENDED REPORT: {said}"
 
 
-def _lines(party: Party) -> str:
+def _lines(party: Laboratory | Client) -> str:
     return "\n".join(filter(None, (party.name, party.address, party.contact)))
 
 
-def _received(items: Sequence[Item]) -> str:
+def _received(items: Mapping[str, Item]) -> str:
     """Say when each item came in, where each has a date of its own."""
-    if not items or not all(one.received for one in items):
+    if not items or not all(one.received for one in items.values()):
         return ""
-    return "; ".join(f"{one.specimen}: {one.received}" for one in items)
+    return "; ".join(f"{specimen}: {one.received}" for specimen, one in items.items())
 
 
 def _dates(tests: Sequence[TestView]) -> str:
@@ -119,9 +107,9 @@ def environment(details: ReportDetails, tests: Sequence[TestView]) -> list[Entry
 def authorisation(details: ReportDetails) -> list[Entry]:
     """Return who answers for the report."""
     return [
-        Entry("Authorised by", details.authorised_by),
-        Entry("Function", details.authorised_function),
-        Entry("Date", details.authorised_on),
+        Entry("Authorised by", details.authorised.by),
+        Entry("Function", details.authorised.function),
+        Entry("Date", details.authorised.on),
     ]
 
 
@@ -144,22 +132,15 @@ def _of_tests(tests: Sequence[TestView], name: str) -> str:
 
 def item_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
     """Return what came in: every specimen that was tested, stated or not."""
-    stated = {one.specimen: one for one in details.items}
-    rows = []
-    for name in [*dict.fromkeys([*all_specimens(tests), *stated])]:
-        one = stated.get(name, Item(name))
-        rows.append(
-            [
-                words(name),
-                *(
-                    _said(text)
-                    for text in (
-                        one.identification, one.description, one.condition,
-                        one.received or details.received,
-                    )
-                ),
-            ]
-        )  # fmt: skip
+    names = dict.fromkeys([*all_specimens(tests), *details.items])
+    given = {name: details.items.get(name, Item()) for name in names}
+    rows = [
+        [
+            words(name), _said(one.identification), _said(one.description), _said(one.condition),
+            _said(one.received or details.received),
+        ]
+        for name, one in given.items()
+    ]  # fmt: skip
     return make_table(
         "Items as they were received.",
         ("item", "identification", "description", "condition on receipt", "received"), rows,
@@ -177,9 +158,9 @@ def calibration_table(details: ReportDetails, tests: Sequence[TestView]) -> Tabl
             text = view.attribute(name)
             if text and text not in known:
                 known.add(text)
-                stated.append(Instrument(text, due=due if name == "load_cell" else ""))
+                stated.append(Instrument(name=text, due=due if name == "load_cell" else ""))
     if not stated:
-        stated = [Instrument("")]
+        stated = [Instrument(name="")]
     rows = [
         [
             _said(one.name), _said(one.identification), _said(one.certificate),

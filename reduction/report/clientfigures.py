@@ -13,8 +13,6 @@ from reduction.report.section import Part, Section
 from reduction.report.vector import can_be_drawn, vector_of
 from reduction.report.view import TestView
 
-__all__ = ["Drawing", "chosen_figures", "chosen_parts", "drawings", "not_drawn"]
-
 _TWO_PANELS = 1.25
 _BANDS = (
     " Bands: ± expanded uncertainty, the inner of scatter alone, the outer of all that is known."

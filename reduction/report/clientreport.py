@@ -19,7 +19,7 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from reduction import __version__
-from reduction.laboratory import ReportDetails
+from reduction.archive.laboratory import ReportDetails
 from reduction.report.answers import AnswerBudget, answer_budgets
 from reduction.report.clientfields import (
     NOT_STATED,
@@ -34,19 +34,16 @@ from reduction.report.clientfields import (
 )
 from reduction.report.clientfigures import chosen_figures, chosen_parts, drawings, not_drawn
 from reduction.report.conformitytable import conformity_table
-from reduction.report.designtables import design_tables
 from reduction.report.htmltable import Table, factors_of, make_table, number, words
 from reduction.report.instruments import instrument_sentences, instrument_table
 from reduction.report.section import Section
-from reduction.report.specimentables import specimen_notes, specimen_table
 from reduction.report.style import shorten
 from reduction.report.summary import Finding, test_table
+from reduction.report.testtables import design_tables, specimen_notes, specimen_table
 from reduction.report.uncertainty import DRAWN, factor_words
 from reduction.report.view import Status, TestView, any_synthetic
 from reduction.report.whole import WholeCampaign
 from reduction.units import UnitSystem
-
-__all__ = ["PAGE_NAME", "ClientContent", "render_client_report"]
 
 PAGE_NAME = "client-report.html"
 _MOST_COLUMNS = 5

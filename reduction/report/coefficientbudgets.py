@@ -23,8 +23,6 @@ from reduction.report.uncertainty import factor_words
 from reduction.surface.product import ResponseSurfaces
 from reduction.uncertainty.budget import RANDOM, Budget, BudgetRow
 
-__all__ = ["coefficient_budget_table", "coefficient_budgets"]
-
 _RUN_TO_RUN, _REGRESSION = "run_to_run", "regression"
 
 

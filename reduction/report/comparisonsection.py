@@ -7,20 +7,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from reduction.notes import Severity
-from reduction.report.comparisontables import (
-    calibration_table,
-    correlation_table,
-    curve_table,
-    energy_table,
-    event_table,
-)
 from reduction.report.comparisonview import ComparisonView
 from reduction.report.figures.comparisons import draw_comparison, draw_cycle_bias, draw_error
+from reduction.report.predictiontables import (
+    calibration_table,
+    compared_curve_table,
+    compared_event_table,
+    correlation_table,
+    energy_table,
+)
 from reduction.report.section import Section, make_part, provenance_of
 from reduction.report.summary import Finding, Tile
 from reduction.report.summary import Severity as FindingSeverity
-
-__all__ = ["comparison_findings", "comparison_tiles", "make_comparison_section"]
 
 _FINDING: dict[Severity, FindingSeverity] = {
     "doubt": "warning", "refusal": "refusal", "note": "note", "method": "note",
@@ -33,7 +31,7 @@ def make_comparison_section(view: ComparisonView) -> Section:
     parts = [
         make_part(
             "Measured and predicted tension", draw_comparison(view),
-            [curve_table(view), event_table(view)], [f"Verdict: {view.verdict}."],
+            [compared_curve_table(view), compared_event_table(view)], [f"Verdict: {view.verdict}."],
             warnings=[text for text, kind in _other_notes(view).items() if kind == "doubt"],
         ),
         make_part("Comparison error", draw_error(view), (), [_shape(view)]),

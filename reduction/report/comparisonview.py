@@ -13,15 +13,11 @@ import xarray as xr
 from reduction.archive.stored import stored
 from reduction.notes import Severity
 from reduction.record import Floats
-from reduction.report.hoseview import DEGREES, EVENT_WORDS
+from reduction.report.hoseview import EVENT_WORDS
 from reduction.report.rowview import RowView
 from reduction.report.sources import in_order
-from reduction.report.style import Shown, shown
+from reduction.report.style import DEGREES, Shown, shown
 from reduction.units import UnitSystem
-
-__all__ = [
-    "ComparisonView", "FittedNumber", "MetEvent", "ShortVerdict", "view_comparisons",
-]  # fmt: skip
 
 ShortVerdict = Literal["agrees", "says little", "differs", "not judged"]
 _EVENT_WORDS = {**EVENT_WORDS, "break": EVENT_WORDS["cord_break"]}
@@ -143,10 +139,13 @@ class ComparisonView(RowView):
             return None
         return _IDENTIFIED.get(int(self.data.variables["is_identified"].values[self.index]))
 
+    def curve_place(self, curve: str) -> int:
+        """Place of a curve of the test in the archive."""
+        return int(self.data.variables["curve"].values.astype(str).tolist().index(curve))
+
     def of_curve(self, name: str, curve: str) -> Floats:
         """Values of a variable for one curve of the test: a number, or along the strains."""
-        names = self.data.variables["curve"].values.astype(str).tolist()
-        return np.asarray(self.array(name)[names.index(curve)])
+        return np.asarray(self.array(name)[self.curve_place(curve)])
 
     def judged_scalar(self, name: str) -> float:
         """A number of the judged curve."""

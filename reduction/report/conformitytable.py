@@ -6,18 +6,16 @@ from collections.abc import Sequence
 
 from reduction.archive.budget import budget_from_archive
 from reduction.archive.budgetplaces import place_name
+from reduction.archive.laboratory import Limit, ReportDetails
 from reduction.errors import ReductionError
-from reduction.laboratory import DecisionRule, Limit, ReportDetails
 from reduction.report.htmltable import Cell, Table, make_table, measured, number_text, words
 from reduction.report.style import Shown, superscript
 from reduction.report.uncertainty import drawn_interval, factor_words
 from reduction.report.view import TestView, any_synthetic
 from reduction.uncertainty.budget import Budget
-from reduction.uncertainty.conformity import conformity
+from reduction.uncertainty.conformity import DecisionRule, conformity
 from reduction.units import UnitSystem, display_unit
 from reduction.vocabulary import quantity
-
-__all__ = ["RULES", "conformity_table"]
 
 RULES: dict[DecisionRule, str] = {
     "simple acceptance": (

@@ -18,8 +18,6 @@ from reduction.report.summary import Finding, Tile
 from reduction.report.uncertainty import NORMAL, factor_words
 from reduction.units import UnitSystem
 
-__all__ = ["write_assembly_page", "write_composite_page"]
-
 _RULE = (
     "The curve is the one that rises and is nearest to all pieces, each weighted by its "
     "uncertainty and by what pieces of its kind differ by."

@@ -15,8 +15,6 @@ from reduction.record import Floats
 from reduction.report.figure import plain_numbers, script_json
 from reduction.report.view import TestView
 
-__all__ = ["MOST", "CycleLinks", "cycle_links"]
-
 MOST = 4000
 """Most cycles of a test that a reader can choose from; a page has to stay small."""
 _DIGITS = 9

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from reduction.errors import DataError
 from reduction.record import Floats, Integers
 
-__all__ = ["POINTS", "keep_extremes", "least_and_greatest", "with_gaps"]
-
 POINTS = 2000
 """Most points of one trace; a screen has fewer columns than that."""
 

@@ -26,8 +26,6 @@ from reduction.report.uncertainty import expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView, all_specimens, any_synthetic
 from reduction.vocabulary import BRANCH_NAMES
 
-__all__ = ["design_modulus_table"]
-
 _WHOLE, _OF_ROPE = "test_dynamic_modulus", "test_apparent_spring_constant"
 _TANGENT = "tangent_modulus"
 _MOST_ROWS = 24

@@ -8,7 +8,17 @@ from reduction.report.coefficientbudgets import (
     coefficient_budget_table,
     coefficient_budgets,
 )
-from reduction.report.experimenttables import caution_table, effect_table, run_table
+from reduction.report.experimenttables import (
+    anova_table,
+    caution_table,
+    effect_table,
+    form_quality_table,
+    form_table,
+    line_of_runs_table,
+    quality_table,
+    run_table,
+    surface_coefficient_table,
+)
 from reduction.report.experimentview import ExperimentView, in_words
 from reduction.report.experimentwords import (
     block_words,
@@ -24,16 +34,11 @@ from reduction.report.figures.lines import draw_derived, draw_forms, draw_single
 from reduction.report.figures.screening import confounding_words, draw_effects
 from reduction.report.figures.surfacechecks import draw_checks, draw_pareto
 from reduction.report.figures.surfaces import draw_contours, draw_surface
-from reduction.report.formtables import form_quality_table, form_table
-from reduction.report.linetables import line_of_runs_table
 from reduction.report.section import Part, Section, make_part, provenance_of
 from reduction.report.surfacegrid import make_planes, negative_inside
-from reduction.report.surfacetables import anova_table, coefficient_table, quality_table
 from reduction.report.view import TestView
 from reduction.surface.leastsquares import FIT_REASONS
 from reduction.surface.product import ResponseSurfaces
-
-__all__ = ["make_experiment_section"]
 
 
 def make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView]) -> Section:
@@ -125,7 +130,7 @@ def _surface_parts(
                         *draw_checks(view, surfaces, index, order),
                     ],
                     [
-                        coefficient_table(view, surfaces, index),
+                        surface_coefficient_table(view, surfaces, index),
                         coefficient_budget_table(view, name, budgets),
                         anova_table(view, surfaces, index),
                     ],

@@ -1,4 +1,4 @@
-"""Tables of an experiment: its runs with what they warn of, and the effects of a screening."""
+"""Tables of an experiment: runs, surfaces, effects, the line of each run, forms of stiffness."""
 
 from __future__ import annotations
 
@@ -7,30 +7,49 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from reduction.record import Floats
-from reduction.report.experimentview import ExperimentView, in_words, response_unit
+from reduction.report.experimentview import FORM_WORDS, ExperimentView, in_words, response_unit
+from reduction.report.figures.surfacechecks import term_words
+from reduction.report.figures.surfaces import base_response
 from reduction.report.htmltable import (
     NOT_GIVEN,
     Cell,
     Table,
-    factors_of,
-    make_table,
-    measured,
     number,
-    probability,
-    words,
+    number_text,
+    share_text,
+    with_interval,
 )
-from reduction.report.style import Shown, shown
-from reduction.report.surfacetables import NOT_OF_RUNS
-from reduction.report.surfaceuncertainty import expanded_of_runs
-from reduction.report.uncertainty import expand, plus_minus, plus_minus_of_tests
+from reduction.report.sheet import Sheet
+from reduction.report.sources import source_words
+from reduction.report.style import PERCENT, Shown, shown, superscript
+from reduction.report.surfacegrid import extremes_in_box
+from reduction.report.surfaceuncertainty import (
+    expanded_of_coefficients,
+    expanded_of_runs,
+    interval_of_surfaces,
+    shared_by_runs,
+)
+from reduction.report.testtables import CONDITIONING, REFUSED, about_line, add_line
+from reduction.report.uncertainty import Expanded, expand, plus_minus, plus_minus_of_tests
 from reduction.report.view import TestView
+from reduction.surface.bands import evaluate_surfaces
+from reduction.surface.product import ResponseSurfaces
+from reduction.vocabulary import QUANTITIES
 
-__all__ = ["caution_table", "effect_table", "run_table"]
+_PRINTED = (
+    "F as CG-D-39-80 prints it counts the mean among the terms and in the error (10 and 4 degrees"
+    " of freedom for fifteen runs); it stands here to be compared with the report, no more."
+)
+_OF_RUNS = "scatter of the runs about the surface"
+_ONE_LINE = "that one line was tested"
+NOT_OF_RUNS = "what all runs share: calibration, gauge length, the one line that was tested"
+"""What no scatter of runs has in it."""
+_LARGE = 1e9
+"""From here on a column of squares has powers of ten in every row, not in some."""
+_ON_SCALE = {"log": ", by its logarithm", "box-cox": ", by its Box-Cox transform"}
 
-_SHARE = Shown("%RBS", 100.0)
 
-
-def run_table(view: ExperimentView, tests: Mapping[str, TestView] | None = None) -> Table:
+def run_table(view: ExperimentView, tests: Mapping[str, TestView] | None = None) -> Table | None:
     """Return the runs as planned and as reached, with what each gave.
 
     Runs that are ``tests`` have the uncertainty that their archives know.
@@ -38,120 +57,38 @@ def run_table(view: ExperimentView, tests: Mapping[str, TestView] | None = None)
     own = {} if tests is None else tests
     strength = view.per_run("run_rated_break_strength")
     is_share = bool(np.isfinite(strength).any())
-    load = _SHARE if is_share else shown("tension", view.units)
+    load = Shown("%RBS", 100.0) if is_share else shown("tension", view.units)
     divisor = strength if is_share else np.ones(len(view.runs))
-    level, plan = view.array("run_level"), view.array("run_plan")
-    remarks = view.texts("run_remark")
-    responses = [(name, response_unit(name, view.units)) for name in view.responses]
-    spreads = {name: expanded_of_runs(view, name, own) for name in view.responses}
-    rows = []
-    for k, run in enumerate(view.runs):
-        rows.append(
-            [
-                words(run),
-                words(_coded(plan[k, : len(view.factors)])),
-                *(number(level[k, j], unit) for j, unit in enumerate(view.factor_units)),
-                *(
-                    _fixed(view.per_run(name)[k], load.factor / divisor[k], 1 if is_share else 0)
-                    for name in ("run_peak_tension", "run_minimum_tension")
-                ),
-                *(
-                    measured(
-                        view.per_run(f"{name}_measured")[k],
-                        spreads[name].half[k],
-                        unit,
-                        factor=spreads[name].factor[k],
-                        is_short=True,
-                    )
-                    for name, unit in responses
-                ),
-                *([words(remarks[k])] if any(remarks) else []),
-            ]
+    level, plan = view.array("run_level"), view.array("run_plan")[:, : len(view.factors)]
+    sheet = Sheet(view, ("run",)).texts("run", view.runs).texts("plan, coded", map(_coded, plan))
+    for place, unit in enumerate(view.factor_units):
+        sheet.numbers(in_words(view.factors[place]), level[:, place], unit)
+    for heading, name in (("peak", "run_peak_tension"), ("minimum", "run_minimum_tension")):
+        pairs = zip(view.per_run(name), load.factor / divisor, strict=True)
+        sheet.cells(load.label(heading), [_fixed(*one, 1 if is_share else 0) for one in pairs])
+    for name in view.responses:
+        sheet.measured(
+            in_words(name), view.per_run(f"{name}_measured"), response_unit(name, view.units),
+            expanded_of_runs(view, name, own), is_short=True,
         )  # fmt: skip
-    columns = (
-        "run", "plan, coded",
-        *(view.factor_label(place) for place in range(len(view.factors))),
-        load.label("peak"), load.label("minimum"),
-        *(unit.label(in_words(name)) for name, unit in responses),
-        *(["remark"] if any(remarks) else []),
-    )  # fmt: skip
+    if any(view.texts("run_remark")):
+        sheet.texts("remark", "run_remark")
     factors = ", ".join(in_words(name) for name in view.factors)
-    return make_table(
+    return sheet.table(
         f"Runs as planned (coded {factors}) and as reached: means over the cycles of each run; peak"
         " and minimum are the greatest and least of its cycles.",
-        columns, rows, synthetic=view.is_synthetic,
-        remarks=[_about_runs(view, rows, own)],
-        is_compact=True,
+        remarks=[_about_runs(view, sheet, own)], is_compact=True,
     )  # fmt: skip
 
 
-def caution_table(view: ExperimentView) -> Table | None:
-    """Return what the runs as reached warn of."""
-    own = view.own_rows("caution")
-    if not own:
-        return None
-    rows = [
-        [
-            words(row["caution_kind"].replace("-", " ")),
-            words(row.get("caution_runs", "") or "all runs"),
-            words(row["caution"]),
-            words(row.get("caution_hint", "")),
-        ]
-        for row in own
-    ]
-    return make_table(
-        "Cautions: what is wrong with the runs as they were made, before any number is read.",
-        ("what", "runs", "what is so", "what can be done"), rows, synthetic=view.is_synthetic,
-    )  # fmt: skip
-
-
-def effect_table(view: ExperimentView, name: str) -> Table | None:
-    """Return the effects of a screening on one response, the largest first."""
-    effect = view.array(f"{name}_effect")
-    if effect.size == 0:
-        return None
-    unit = response_unit(name, view.units)
-    # without dummies the error is Lenth's, of a third as many degrees of freedom as effects
-    freedom = effect.size - len(view.factors) or effect.size / 3
-    spread = expand(view.scalar(f"{name}_effect_standard_uncertainty"), degrees_of_freedom=freedom)
-    t, p = view.array(f"{name}_effect_t"), view.array(f"{name}_effect_p_value")
-    counts = view.array(f"{name}_effect_is_significant")
-    columns = view.texts("plan_column_name")
-    mean = view.scalar(f"{name}_mean")
-    rows = []
-    for k in np.argsort(-np.abs(effect), kind="stable"):
-        is_factor = k < len(view.factors)
-        rows.append(
-            [
-                words(in_words(columns[k])),
-                measured(float(effect[k]), float(spread.half), unit, factor=float(spread.factor)),
-                number(100 * float(effect[k] / mean), digits=3),
-                number(float(t[k])),
-                probability(float(p[k])),
-                words("" if not is_factor else "yes" if counts[k] > 0 else "no"),
-            ]
-        )
-    return make_table(
-        f"{in_words(name).capitalize()}: effects, mean at the high level less that at the low one.",
-        ("factor", unit.label("effect"), "share of the mean [%]", "t [1]", "p [1]", "significant"),
-        rows, synthetic=view.is_synthetic,
-        remarks=["A dummy is a column that no factor uses: what it shows is scatter and"
-                 " interactions.", plus_minus(factors_of(rows), "effects of the dummies",
-                                               left_out=NOT_OF_RUNS)],
-    )  # fmt: skip
-
-
-def _about_runs(
-    view: ExperimentView, rows: Sequence[Sequence[Cell]], tests: Mapping[str, TestView]
-) -> str:
+def _about_runs(view: ExperimentView, sheet: Sheet, tests: Mapping[str, TestView]) -> str:
     runs = [tests[name] for name in dict.fromkeys(view.texts("run_name")) if name in tests]
     held = "scatter between the cycles of the run"
     if runs:
         names = [f"test_{name}" for name in view.responses]
-        return plus_minus_of_tests(factors_of(rows), runs, names, found_from=held)
-    return plus_minus(
-        factors_of(rows), held + (", and the K_0 of the slow pull" if _has_line(view) else "")
-    )
+        return plus_minus_of_tests(sheet.factors, runs, names, found_from=held)
+    has_line = {"dissipation_spring_constant", "relaxation_time"} & set(view.responses)
+    return plus_minus(sheet.factors, held + (", and the K_0 of the slow pull" if has_line else ""))
 
 
 def _fixed(value: float, factor: float, places: int) -> Cell:
@@ -166,5 +103,318 @@ def _coded(levels: Floats) -> str:
     return ", ".join("0" if level == 0 else f"{level:+g}" for level in levels)
 
 
-def _has_line(view: ExperimentView) -> bool:
-    return bool({"dissipation_spring_constant", "relaxation_time"} & set(view.responses))
+def caution_table(view: ExperimentView) -> Table | None:
+    """Return what the runs as reached warn of."""
+    own = view.own_rows("caution")
+    return (
+        Sheet(view)
+        .texts("what", [row["caution_kind"].replace("-", " ") for row in own])
+        .texts("runs", [row.get("caution_runs", "") or "all runs" for row in own])
+        .texts("what is so", [row["caution"] for row in own])
+        .texts("what can be done", [row.get("caution_hint", "") for row in own])
+        .table("Cautions: what is wrong with the runs as they were made, before any number is"
+               " read.")
+    )  # fmt: skip
+
+
+def effect_table(view: ExperimentView, name: str) -> Table | None:
+    """Return the effects of a screening on one response, the largest first."""
+    effect = view.array(f"{name}_effect")
+    if effect.size == 0:
+        return None
+    # without dummies the error is Lenth's, of a third as many degrees of freedom as effects
+    freedom = effect.size - len(view.factors) or effect.size / 3
+    spread = expand(view.scalar(f"{name}_effect_standard_uncertainty"), degrees_of_freedom=freedom)
+    order = np.argsort(-np.abs(effect), kind="stable")
+    counts = np.where(view.array(f"{name}_effect_is_significant") > 0, "yes", "no")
+    is_factor = np.arange(effect.size) < len(view.factors)
+    sheet = Sheet(view)
+    (
+        sheet.texts("factor", [in_words(view.texts("plan_column_name")[k]) for k in order])
+        .measured("effect", effect[order], response_unit(name, view.units), spread)
+        .numbers("share of the mean", effect[order] / view.scalar(f"{name}_mean"), PERCENT, 3)
+        .numbers("t", view.array(f"{name}_effect_t")[order], "number")
+        .probabilities("p [1]", view.array(f"{name}_effect_p_value")[order])
+        .texts("significant", np.where(is_factor, counts, "")[order])
+    )
+    return sheet.table(
+        f"{in_words(name).capitalize()}: effects, mean at the high level less that at the low one.",
+        remarks=["A dummy is a column that no factor uses: what it shows is scatter and"
+                 " interactions.", plus_minus(sheet.factors, "effects of the dummies",
+                                               left_out=NOT_OF_RUNS)],
+    )  # fmt: skip
+
+
+def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | None:
+    """Return each response in the middle of the tested range, and from where to where it goes.
+
+    Of a response that another surface holds above zero, the one that falls below is left out.
+    """
+    least, greatest, _ = extremes_in_box(surfaces)
+    centre = np.zeros((1, len(view.factors)))
+    middle = evaluate_surfaces(surfaces, centre, units="coded")
+    lows, highs = interval_of_surfaces(view, surfaces, centre)
+    names = surfaces.response_names
+    bent = {base_response(one) for one in names if one != base_response(one)}
+    kept = [
+        (k, base_response(name), response_unit(base_response(name), view.units))
+        for k, name in enumerate(names)
+        if np.isfinite(middle.value[k, 0]) and not (name in bent and least[k] < 0)
+    ]
+    cells = [
+        with_interval(
+            float(middle.value[k, 0]), float(lows[k, 0]), float(highs[k, 0]), unit
+        )
+        for k, _, unit in kept
+    ]  # fmt: skip
+    middles = ", ".join(
+        f"{in_words(name)} {number_text(view.levels(place)[1], 3)} {view.factor_units[place].unit}"
+        for place, name in enumerate(view.factors)
+    )
+    sources = shared_by_runs(view, surfaces)
+    return (
+        Sheet(view)
+        .texts(
+            "response",
+            [
+                unit.label(f"{in_words(base)}{_ON_SCALE.get(surfaces.transform[k], '')}")
+                for k, base, unit in kept
+            ],
+        )
+        .cells("in the middle", [shown_ for shown_, _ in cells])
+        .cells(f"{100 * middle.confidence:g} % interval", [ends for _, ends in cells])
+        .cells("least in the range", [number(float(least[k]), unit) for k, _, unit in kept])
+        .cells("greatest in the range", [number(float(greatest[k]), unit) for k, _, unit in kept])
+        .table(
+            f"Experiment {view.name}: each response by its surface, in the middle of the tested"
+            f" range ({middles}) and over all of it.",
+            remarks=[f"The interval is of the surface and holds {_held(sources)}. Not in it:"
+                     f" {_left_out(sources)}."],
+        )
+    )  # fmt: skip
+
+
+def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | None:
+    """Return how well the surface of each response fits."""
+    names, lack = surfaces.response_names, surfaces.lack_of_fit
+    units = [response_unit(name, view.units) for name in names]
+    sheet = Sheet(view).texts(
+        "response", [unit.label(in_words(name)) for name, unit in zip(names, units, strict=True)]
+    )
+    for heading, shares in (("r²", surfaces.r2), ("adjusted r²", surfaces.adjusted_r2),
+                            ("predicted r²", surfaces.predicted_r2)):  # fmt: skip
+        sheet.cells(
+            f"{heading} [1]",
+            [Cell(share_text(float(one)), repr(float(one)), is_number=True) for one in shares],
+        )
+    n_terms = len(surfaces.term_names) - 1
+    (
+        sheet.cells(
+            "standard deviation of a run, s [its unit]",
+            [number(float(one), unit) for one, unit in zip(surfaces.sigma, units, strict=True)],
+        )
+        .numbers("F of all terms", surfaces.overall_f, "number")
+        .texts("degrees of freedom", [f"{n_terms}, {one}" for one in surfaces.degrees_of_freedom])
+        .probabilities("p of F [1]", surfaces.overall_p_value)
+        .numbers("F of lack of fit", lack.f, "number")
+        .probabilities("p of lack of fit [1]", lack.p_value)
+    )
+    is_printed = bool(np.isfinite(surfaces.printed_f).any())
+    if is_printed:
+        sheet.numbers("F as CG-D-39-80 prints it", surfaces.printed_f, "number")
+    return sheet.table(
+        "Quality of each surface. p: probability of such an F if the terms were nil, or if the"
+        " surface fitted.",
+        is_compact=True, remarks=[_PRINTED] if is_printed else [],
+    )  # fmt: skip
+
+
+def surface_coefficient_table(
+    view: ExperimentView, surfaces: ResponseSurfaces, index: int
+) -> Table | None:
+    """Return the coefficients of a surface, coded and in the units of the factors."""
+    name = surfaces.response_names[index]
+    unit, said = response_unit(name, view.units), in_words(name)
+    coded, in_units = (
+        expanded_of_coefficients(view, surfaces, index, in_units=is_it) for is_it in (False, True)
+    )
+    sources = shared_by_runs(view, surfaces)
+    engineering = [view.coefficient_unit(name, tuple(one.tolist())) for one in surfaces.exponents]
+    computed = zip(
+        surfaces.coefficient_engineering[index], in_units.all.half, engineering, strict=True
+    )
+    sheet = Sheet(view).texts("", surfaces.labels)
+    sheet.texts("term", [term_words(powers, view.factors) for powers in surfaces.exponents])
+    sheet.measured("coefficient, coded", surfaces.coefficient[index], unit, coded.all)
+    if sources:
+        sheet.numbers("shared part of ±, coded", coded.shared, unit, 2)
+    (
+        sheet.numbers("t", surfaces.t[index], "number")
+        .probabilities("p [1]", surfaces.p_value[index])
+        .cells("coefficient, in units", [_to_compute_with(*one) for one in computed])
+        .texts("its unit", [superscript(one.unit) for one in engineering])
+    )
+    base = base_response(name)
+    of_numbers = (
+        f"The {said.split(' of ')[0]} is of the {in_words(base)} as a number of"
+        f" {superscript(QUANTITIES[base].unit)}, whatever units the page shows."
+        if name != base
+        else ""
+    )
+    units = ", ".join(
+        f"{in_words(factor)} in {one.unit}"
+        for factor, one in zip(view.factors, view.factor_units, strict=True)
+    )
+    return sheet.table(
+        f"{said[0].upper()}{said[1:]}: coefficients of the surface, for coded levels and for levels"
+        " in units.",
+        remarks=list(filter(None, [
+            of_numbers,
+            f"In units: {units}. Digits enough to compute with; the errors of coefficients in"
+            " units go together, so that a value of the surface is far better known than the sum of"
+            " theirs.",
+            plus_minus(sheet.factors, _held(sources), left_out=_left_out(sources)),
+            "Shared part: what of ± all runs share, with the same k; the parts add by their"
+            " squares. t and p are of the scatter alone." if sources else "",
+        ])),
+    )  # fmt: skip
+
+
+def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> Table | None:
+    """Return the analysis of variance of a surface."""
+    anova, name = surfaces.anova, surfaces.response_names[index]
+    unit = response_unit(name, view.units)
+    square = Shown(_squared(unit.unit), unit.factor**2)
+    is_large = bool(np.nanmax(anova.sum_of_squares[index]) * square.factor >= _LARGE)
+    sheet = Sheet(view).texts("source", anova.source)
+    sheet.counts("degrees of freedom [1]", anova.degrees_of_freedom[index])
+    for heading, values in (("sum of squares", anova.sum_of_squares[index]),
+                            ("mean square", anova.mean_square[index])):  # fmt: skip
+        sheet.cells(
+            square.label(heading),
+            [
+                Cell(f"{one * square.factor:.3e}", repr(float(one)), is_number=True)
+                if is_large
+                else number(float(one), square)
+                for one in values
+            ],
+        )
+    return (
+        sheet.numbers("F", anova.f[index], "number")
+        .probabilities("p [1]", anova.p_value[index])
+        .texts("tested against", anova.error_term)
+        .table(
+            f"{in_words(name).capitalize()}: analysis of variance, each source after those above"
+            " it."
+        )
+    )
+
+
+def _held(sources: Sequence[str]) -> str:
+    """Say what the uncertainty of a surface holds."""
+    told = ", ".join(source_words(one) for one in sources)
+    return f"{_OF_RUNS}; and what all runs share: {told}" if told else _OF_RUNS
+
+
+def _left_out(sources: Sequence[str]) -> str:
+    return _ONE_LINE if sources else NOT_OF_RUNS
+
+
+def _to_compute_with(value: float, spread: float, unit: Shown) -> Cell:
+    """Return a coefficient of seven digits and its uncertainty of two."""
+    if not np.isfinite(value):
+        return Cell(NOT_GIVEN, is_number=True)
+    half = f" ± {number_text(spread * unit.factor, 2)}" if np.isfinite(spread) else ""
+    text = f"{number_text(value * unit.factor, 7)}{half}"
+    return Cell(text, repr(float(value)), is_number=True)
+
+
+def _squared(unit: str) -> str:
+    return unit if unit == "1" else f"({unit})²" if " " in unit or "/" in unit else f"{unit}²"
+
+
+def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> Table | None:
+    """Return the parameters of the line of each run, and those derived from surfaces beside."""
+    constant, time = (
+        view.per_run(f"derived_{name}")
+        for name in ("dissipation_spring_constant", "relaxation_time")
+    )
+    sheets, used = [], []
+    pairs = zip(view.texts("run_name"), view.texts("run_specimen"), strict=True)
+    for k, (run, specimen) in enumerate(pairs):
+        test = tests.get(run)
+        if test is None or "test_relaxation_time" not in test.data:
+            continue
+        used.append(test)
+        sheet = Sheet(test, ("specimen",)).keep(np.array([test.specimens.index(specimen)]))
+        add_line(sheet.texts("run", [view.runs[k]]), test)
+        sheet.numbers("K_1 from surfaces", constant[[k]], "tension")
+        sheets.append(sheet.numbers("tau from surfaces", time[[k]], "time"))
+    found = Sheet.stack(sheets, view)
+    return found.table(
+        "The three-parameter line of each run; at the right K_1 and tau from surfaces of E' and E''"
+        " at the same levels, which smooth over the runs.",
+        is_compact=True, optional=(REFUSED,), remarks=[CONDITIONING, *about_line(found, used)],
+    )  # fmt: skip
+
+
+def _forms(view: ExperimentView, *dims: str) -> Sheet:
+    """A row a form, or a coefficient of one; none without any fit."""
+    sheet = Sheet(view, ("stiffness_form", *dims))
+    if not np.isfinite(view.array("stiffness_n_coefficients")).any():
+        sheet.keep(np.zeros(sheet.n_rows, dtype=bool))
+    if dims:
+        sheet.keep(sheet.of("stiffness_coefficient_name", "").astype(str) != "")
+    names = map(str, sheet.of("stiffness_form", ""))
+    return sheet.texts("form", [FORM_WORDS.get(name, name) for name in names])
+
+
+def form_table(view: ExperimentView) -> Table | None:
+    """Return the coefficients of the stiffness forms with their intervals."""
+    sheet = _forms(view, "stiffness_term")
+    if not sheet.n_rows:
+        return None
+    low, high = (sheet.of(f"stiffness_coefficient_{end}") for end in ("low", "high"))
+    half, spread = (high - low) / 2, sheet.of("stiffness_coefficient_standard_uncertainty")
+    confidence = 100 * float(np.nanmax(view.array("stiffness_confidence")))
+    (
+        sheet.texts("coefficient", "stiffness_coefficient_name")
+        .measured("value", sheet.of("stiffness_coefficient"), None, Expanded(half, half / spread))
+        .texts("unit", "stiffness_coefficient_unit")
+        .cells(
+            f"{confidence:g} % interval",
+            [
+                Cell(f"{a:.4g} to {b:.4g}", f"{float(a)!r} {float(b)!r}", is_number=True)
+                for a, b in zip(low, high, strict=True)
+            ],
+        )
+        .probabilities("p if nil [1]", "stiffness_p_value")
+    )
+    return sheet.table(
+        "Coefficients of the stiffness forms of mooring codes.",
+        remarks=[plus_minus(sheet.factors, "scatter of the runs about the form",
+                            left_out="that the form itself may be wrong: see its quality")],
+    )  # fmt: skip
+
+
+def form_quality_table(view: ExperimentView) -> Table | None:
+    """Return how well each form fits the runs, beside the quadratic surface."""
+    sheet = _forms(view)
+    if not sheet.n_rows:
+        return None
+    strength = float(np.nanmax(view.per_run("run_rated_break_strength")))
+    unit = response_unit("apparent_spring_constant", view.units)
+    return (
+        sheet.counts("coefficients [1]", "stiffness_n_coefficients")
+        .numbers("r²", "stiffness_r2")
+        .numbers("adjusted r²", "stiffness_adjusted_r2")
+        .numbers("predicted r²", "stiffness_predicted_r2")
+        .numbers("s over break strength", "stiffness_sigma")
+        .numbers("s", "stiffness_sigma", Shown(unit.unit, unit.factor * strength))
+        .numbers("AICc", "stiffness_aicc")
+        .table(
+            "The forms against the quadratic surface of the same runs.",
+            remarks=["s: standard deviation of a run about the form. AICc: lower is better; one"
+                     " form against another on the same runs, nothing by itself."],
+        )
+    )  # fmt: skip

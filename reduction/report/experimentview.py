@@ -18,8 +18,12 @@ from reduction.surface.product import ResponseSurfaces
 from reduction.units import UnitSystem, combined_unit, display_unit
 from reduction.vocabulary import QUANTITIES, RESPONSES
 
-__all__ = ["ExperimentView", "in_words", "response_unit"]
-
+FORM_WORDS = {
+    "del-vecchio": "Del Vecchio",
+    "mean-load": "mean load",
+    "quadratic": "quadratic surface",
+}
+"""Names of the forms of stiffness on the page."""
 _STRAINS = ("mean_strain", "strain_amplitude")
 
 

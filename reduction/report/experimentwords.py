@@ -7,9 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from reduction.record import Floats
-from reduction.report.experimentview import ExperimentView, in_words, response_unit
+from reduction.report.experimentview import FORM_WORDS, ExperimentView, in_words, response_unit
 from reduction.report.figures.surfaces import base_response
-from reduction.report.formtables import FORM_WORDS
 from reduction.report.htmltable import number_text, share_text
 from reduction.report.summary import Finding
 from reduction.report.surfacegrid import negative_inside
@@ -19,11 +18,6 @@ from reduction.surface.product import (
     STATIONARY_REASONS,
     ResponseSurfaces,
 )
-
-__all__ = [
-    "block_words", "experiment_findings", "form_words", "negative_words", "quality_words",
-    "single_time_words", "stationary_words",
-]  # fmt: skip
 
 
 def experiment_findings(view: ExperimentView) -> list[Finding]:

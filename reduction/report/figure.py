@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -12,21 +13,11 @@ import numpy as np
 from reduction.record import Floats
 from reduction.report.style import faded, plot_text, shorten
 
-__all__ = [
-    "Figure",
-    "Trace",
-    "axis",
-    "band",
-    "line",
-    "make_figure",
-    "named_axis",
-    "plain_numbers",
-    "script_json",
-]
-
 Trace = dict[str, Any]
 _DIGITS = 6
 _TITLE_LENGTH = 60
+_SMALLEST_EVEN, _LARGEST_EVEN = 1e-7, 1e22
+"""Between these the power of ten that leaves up to 12 digits before the point is exact."""
 
 
 @dataclass(frozen=True)
@@ -90,17 +81,28 @@ def script_json(document: object) -> str:
 
 
 def plain_numbers(values: Floats, digits: int = _DIGITS) -> list[float | None]:
-    """Return numbers of a few digits, None where one is not finite.
+    """Return numbers of a few digits, at most 12, None where one is not finite.
+
+    As Python's format ``g`` has them, but for a number within rounding of the middle between two,
+    which may become either.
 
     Examples
     --------
     >>> plain_numbers(np.array([1.23456789, np.nan]))
     [1.23457, None]
     """
-    return [
-        float(f"{value:.{digits}g}") if np.isfinite(value) else None
-        for value in np.asarray(values, dtype=np.float64).tolist()
-    ]
+    numbers = np.asarray(values, dtype=np.float64)
+    size = np.abs(numbers)
+    is_sized = (size >= _SMALLEST_EVEN) & (size < _LARGEST_EVEN)
+    digits_left = np.floor(np.log10(size, where=is_sized, out=np.zeros_like(size))).astype(int) + 1
+    power = digits - digits_left
+    up, down = 10.0 ** np.maximum(power, 0), 10.0 ** np.maximum(-power, 0)
+    whole = np.rint(np.where(is_sized, numbers, 0.0) * up / down)
+    shown: list[float | None] = (whole * down / up).tolist()
+    for place in np.flatnonzero(~is_sized).tolist():
+        number = float(numbers[place])
+        shown[place] = float(f"{number:.{digits}g}") if math.isfinite(number) else None
+    return shown
 
 
 def line(

@@ -7,21 +7,19 @@ from collections.abc import Sequence
 from reduction.notes import Severity
 from reduction.report.figures.hosechart import draw_chart, draw_limits
 from reduction.report.figures.hoses import draw_budget, draw_pressure, draw_tension
-from reduction.report.hosetables import (
+from reduction.report.hoseview import HoseView
+from reduction.report.htmltable import number_text
+from reduction.report.predictiontables import (
     cord_table,
-    curve_table,
-    design_table,
-    event_table,
+    hose_curve_table,
+    hose_design_table,
+    hose_event_table,
     layer_table,
 )
-from reduction.report.hoseview import DEGREES, HoseView
-from reduction.report.htmltable import number_text
 from reduction.report.section import Section, make_part, provenance_of
-from reduction.report.style import shown
+from reduction.report.style import DEGREES, shown
 from reduction.report.summary import Finding, Tile
 from reduction.report.summary import Severity as FindingSeverity
-
-__all__ = ["hose_findings", "hose_tiles", "make_hose_section"]
 
 _FINDING: dict[Severity, FindingSeverity] = {
     "doubt": "warning", "refusal": "refusal", "note": "note", "method": "note",
@@ -40,13 +38,13 @@ def make_hose_section(view: HoseView) -> Section:
         make_part(
             "Tension and fill pressure",
             [*draw_tension(view), *draw_pressure(view), *draw_budget(view)],
-            [event_table(view)], [_story(view), _HOLDS],
-            folded=make_part("The curve as numbers", (), [curve_table(view)]),
+            [hose_event_table(view)], [_story(view), _HOLDS],
+            folded=make_part("The curve as numbers", (), [hose_curve_table(view)]),
             warnings=[text for text, kind in view.notes.items() if kind == "doubt"],
         ),
         make_part("Strain of the cords", [*draw_chart(view), *draw_limits(view)]),
         make_part("Layers that carry no load", (), [layer_table(view)]),
-        make_part("Construction", (), [design_table(view), cord_table(view)]),
+        make_part("Construction", (), [hose_design_table(view), cord_table(view)]),
     ]  # fmt: skip
     notes = list(view.notes)
     provenance, documents = provenance_of(view.data.attrs)

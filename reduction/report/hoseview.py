@@ -17,9 +17,6 @@ from reduction.report.rowview import RowView
 from reduction.report.style import Shown, shown
 from reduction.units import UnitSystem
 
-__all__ = ["DEGREES", "EVENT_WORDS", "SOURCE_WORDS", "HoseView", "OneEvent", "view_hoses"]
-
-DEGREES = Shown("deg", 180 / np.pi)
 EVENT_WORDS = {
     "deepest_slack": "cords slackest",
     "pick_up": "cords pick up",
@@ -102,6 +99,10 @@ class HoseView(RowView):
         """Change of tension for one standard uncertainty of a source, at each strain. [N]."""
         names = self.data.variables["uncertainty_source"].values.astype(str).tolist()
         return np.asarray(self.array("tension_contribution")[names.index(source)])
+
+    def event_place(self, name: str) -> int:
+        """Place of an event in the archive."""
+        return int(self.data.variables["hose_event"].values.astype(str).tolist().index(name))
 
     @cached_property
     def events(self) -> dict[str, OneEvent]:

@@ -13,24 +13,6 @@ from math import ceil, floor, isfinite, log10
 from reduction.digits import fixed_number, places_of
 from reduction.report.style import Shown
 
-__all__ = [
-    "NOT_GIVEN",
-    "Cell",
-    "Table",
-    "count",
-    "factors_of",
-    "make_table",
-    "measured",
-    "number",
-    "number_text",
-    "probability",
-    "share_text",
-    "span",
-    "with_interval",
-    "within",
-    "words",
-]
-
 NOT_GIVEN = "\N{EN DASH}"
 _LEAST_LEADING = 2.0
 _LEAST_PROBABILITY = 1e-4
@@ -259,6 +241,21 @@ def span(low: float, high: float, unit: Shown, *, places: int) -> Cell:
     places = max(places, places_of(ends[1] - ends[0], 2))
     text = " to ".join(fixed_number(end, places) for end in ends)
     return Cell(text, f"{_exact(low)} {_exact(high)}", is_number=True)
+
+
+def interval(low: float, high: float, unit: Shown | None = None, *, digits: int = 3) -> Cell:
+    """Return a cell of a range, each end to so many digits; nothing where neither is known.
+
+    Examples
+    --------
+    >>> interval(0.1, 12.5).text
+    '0.100 to 12.5'
+    """
+    if not (isfinite(low) or isfinite(high)):
+        return words("")
+    scale = 1.0 if unit is None else unit.factor
+    text = " to ".join(number_text(end * scale, digits) for end in (low, high))
+    return Cell(text, f"{low!r} {high!r}", is_number=True)
 
 
 def _exact(value: float) -> str:

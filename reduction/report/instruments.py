@@ -11,8 +11,6 @@ from reduction.report.view import TestView, any_synthetic
 from reduction.uncertainty.stated import StatedErrors
 from reduction.units import UnitSystem
 
-__all__ = ["NOTHING_STATED", "instrument_sentences", "instrument_table", "is_stated"]
-
 NOTHING_STATED = (
     "No error of the instruments is stated: the uncertainty holds scatter and tape readings alone."
 )
@@ -27,7 +25,7 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | No
     statements: dict[StatedErrors, list[TestView]] = {}
     for view in tests:
         if is_stated(view):
-            statements.setdefault(_stated_errors_of(view), []).append(view)
+            statements.setdefault(stated_errors_of(view.data), []).append(view)
     if not statements:
         return None
     rows = [
@@ -63,11 +61,7 @@ def instrument_sentences(tests: Sequence[TestView]) -> list[str]:
 
 def is_stated(view: TestView) -> bool:
     """Return whether the archive states any error of the instruments."""
-    return _stated_errors_of(view).has_any
-
-
-def _stated_errors_of(view: TestView) -> StatedErrors:
-    return stated_errors_of(view.data) or StatedErrors()
+    return stated_errors_of(view.data).has_any
 
 
 def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:

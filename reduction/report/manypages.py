@@ -11,8 +11,6 @@ from reduction.archive.whole import take_away
 from reduction.archive.write import write_whole
 from reduction.report.render import Link, Page, RenderedSection, render_page
 
-__all__ = ["MOST_BYTES", "MOST_IN_ALL", "is_page_of_tests", "over_pages", "write_pages"]
-
 MOST_BYTES = 9_000_000
 """Of the sections on a page: with the program that draws (4.9 MB) it stays below 15 MB. [1]"""
 MOST_IN_ALL = 14_500_000

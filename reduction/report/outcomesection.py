@@ -7,13 +7,12 @@ from reduction.report.outcometables import (
     exposure_table,
     fatigue_table,
     load_life_table,
+    snap_sentences,
+    snap_table,
     strength_table,
 )
 from reduction.report.outcomeview import OutcomeView
 from reduction.report.section import Section, make_part, provenance_of
-from reduction.report.snaptables import snap_sentences, snap_table
-
-__all__ = ["make_outcome_section"]
 
 
 def make_outcome_section(view: OutcomeView) -> Section:

@@ -1,84 +1,73 @@
-"""Tables of outcomes without a log: strength, exposure and life."""
+"""Tables of outcomes without a log: strength, exposure, life, and lines that go slack."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from math import isfinite
+from collections.abc import Sequence
+from typing import Self
+
+import numpy as np
+import xarray as xr
 
 from reduction.outcomes.groups import Group
+from reduction.outcomes.life_product import SnapLevels
 from reduction.outcomes.life_rows import fatigue_rows, load_life_rows
 from reduction.outcomes.row import Row
 from reduction.outcomes.rows import exposure_rows, strength_rows
-from reduction.report.htmltable import (
-    NOT_GIVEN,
-    Cell,
-    Table,
-    count,
-    factors_of,
-    make_table,
-    measured,
-    number,
-    number_text,
-    words,
-)
+from reduction.outcomes.series import load_series
+from reduction.outcomes.snap import summarise_snap_loading
+from reduction.report.htmltable import Table, count, words
 from reduction.report.outcomeview import OutcomeView, group_names
-from reduction.report.style import Shown, shown
-from reduction.report.uncertainty import expand, plus_minus
+from reduction.report.sheet import Calculated, Sheet
+from reduction.report.style import PERCENT, Shown, shown
+from reduction.report.uncertainty import Expanded, expand, plus_minus
 
-__all__ = ["exposure_table", "fatigue_table", "load_life_table", "strength_table"]
-
-_PERCENT = Shown("%", 100.0)
-_NUMBER = Shown("1", 1.0)
+_OF_STRENGTH = Shown("% of rated break strength", 100.0)
+_OF_NEW = Shown("% of new", 100.0)
 _SCATTER = "scatter between the tests of a group"
 _FIT = "scatter of the tests about the fit"
-_NOT_IN_IT = "calibration of the machine"
 _BOUNDS = "Intervals hold 95 %, two-sided."
-_Column = tuple[str, Callable[[Row], Cell]]
+_SNAP = "Upper bound of the share that fails by then, where all survived; one-sided, 95 %."
 
 
-def _table(
-    caption: str,
-    rows: Sequence[Row],
-    columns: Sequence[_Column],
-    view: OutcomeView,
-    *notes: str,
-    held: str,
-    reason: str,
-) -> Table | None:
-    """Lay out rows by group; a column in which nothing stands is left out.
+class _Groups(Sheet):
+    """A row a group, of the numbers of a table of outcomes."""
 
-    What ± holds, what is missing, and why, stands below: ``held``, the words of column ``reason``.
-    """
-    if not rows:
-        return None
-    names = group_names([_group(row) for row in rows], view.units)
-    cells = [[words(name), *(cell(row) for _, cell in columns)] for name, row in zip(
-        names, rows, strict=True
-    )]  # fmt: skip
-    filled = [
-        place
-        for place in range(len(columns) + 1)
-        if any(row[place].text != NOT_GIVEN for row in cells)
-    ]
-    headings = ["group", *(heading for heading, _ in columns)]
-    return make_table(
-        caption, [headings[place] for place in filled],
-        [[row[place] for place in filled] for row in cells], synthetic=view.is_synthetic,
-        remarks=[
-            plus_minus(factors_of(cells), held, left_out=_NOT_IN_IT),
-            *notes, *_missing(names, rows, reason),
-        ], is_tall=len(rows) > 12,
-    )  # fmt: skip
+    def __init__(self, view: OutcomeView, rows: Sequence[Row]) -> None:
+        columns = {name: ("row", [row[name] for row in rows]) for name in rows[0]} if rows else {}
+        super().__init__(
+            Calculated(view.units, view.is_synthetic, xr.Dataset(columns)), ("row",)
+        )  # fmt: skip
+        self.rows = rows
+        self.names = group_names([_group(row) for row in rows], view.units)
+        self.texts("group", self.names)
 
+    def known_from(self, name: str, counted: str, fitted: int = 1) -> Expanded:
+        """Uncertainty of a number that is known from so many tests less so many fitted."""
+        freedom = np.maximum(self.of(counted) - fitted, 1.0)
+        return expand(self.of(f"{name}_standard_uncertainty"), degrees_of_freedom=freedom)
 
-def _missing(names: Sequence[str], rows: Sequence[Row], reason: str) -> list[str]:
-    told: dict[str, list[str]] = {}
-    for name, row in zip(names, rows, strict=True):
-        load = _real(row, "peak_load_ratio")
-        place = f" at {_PERCENT.factor * load:.3g} %" if load == load else ""
-        if row[reason]:
-            told.setdefault(str(row[reason]), []).append(f"{name}{place}")
-    return [f"{'; '.join(groups)}: {text}." for text, groups in told.items()]
+    def some(self, heading: str, name: str) -> Self:
+        """Add a count that is worth a column only where something was counted."""
+        return self.cells(heading, (count(one) if one else words("") for one in self.of(name)))
+
+    def grouped(self, caption: str, reason: str, held: str, *notes: str) -> Table | None:
+        """Return the table: what ± holds, what is missing, and why, stands below.
+
+        ``reason`` is the column of the words that say why.
+        """
+        told: dict[str, list[str]] = {}
+        for name, row in zip(self.names, self.rows, strict=True):
+            load = _real(row, "peak_load_ratio")
+            place = f" at {PERCENT.factor * load:.3g} %" if load == load else ""
+            if row[reason]:
+                told.setdefault(str(row[reason]), []).append(f"{name}{place}")
+        return self.table(
+            caption, optional=self.headings, tall=12,
+            remarks=[
+                plus_minus(self.factors, held, left_out="calibration of the machine"), *notes,
+                *(f"{'; '.join(groups)}: {text}." for text, groups in told.items()),
+            ],
+        )  # fmt: skip
 
 
 def _group(row: Row) -> Group:
@@ -94,117 +83,71 @@ def _real(row: Row, name: str) -> float:
     return float(row.get(name, "nan"))
 
 
-def _known(
-    name: str, unit: Shown, counted: str = "", fitted: int = 1, *, confidence: bool = False
-) -> Callable[[Row], Cell]:
-    """A number known from so many tests less so many fitted; or as its interval has it."""
-
-    def cell(row: Row) -> Cell:
-        spread = _real(row, f"{name}_standard_uncertainty")
-        if confidence:
-            half = (_real(row, f"{name}_high") - _real(row, f"{name}_low")) / 2
-            factor = half / spread if spread > 0 else float("nan")
-        else:
-            freedom = max(_real(row, counted) - fitted, 1.0)
-            found = expand(spread, degrees_of_freedom=freedom)
-            half, factor = float(found.half), float(found.factor)
-        return measured(_real(row, name), half, unit, factor=factor)
-
-    return cell
-
-
-def _plain(name: str, unit: Shown, digits: int = 3) -> Callable[[Row], Cell]:
-    return lambda row: number(_real(row, name), unit, digits=digits)
-
-
-def _count(name: str) -> Callable[[Row], Cell]:
-    return lambda row: count(_real(row, name))
-
-
-def _some(name: str) -> Callable[[Row], Cell]:
-    """A count that is worth a column only where something was counted."""
-    return lambda row: count(_real(row, name)) if row[name] else words("")
-
-
-def _interval(low: str, high: str, unit: Shown, digits: int = 3) -> Callable[[Row], Cell]:
-    def cell(row: Row) -> Cell:
-        ends = [_real(row, name) for name in (low, high)]
-        if not any(isfinite(end) for end in ends):
-            return words("")
-        text = " to ".join(number_text(end * unit.factor, digits) for end in ends)
-        return Cell(text, " ".join(repr(end) for end in ends), is_number=True)
-
-    return cell
-
-
 def strength_table(view: OutcomeView, name: str) -> Table | None:
     """Return a quantity of the table of strength by group: mean, scatter, change, bounds."""
     is_force = name == "tensile_strength"
     unit = shown("tension" if is_force else "strain", view.units)
     what = "tensile strength" if is_force else "strain at failure"
-    rows = [
-        row
-        for row in strength_rows(view.outcomes)
-        if any(row[f"{name}_{use}count"] for use in ("", "lower_bound_", "excluded_"))
-    ]
-    columns: list[_Column] = [
-        ("tests", _count(f"{name}_count")),
-        (unit.label(f"mean {what}"), _known(name, unit, f"{name}_count")),
-        (unit.label("deviation"), _plain(f"{name}_standard_deviation", unit)),
-        ("deviation over mean [%]", _plain(f"{name}_relative_variability", _PERCENT)),
-        (
-            unit.label("least to greatest"),
-            _interval(f"{name}_minimum", f"{name}_maximum", unit, 4),
-        ),
-        ("change against new [%]", _known(f"{name}_change", _PERCENT, confidence=True)),
-        (
-            "interval of the change [%]",
-            _interval(f"{name}_change_low", f"{name}_change_high", _PERCENT),
-        ),
-        ("p of no change [1]", _plain(f"{name}_p_value", _NUMBER, 2)),
-        ("lower bounds", _some(f"{name}_lower_bound_count")),
-        (unit.label("mean with the bounds"), _plain(f"{name}_with_lower_bounds", unit, 4)),
-        (
-            unit.label("its interval"),
-            _interval(f"{name}_with_lower_bounds_low", f"{name}_with_lower_bounds_high", unit, 4),
-        ),
-        ("not used", _some(f"{name}_excluded_count")),
-    ]
-    return _table(
+    sheet = _Groups(
+        view,
+        [
+            row
+            for row in strength_rows(view.outcomes)
+            if any(row[f"{name}_{use}count"] for use in ("", "lower_bound_", "excluded_"))
+        ],
+    )
+    change, bounds = f"{name}_change", f"{name}_with_lower_bounds"
+    half, spread = (
+        (sheet.of(f"{change}_high") - sheet.of(f"{change}_low")) / 2,
+        sheet.of(f"{change}_standard_uncertainty"),
+    )
+    factor = np.divide(half, spread, out=np.full(half.shape, np.nan), where=spread > 0)
+    (
+        sheet.counts("tests", f"{name}_count")
+        .measured(f"mean {what}", name, unit, sheet.known_from(name, f"{name}_count"))
+        .numbers("deviation", f"{name}_standard_deviation", unit, 3)
+        .numbers("deviation over mean", f"{name}_relative_variability", PERCENT, 3)
+        .intervals("least to greatest", f"{name}_minimum", f"{name}_maximum", unit, 4)
+        .measured("change against new", change, PERCENT, Expanded(half, factor))
+        .intervals("interval of the change", f"{change}_low", f"{change}_high", PERCENT)
+        .numbers("p of no change", f"{name}_p_value", "number", 2)
+        .some("lower bounds", f"{name}_lower_bound_count")
+        .numbers("mean with the bounds", bounds, unit)
+        .intervals("its interval", f"{bounds}_low", f"{bounds}_high", unit, 4)
+        .some("not used", f"{name}_excluded_count")
+    )
+    return sheet.grouped(
         f"{what.capitalize()} by group: mean of the valid tests; a break in the termination is a"
         " lower bound and stands apart. Change: against the group of the same line whose"
         " condition is new.",
-        rows, columns, view, _BOUNDS, held=_SCATTER, reason=f"{name}_reason",
+        f"{name}_reason", _SCATTER, _BOUNDS,
     )  # fmt: skip
 
 
 def exposure_table(view: OutcomeView) -> Table | None:
     """Return the straight line of strength over years in the field, one row a line."""
     unit = shown("tension", view.units)
-    columns: list[_Column] = [
-        ("breaks", _count("break_count")),
-        ("years", _interval("exposure_low", "exposure_high", _NUMBER)),
-        (
-            unit.label("strength when new"),
-            _known("strength_when_new", unit, "degrees_of_freedom", 0),
-        ),
-        (
-            f"change a year [{unit.unit}/year]",
-            _known("strength_slope", unit, "degrees_of_freedom", 0),
-        ),
-        ("lost a year [% of new]", _plain("share_lost_per_year", _PERCENT)),
-        (
-            "its interval [% of new]",
-            _interval("share_lost_per_year_low", "share_lost_per_year_high", _PERCENT),
-        ),
-        (unit.label("deviation of a break"), _plain("strength_scatter", unit)),
-        ("p of a straight line [1]", _plain("lack_of_fit_p_value", _NUMBER, 2)),
-        ("lower bounds", _some("lower_bound_count")),
-        ("not used", _some("unused_count")),
-    ]
-    return _table(
+    a_year, lost = Shown(f"{unit.unit}/year", unit.factor), "share_lost_per_year"
+    sheet = _Groups(view, exposure_rows(view.outcomes))
+    new, slope = (
+        sheet.known_from(one, "degrees_of_freedom", 0)
+        for one in ("strength_when_new", "strength_slope")
+    )
+    (
+        sheet.counts("breaks", "break_count")
+        .intervals("years", sheet.of("exposure_low"), sheet.of("exposure_high"))
+        .measured("strength when new", "strength_when_new", unit, new)
+        .measured("change a year", "strength_slope", a_year, slope)
+        .numbers("lost a year", lost, _OF_NEW, 3)
+        .intervals("its interval", f"{lost}_low", f"{lost}_high", _OF_NEW)
+        .numbers("deviation of a break", "strength_scatter", unit, 3)
+        .numbers("p of a straight line", "lack_of_fit_p_value", "number", 2)
+        .some("lower bounds", "lower_bound_count")
+        .some("not used", "unused_count")
+    )
+    return sheet.grouped(
         "Strength against time in the field: a straight line through the breaks of each line.",
-        exposure_rows(view.outcomes), columns, view, _BOUNDS, held=_FIT, reason="exposure_reason",
+        "exposure_reason", _FIT, _BOUNDS,
     )  # fmt: skip
 
 
@@ -212,41 +155,97 @@ def fatigue_table(view: OutcomeView, quantity: str) -> Table | None:
     """Return cycles to failure or of abrasion by group and peak load."""
     force = shown("tension", view.units)
     rows = [row for row in fatigue_rows(view.outcomes) if row["quantity"] == quantity]
-    columns: list[_Column] = [
-        ("peak load [% of rated break strength]", _plain("peak_load_ratio", _PERCENT)),
-        (force.label("peak load"), _plain("peak_load", force, 4)),
-        ("least load [% of rated break strength]", _plain("minimum_load_ratio", _PERCENT)),
-        ("failed", _count("failed_count")),
-        ("stopped", _some("suspended_count")),
-        ("mean of the failed [1]", _known("mean_cycles", _NUMBER, "failed_count")),
-        ("shortest to longest [1]", _interval("least_cycles", "most_cycles", _NUMBER, 4)),
-        ("median life [1]", _plain("median_life", _NUMBER)),
-        ("its interval [1]", _interval("median_life_low", "median_life_high", _NUMBER)),
-        ("not used", _some("excluded_count")),
-    ]
+    sheet = _Groups(view, rows)
+    mean = sheet.known_from("mean_cycles", "failed_count")
+    (
+        sheet.numbers("peak load", "peak_load_ratio", _OF_STRENGTH, 3)
+        .numbers("peak load", "peak_load", force)
+        .numbers("least load", "minimum_load_ratio", _OF_STRENGTH, 3)
+        .counts("failed", "failed_count")
+        .some("stopped", "suspended_count")
+        .measured("mean of the failed", "mean_cycles", "number", mean)
+        .intervals("shortest to longest", "least_cycles", "most_cycles", "number", 4)
+        .numbers("median life", "median_life", "number", 3)
+        .intervals("its interval", "median_life_low", "median_life_high", "number")
+        .some("not used", "excluded_count")
+    )
     what = "Cycles to failure" if quantity == "cycles_to_failure" else "Cycles of abrasion"
-    return _table(
+    return sheet.grouped(
         f"{what} by group and peak load. The mean is of the failed alone; the median life (Weibull)"
         " takes tests that were stopped as lower bounds.",
-        rows, columns, view, _BOUNDS, held=_SCATTER, reason="life_reason",
+        "life_reason", _SCATTER, _BOUNDS,
     )  # fmt: skip
 
 
 def load_life_table(view: OutcomeView) -> Table | None:
     """Return the line of life against peak load, one row a group tested at several loads."""
-    columns: list[_Column] = [
-        ("peak loads [%]", _interval("peak_load_ratio_low", "peak_load_ratio_high", _PERCENT)),
-        ("failed", _count("failed_count")),
-        ("stopped", _some("suspended_count")),
-        ("exponent m [1]", _known("life_exponent", _NUMBER, "failed_count", 2)),
-        ("at a peak load of [%]", _plain("reference_load_ratio", _PERCENT)),
-        ("median life there [1]", _known("life_at_reference", _NUMBER, "failed_count", 2)),
-        ("scatter of ln cycles [1]", _known("log_life_scale", _NUMBER, "failed_count", 2)),
-        ("p of a straight line [1]", _plain("lack_of_fit_p_value", _NUMBER, 2)),
-        ("not used", _some("unused_count")),
-    ]
-    return _table(
+    sheet = _Groups(view, load_life_rows(view.outcomes))
+    exponent, life, scale = (
+        sheet.known_from(one, "failed_count", 2)
+        for one in ("life_exponent", "life_at_reference", "log_life_scale")
+    )
+    (
+        sheet.intervals("peak loads", "peak_load_ratio_low", "peak_load_ratio_high", PERCENT)
+        .counts("failed", "failed_count")
+        .some("stopped", "suspended_count")
+        .measured("exponent m", "life_exponent", "number", exponent)
+        .numbers("at a peak load of", "reference_load_ratio", PERCENT, 3)
+        .measured("median life there", "life_at_reference", "number", life)
+        .measured("scatter of ln cycles", "log_life_scale", "number", scale)
+        .numbers("p of a straight line", "lack_of_fit_p_value", "number", 2)
+        .some("not used", "unused_count")
+    )
+    return sheet.grouped(
         "Life against peak load: ln N = a - m ln S, lives lognormal with one scatter, tests that"
         " were stopped as lower bounds. Loads over the rated break strength.",
-        load_life_rows(view.outcomes), columns, view, held=_FIT, reason="life_reason",
+        "life_reason", _FIT,
     )  # fmt: skip
+
+
+def _snaps(view: OutcomeView) -> list[tuple[str, SnapLevels]]:
+    """Levels of each group whose line goes slack in its cycles, with its name."""
+    found = [one for one in load_series(view.outcomes) if (one.minimum_load_ratio <= 0).any()]
+    names = group_names([one.group for one in found], view.units)
+    return [
+        (
+            name,
+            summarise_snap_loading(
+                one.peak_load_ratio, one.minimum_load_ratio, one.cycles, one.is_suspended
+            ),
+        )
+        for name, one in zip(names, found, strict=True)
+    ]
+
+
+def snap_table(view: OutcomeView) -> Table | None:
+    """Return what each level of peak load did to lines that go slack."""
+    sheets = (
+        Sheet(view)
+        .texts("group", [name] * levels.peak_load_ratio.size)
+        .numbers("peak load", levels.peak_load_ratio, _OF_STRENGTH, 3)
+        .counts("failed", levels.n_failed)
+        .counts("stopped", levels.n_suspended)
+        .numbers("mean of the failed", levels.mean_cycles, "number")
+        .numbers("shortest", levels.least_cycles, "number")
+        .numbers("longest", levels.most_cycles, "number")
+        .numbers("share failing, at most", levels.failed_share_high, PERCENT, 2)
+        for name, levels in _snaps(view)
+    )
+    return Sheet.stack(sheets).table(
+        "Lines that go slack in each cycle, by level of peak load.", remarks=[_SNAP]
+    )
+
+
+def snap_sentences(view: OutcomeView) -> list[str]:
+    """Return between which loads failures begin, and what speaks against a sharp load."""
+    sentences = []
+    for name, levels in _snaps(view):
+        low, high = (PERCENT.factor * end for end in (levels.threshold_low, levels.threshold_high))
+        known = [f"no failure up to {low:.3g} %"] if low == low else []
+        known += [f"the first at {high:.3g} %"] if high == high else []
+        sentences.append(
+            f"{name}: {', '.join(known)} of the rated break strength, of lines that go slack in"
+            " each cycle. These are loads of the tests, and no safe load."
+        )
+        sentences += [f"{name}: {note}." for note in levels.notes]
+    return sentences

@@ -14,8 +14,6 @@ from reduction.outcomes.product import Outcome
 from reduction.report.style import shown
 from reduction.units import UnitSystem
 
-__all__ = ["OutcomeView", "group_names", "line_of", "view_outcomes"]
-
 
 @dataclass(frozen=True)
 class OutcomeView:

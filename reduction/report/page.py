@@ -15,7 +15,6 @@ from reduction.archive.write import write_whole
 from reduction.errors import ArchiveError
 from reduction.report.clientreport import PAGE_NAME, ClientContent, render_client_report
 from reduction.report.designmoduli import design_modulus_table
-from reduction.report.designtables import design_tables
 from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.campaign import (
     draw_all_moduli,
@@ -25,19 +24,21 @@ from reduction.report.figures.campaign import (
 from reduction.report.figures.ratios import draw_ratios
 from reduction.report.figures.together import draw_specimens_together
 from reduction.report.instruments import instrument_sentences, instrument_table
-from reduction.report.manypages import is_page_of_tests, write_pages
+from reduction.report.manypages import write_pages
 from reduction.report.render import Page, RenderedSection, about_page, render_section
 from reduction.report.section import Section, make_part, make_section
-from reduction.report.specimentables import specimen_notes, specimen_table
-from reduction.report.stepwisetables import interval_table
 from reduction.report.summary import find_faults, summary_sentence, test_table, tiles
-from reduction.report.testtables import segment_table
+from reduction.report.testtables import (
+    design_tables,
+    interval_table,
+    segment_table,
+    specimen_notes,
+    specimen_table,
+)
 from reduction.report.view import OF_NO_TEST, Status, TestView, any_synthetic, natural_order
 from reduction.report.whole import WholeCampaign, is_there, read_whole
 from reduction.units import UnitSystem
 from reduction.visible import bare_cell
-
-__all__ = ["is_page_beside", "write_report"]
 
 _LAST = 10**9
 _OF_TESTS = (
@@ -49,17 +50,6 @@ _OF_HOSES = (
 )
 Name = tuple[tuple[int, int, str], ...]
 Place = tuple[int, str, Name, bool, str, float, Name]
-
-
-def is_page_beside(name: str) -> bool:
-    """Whether a file of this name is a page beside that of a campaign, gone where none is needed.
-
-    Examples
-    --------
-    >>> [is_page_beside(name) for name in ("client-report.html", "tests-02.html", "index.html")]
-    [True, True, False]
-    """
-    return name == PAGE_NAME or is_page_of_tests(name)
 
 
 def write_report(

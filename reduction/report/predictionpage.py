@@ -8,13 +8,6 @@ from pathlib import Path
 from reduction.archive.write import write_whole
 from reduction.pipeline.armour import PredictedArmour
 from reduction.pipeline.waveload import PredictedWaveLoad
-from reduction.report.armourtables import (
-    cable_table,
-    design_table,
-    layers_table,
-    use_table,
-    wires_table,
-)
 from reduction.report.figures.armour import draw_errors, draw_wire
 from reduction.report.figures.waves import (
     draw_section,
@@ -23,20 +16,23 @@ from reduction.report.figures.waves import (
     force_per_length,
 )
 from reduction.report.htmltable import Table, number_text
+from reduction.report.predictiontables import (
+    anchor_table,
+    armour_design_table,
+    cable_table,
+    extremes_table,
+    layers_table,
+    regime_table,
+    use_table,
+    wave_coefficient_table,
+    wave_table,
+    wires_table,
+)
 from reduction.report.render import Page, about_page, render_page
 from reduction.report.section import Part, Section, make_part
 from reduction.report.style import Shown, shown, with_prefix
 from reduction.report.summary import Finding, Tile
-from reduction.report.wavetables import (
-    anchor_table,
-    coefficient_table,
-    extremes_table,
-    regime_table,
-    wave_table,
-)
 from reduction.units import UnitSystem
-
-__all__ = ["write_armour_page", "write_wave_page"]
 
 _OF_WAVE = (
     "A regular wave on a hose that lies along its crest and follows the surface; the water moves as"
@@ -90,7 +86,7 @@ def write_wave_page(
             "Surface and section", [*draw_surface(found, units), *draw_section(found, units)],
             [wave_table(found, units), regime_table(found, units)],
         ),
-        make_part("Coefficients", (), [coefficient_table(found)]),
+        make_part("Coefficients", (), [wave_coefficient_table(found)]),
     ]  # fmt: skip
     return _write(
         out, _title("Wave load", name), "load", parts, answer=extremes_table(found, units),
@@ -136,11 +132,13 @@ def write_armour_page(
         tiles.append(Tile(load, "at first yield", "armour"))
     parts = [
         make_part(
-            "The cable and its layers", (), [cable_table(found, units), design_table(found, units)]
+            "The cable and its layers",
+            (),
+            [cable_table(found, units), armour_design_table(found, units)],
         ),
         make_part("One wire", draw_wire(found, units), [wires_table(found, units)]),
         make_part("Where each theory holds", draw_errors(found), [use_table(found)]),
-    ]
+    ]  # fmt: skip
     return _write(
         out, _title("Armour", name), "armour", parts, answer=layers_table(found, units),
         tiles=tiles, notes=found.notes, units=units, about=_OF_ARMOUR,
@@ -153,7 +151,7 @@ def _write(
     key: str,
     parts: Sequence[Part],
     *,
-    answer: Table,
+    answer: Table | None,
     tiles: Sequence[Tile],
     notes: Sequence[str],
     units: UnitSystem,
@@ -174,7 +172,7 @@ def _write(
         tiles=tiles,
         faults=[Finding("warning", (title,), f"{note[:1].upper()}{note[1:]}.") for note in notes],
         chapters=[section],
-        answers=[answer],
+        answers=[] if answer is None else [answer],
     )  # fmt: skip
     path = out / "index.html"
     write_whole(path, render_page(page))

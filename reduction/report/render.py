@@ -24,10 +24,6 @@ from reduction.report.section import Part, Section
 from reduction.report.summary import Finding, Tile
 from reduction.units import UnitSystem
 
-__all__ = [
-    "Link", "Page", "RenderedSection", "about_page", "packed", "render_page", "render_section",
-]  # fmt: skip
-
 _SCRIPTS = ("inflate", "figures", "cycles", "downloads", "contents")
 
 
@@ -152,7 +148,7 @@ def packed(text: str) -> tuple[str, int]:
     (700, True)
     """
     content = text.encode("utf-8")
-    packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
+    packer = zlib.compressobj(6, zlib.DEFLATED, -zlib.MAX_WBITS)
     return b64encode(packer.compress(content) + packer.flush()).decode("ascii"), len(content)
 
 

@@ -17,8 +17,6 @@ from reduction.report.ropeview import RopeView
 from reduction.report.section import Section, make_part, provenance_of
 from reduction.report.summary import Tile
 
-__all__ = ["make_rope_section", "rope_tiles"]
-
 
 def make_rope_section(view: RopeView) -> Section:
     """Return the section of one rope; parts with nothing in them are left out."""

@@ -4,77 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from reduction.line.propertyproduct import PROPERTY_NAMES
-from reduction.report.htmltable import (
-    Cell,
-    Table,
-    count,
-    factors_of,
-    make_table,
-    measured,
-    number,
-    number_text,
-    span,
-    words,
-)
+from reduction.report.htmltable import Cell, Table, measured, number, number_text, span
 from reduction.report.ropeview import RopeView, expanded_property, shared_by_properties
+from reduction.report.sheet import Calculated, Sheet, Unit
 from reduction.report.sources import in_order, source_words
-from reduction.report.style import Shown, shown
-from reduction.report.uncertainty import (
-    expanded_of,
-    plus_minus,
-    plus_minus_of_tests,
-)
-from reduction.report.view import TestView
-
-__all__ = [
-    "answer_of_ropes",
-    "bedding_table",
-    "creep_table",
-    "level_table",
-    "pair_table",
-    "property_table",
-    "told_of",
-]
+from reduction.report.style import PERCENT, Shown, shown
+from reduction.report.uncertainty import plus_minus
 
 _SCATTER = "scatter between cycles, noise, regression"
 _NOT_IN_IT = "load-cell calibration, scale of position or strain, lag between the channels"
-# what is shown of a step: variable, unit of the page or None for a share, words
-_Column = tuple[str, Shown | None, str]
+_COUNTED = ("bedding_cycles", "dynamic_cycles")
 
 
 def answer_of_ropes(views: Sequence[RopeView]) -> Table | None:
     """Return the properties of each rope in a row; least to greatest where it has several."""
     if not views:
         return None
-    force, percent = shown("tension", views[0].units), shown("strain", views[0].units)
-    units = [force if name.endswith("stiffness") else percent for name in PROPERTY_NAMES]
-    rows = [
-        [
-            words(view.specimen),
-            *(_least_to_greatest(view, *one) for one in zip(PROPERTY_NAMES, units, strict=True)),
-        ]
-        for view in views
-    ]
-    return make_table(
+    units = views[0].units
+    sheet = Sheet(Calculated(units, any(view.is_synthetic for view in views)))
+    sheet.texts("rope", [view.specimen for view in views])
+    for name in PROPERTY_NAMES:
+        unit = shown("tension" if name.endswith("stiffness") else "strain", units)
+        sheet.cells(unit.label(name), [_least_to_greatest(view, name, unit) for view in views])
+    return sheet.table(
         "Change-in-length properties of the ropes, least to greatest where the programme gives"
         " several; between which tensions, and why one is missing, is in the section of the rope.",
-        ("rope", *(unit.label(name) for name, unit in zip(PROPERTY_NAMES, units, strict=True))),
-        rows, synthetic=any(view.is_synthetic for view in views), is_tall=len(rows) > 16,
-        remarks=[_about(rows, views)],
+        tall=16, remarks=[_about(sheet, views)],
     )  # fmt: skip
 
 
-def _about(rows: Sequence[Sequence[Cell]], views: Sequence[RopeView]) -> str:
+def _about(sheet: Sheet, views: Sequence[RopeView]) -> str:
     """Say what ± holds: and of the instruments what is stated of them."""
     shared = in_order({one for view in views for one in shared_by_properties(view)})
     if not shared:
-        return plus_minus(factors_of(rows), left_out=_NOT_IN_IT)
+        return plus_minus(sheet.factors, left_out=_NOT_IN_IT)
     told = ", ".join(source_words(one) for one in shared)
-    held = f"{_SCATTER}; and what all samples share: {told}"
-    return plus_minus(factors_of(rows), held, left_out="")
+    return plus_minus(sheet.factors, f"{_SCATTER}; and what all samples share: {told}", left_out="")
 
 
 def _least_to_greatest(view: RopeView, name: str, unit: Shown) -> Cell:
@@ -103,161 +69,111 @@ def told_of(view: RopeView, *, known: bool) -> list[str]:
 
 def property_table(view: RopeView) -> Table | None:
     """Return the six properties; one without a number has its reason."""
-    force, percent = shown("tension", view.units), shown("strain", view.units)
-    seconds = shown("time", view.units)
-    low, high = view.array("property_low_tension"), view.array("property_high_tension")
-    at = view.array("property_reference_time")
-    tests = view.texts("property_test")
-
-    def cell(name: str, row: int, unit: Shown | None) -> Cell:
-        spread = expanded_property(view, name)
-        return measured(view.array(name)[row], spread.half[row], unit, factor=spread.factor[row])
-
-    rows = [
+    force = shown("tension", view.units)
+    ends = zip(view.array("property_low_tension"), view.array("property_high_tension"), strict=True)
+    sheet = Sheet(view, ("property",)).texts("property", "property_name").cells(
+        force.label("tensions"),
         [
-            words(name),
-            number(low[row], force) if low[row] == high[row]
-            else span(low[row], high[row], force, places=0),
-            number(at[row], seconds),
-            cell("property_stiffness", row, force),
-            cell("property_stiffness_over_strength", row, None),
-            cell("property_strain", row, percent),
-            words(tests[row]),
-        ]
-        for row, name in enumerate(view.names)
-    ]  # fmt: skip
-    columns = (
-        "property", force.label("tensions"), seconds.label("time after loading"),
-        force.label("stiffness"), "stiffness over strength [1]", percent.label("strain"),
-        "test or step",
+            number(low, force) if low == high else span(low, high, force, places=0)
+            for low, high in ends
+        ],
     )  # fmt: skip
-    return make_table(
-        f"Change-in-length properties of {view.specimen}.", columns, rows,
-        synthetic=view.is_synthetic, is_tall=len(rows) > 16,
+    sheet.numbers("time after loading", "property_reference_time")
+    properties: tuple[tuple[str, str, Unit], ...] = (
+        ("stiffness", "property_stiffness", None),
+        ("stiffness over strength", "property_stiffness_over_strength", None),
+        ("strain", "property_strain", PERCENT),
+    )
+    for heading, name, unit in properties:
+        sheet.measured(heading, name, unit, expanded_property(view, name))
+    return sheet.texts("test or step", "property_test").table(
+        f"Change-in-length properties of {view.specimen}.", tall=16,
         remarks=[
             *told_of(view, known=True),
             "Original stiffness: chord of the first rise of a new rope. Static: secant between two"
             " held tensions. Dynamic: last cycles of a level. Construction strain: what bedding-in"
             " left at equal tension. Polymer strain: creep from the reference time to the end of"
             " the hold. Working strain: rise of tension over static stiffness, after bedding-in.",
-            _about(rows, [view]),
+            _about(sheet, [view]),
         ],
     )  # fmt: skip
 
 
 def bedding_table(view: RopeView) -> Table | None:
     """Return what bedding-in did."""
-    force, percent = shown("tension", view.units), shown("strain", view.units)
-    return _table(
+    return _of_steps(
         view, "specimen", "bedding_permanent_strain", "Bedding-in.",
-        (
-            ("bedding_cycles", None, "cycles [1]"),
-            ("bedding_first_stiffness", force, force.label("stiffness of the first cycle")),
-            ("bedding_last_stiffness", force, force.label("stiffness of the last cycle")),
-            ("bedding_stiffening", None, "last over first [1]"),
-            ("bedding_permanent_strain", percent, percent.label("permanent strain")),
-        ),
+        ("cycles [1]", "bedding_cycles"),
+        ("stiffness of the first cycle", "bedding_first_stiffness"),
+        ("stiffness of the last cycle", "bedding_last_stiffness"),
+        ("last over first", "bedding_stiffening"),
+        ("permanent strain", "bedding_permanent_strain", PERCENT),
     )  # fmt: skip
 
 
 def level_table(view: RopeView) -> Table | None:
     """Return the levels of dynamic stiffness."""
-    force, hertz = shown("tension", view.units), shown("frequency", view.units)
-    return _table(
+    return _of_steps(
         view, "specimen", "dynamic_stiffness", "Levels of dynamic stiffness, last cycles of each.",
-        (
-            ("dynamic_mean_tension", force, force.label("mean tension")),
-            ("dynamic_tension_amplitude", force, force.label("tension amplitude")),
-            ("dynamic_frequency", hertz, hertz.label("frequency")),
-            ("dynamic_cycles", None, "cycles [1]"),
-            ("dynamic_stiffness", force, force.label("dynamic stiffness")),
-            ("dynamic_stiffness_over_strength", None, "over strength [1]"),
-            ("dynamic_stiffness_drift", force, force.label("change a cycle")),
-        ),
+        ("mean tension", "dynamic_mean_tension"),
+        ("tension amplitude", "dynamic_tension_amplitude"),
+        ("frequency", "dynamic_frequency"),
+        ("cycles [1]", "dynamic_cycles"),
+        ("dynamic stiffness", "dynamic_stiffness"),
+        ("over strength", "dynamic_stiffness_over_strength"),
+        ("change a cycle", "dynamic_stiffness_drift"),
     )  # fmt: skip
 
 
 def pair_table(view: RopeView) -> Table | None:
     """Return the pairs of holds, with the reason of one without a stiffness."""
-    force, seconds = shown("tension", view.units), shown("time", view.units)
-    return _table(
+    return _of_steps(
         view, "held_pair", "static_stiffness", "Pairs of held tensions.",
-        (
-            ("held_pair_low_tension", force, force.label("lower tension")),
-            ("held_pair_high_tension", force, force.label("higher tension")),
-            ("static_reference_time", seconds, seconds.label("reference time")),
-            ("static_stiffness", force, force.label("static stiffness")),
-            ("static_stiffness_over_strength", None, "over strength [1]"),
-            ("static_stiffness_per_decade", force, force.label("change a decade of time")),
-        ),
+        ("lower tension", "held_pair_low_tension"),
+        ("higher tension", "held_pair_high_tension"),
+        ("reference time", "static_reference_time"),
+        ("static stiffness", "static_stiffness"),
+        ("over strength", "static_stiffness_over_strength"),
+        ("change a decade of time", "static_stiffness_per_decade"),
         reason="static_refusal",
     )  # fmt: skip
 
 
 def creep_table(view: RopeView) -> Table | None:
     """Return the holds at a kept tension, with the reason of one without a rate."""
-    force, seconds = shown("tension", view.units), shown("time", view.units)
-    percent = shown("strain", view.units)
-    return _table(
+    return _of_steps(
         view, "hold", "creep_tension_over_strength", "Creep at held tensions.",
-        (
-            ("hold_final_tension", force, force.label("tension")),
-            ("creep_tension_over_strength", None, "over strength [1]"),
-            ("hold_duration", seconds, seconds.label("lasts")),
-            ("creep_rate_per_decade", percent, percent.label("strain a decade of time")),
-            (
-                "creep_compliance_per_decade", percent,
-                percent.label("strain a decade, over tension as a share of strength"),
-            ),
-        ),
+        ("tension", "hold_final_tension"),
+        ("over strength", "creep_tension_over_strength"),
+        ("lasts", "hold_duration"),
+        ("strain a decade of time", "creep_rate_per_decade", PERCENT),
+        ("strain a decade, over tension as a share of strength", "creep_compliance_per_decade",
+         PERCENT),
         reason="hold_refusal",
     )  # fmt: skip
 
 
-def _table(
+def _of_steps(
     view: RopeView,
     along: str,
     needed: str,
     caption: str,
-    columns: Sequence[_Column],
-    *,
+    *columns: tuple[str, str] | tuple[str, str, Unit],
     reason: str = "",
 ) -> Table | None:
     """Return one row a step and place of this rope; a column that no row fills is left out."""
-    entries = list(view.entries(along, needed))
-    filled = [one for one in columns if any(_is_known(*entry, one[0]) for entry in entries)]
-    if not filled:
+    sheets = []
+    for test in view.tests:
+        sheet = Sheet(test, (along,))
+        owner = sheet.of(along if along == "specimen" else f"{along}_specimen", "")
+        sheet.keep(owner.astype(str) == view.specimen)
+        if not sheet.n_rows or needed not in test.data:
+            continue
+        sheet.texts("test or step", [test.id] * sheet.n_rows)
+        for one in columns:
+            sheet.counts(*one[:2]) if one[1] in _COUNTED else sheet.all_of(one)
+        sheets.append(sheet.texts("why there is no number", reason))
+    found = Sheet.stack(sheets, view)
+    if not found.is_known:
         return None
-    rows = [
-        [words(test.id), *(_cell(test, place, name, unit) for name, unit, _ in filled)]
-        for test, place in entries
-    ]
-    labels = ["test or step", *(label for *_, label in filled)]
-    why = [test.texts(reason)[place] if reason in test.data else "" for test, place in entries]
-    if any(why):
-        labels.append("why there is no number")
-        rows = [[*row, words(one)] for row, one in zip(rows, why, strict=True)]
-    return make_table(
-        caption, labels, rows, synthetic=view.is_synthetic, is_tall=len(rows) > 16,
-        remarks=[
-            plus_minus_of_tests(
-                factors_of(rows), [test for test, _ in entries], [name for name, *_ in filled]
-            )
-        ],
-    )  # fmt: skip
-
-
-def _is_known(test: TestView, place: int, name: str) -> bool:
-    return name in test.data and bool(np.isfinite(test.data[name].values[place]))
-
-
-def _cell(test: TestView, place: int, name: str, unit: Shown | None) -> Cell:
-    if name not in test.data:
-        return number(float("nan"))
-    if test.data[name].dtype.kind == "i":
-        return count(float(test.data[name].values[place]))
-    values = np.asarray(test.data[name].values, dtype=np.float64)
-    spread = expanded_of(test, name, values)
-    return measured(
-        float(values[place]), float(spread.half[place]), unit, factor=float(spread.factor[place])
-    )
+    return found.table(caption, optional=found.headings, tall=16, remarks=[found.about()])

@@ -11,11 +11,9 @@ import xarray as xr
 
 from reduction.archive.shared import COMPONENT
 from reduction.record import Floats
-from reduction.report.uncertainty import MANY, Expanded, expand
+from reduction.report.uncertainty import Expanded, expand
 from reduction.report.view import TestView
 from reduction.units import UnitSystem
-
-__all__ = ["RopeView", "expanded_property", "shared_by_properties", "view_ropes"]
 
 _ROUNDING = 1e-6
 
@@ -88,12 +86,11 @@ class RopeView:
 def expanded_property(view: RopeView, name: str) -> Expanded:
     """Return the expanded uncertainty of a property in each row, of shared and random parts."""
     spread = view.array(f"{name}_standard_uncertainty")
-    kept, freedom = f"{name}_random_standard_uncertainty", f"{name}_degrees_of_freedom"
+    kept = f"{name}_random_standard_uncertainty"
     return expand(
         spread,
         random=view.array(kept) if kept in view.data else None,
-        # an archive of an earlier version does not say
-        degrees_of_freedom=view.array(freedom) if freedom in view.data else MANY,
+        degrees_of_freedom=view.array(f"{name}_degrees_of_freedom"),
     )
 
 

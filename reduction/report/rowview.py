@@ -14,8 +14,6 @@ from reduction.notes import Severity, severity_of
 from reduction.record import Floats
 from reduction.units import UnitSystem
 
-__all__ = ["RowView"]
-
 
 @dataclass(frozen=True)
 class RowView:

@@ -24,30 +24,30 @@ from reduction.report.figures.record import draw_record, draw_tension_position
 from reduction.report.figures.splices import draw_splices
 from reduction.report.figures.stepwise import draw_steps
 from reduction.report.figures.trends import draw_trends
-from reduction.report.holdtables import hold_table, prony_table, refusals
 from reduction.report.htmltable import Table
-from reduction.report.linetables import line_table
-from reduction.report.pulltables import pull_share_table, pull_table
-from reduction.report.specimentables import (
-    coefficient_table,
-    history_table,
-    mark_table,
-    slope_sentences,
-)
-from reduction.report.stepwisetables import interval_table, step_table
 from reduction.report.summary import brief, grouped_notes
 from reduction.report.testtables import (
+    coefficient_table,
     elastomer_table,
     flag_table,
+    history_table,
+    hold_table,
     identity_table,
+    interval_table,
+    line_table,
+    mark_table,
+    prony_table,
+    pull_share_table,
+    pull_table,
+    refusals,
     segment_table,
     slip_table,
+    slope_sentences,
+    step_table,
     stress_table,
     summary_table,
 )
 from reduction.report.view import TestView
-
-__all__ = ["Part", "Section", "make_part", "make_section", "provenance_of"]
 
 _BUDGETS = "Where the uncertainty comes from"
 _LINES = ("raw_file", "raw_file_sha256", "raw_file_bytes")

@@ -12,15 +12,6 @@ from typing import Any
 from reduction.report.style import COLOURS
 from reduction.uncertainty.budget import RANDOM
 
-__all__ = [
-    "FROM_READINGS",
-    "bar_look",
-    "in_order",
-    "is_hatched",
-    "source_meanings",
-    "source_words",
-]
-
 _BLUE, _VERMILION, _GREEN, _PURPLE, _ORANGE, _SKY, _GREY = COLOURS
 _LOOKS: dict[str, tuple[str, str]] = {
     RANDOM: (_GREY, ""),

@@ -18,27 +18,9 @@ import re
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from reduction.units import UnitSystem, display_unit
+import numpy as np
 
-__all__ = [
-    "COLOURS",
-    "DASHES",
-    "FILLINGS",
-    "PHASE_FILLS",
-    "SYMBOLS",
-    "Kind",
-    "Shown",
-    "colour",
-    "faded",
-    "marked",
-    "marker",
-    "plot_text",
-    "shorten",
-    "shown",
-    "superscript",
-    "symbol",
-    "with_prefix",
-]
+from reduction.units import UnitSystem, display_unit
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#686868")
 DASHES = {"ascending": "solid", "descending": "dash"}
@@ -75,6 +57,10 @@ _PREFIXED: dict[Kind, tuple[str, float]] = {
     "area": ("mm²", 1e6),
     "energy": ("J/m", 1.0),
 }
+_KIND_OF_UNIT: dict[str, Kind] = {
+    "N": "tension", "Pa": "stress", "s": "time", "Hz": "frequency", "J m-1": "energy",
+    "m": "small length", "m2": "area", "1": "number",
+}  # fmt: skip
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _TAKE_PREFIX = ("N", "Pa", "J/m")
 _INCHES_IN_A_FOOT = 12.0
@@ -92,6 +78,10 @@ class Shown:
         return f"{words} [{self.unit}]"
 
 
+DEGREES = Shown("deg", 180 / np.pi)
+PERCENT = Shown("%", 100.0)
+
+
 def shown(kind: Kind, system: UnitSystem) -> Shown:
     """Return the unit in which a kind of quantity is shown.
 
@@ -103,13 +93,28 @@ def shown(kind: Kind, system: UnitSystem) -> Shown:
     'strain [%]'
     """
     if kind == "strain":
-        return Shown("%", 100.0)
+        return PERCENT
     if system == "si" and kind in _PREFIXED:
         return Shown(*_PREFIXED[kind])
     unit, factor = display_unit(_SI_UNIT[kind], system)
     if kind == "small length":
         return Shown("in", factor * _INCHES_IN_A_FOOT)
     return Shown({"in2": "in²"}.get(unit, unit), factor)
+
+
+def shown_unit(unit: str, system: UnitSystem) -> Shown:
+    """Return how a quantity of an SI unit is shown; a length as a small one, an angle in degrees.
+
+    Examples
+    --------
+    >>> shown_unit("Pa", "si"), shown_unit("N s", "us").unit
+    (Shown(unit='MPa', factor=1e-06), 'lbf s')
+    """
+    if unit == "rad":
+        return DEGREES
+    if unit in _KIND_OF_UNIT:
+        return shown(_KIND_OF_UNIT[unit], system)
+    return Shown(*display_unit(unit, system))
 
 
 def with_prefix(unit: Shown, greatest: float) -> Shown:

@@ -16,11 +16,6 @@ from reduction.report.htmltable import NOT_GIVEN, Cell, Table, count, make_table
 from reduction.report.style import shorten, shown
 from reduction.report.view import OF_NO_TEST, Status, TestView, all_specimens, any_synthetic
 
-__all__ = [
-    "Finding", "Severity", "Tile", "all_notes", "brief", "find_faults", "grouped_notes",
-    "summary_sentence", "test_table", "tiles",
-]  # fmt: skip
-
 Severity = Literal["failure", "warning", "note", "refusal"]
 _ORDER: tuple[Severity, ...] = ("failure", "warning", "note", "refusal")
 _NOT_SHOWN = "no archive"

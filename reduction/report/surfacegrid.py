@@ -14,16 +14,6 @@ from reduction.surface.product import ResponseSurfaces
 from reduction.surface.tested import greatest_leverage
 from reduction.vocabulary import RESPONSES
 
-__all__ = [
-    "HELD",
-    "Planes",
-    "extremes_in_box",
-    "leverage_ratio",
-    "make_planes",
-    "negative_inside",
-    "runs_on_plane",
-]
-
 POINTS = 31
 """Points along each side of a plane: finer is not seen, and makes the page heavy."""
 HELD = (-1.0, 0.0, 1.0)

@@ -19,11 +19,6 @@ from reduction.surface.product import ResponseSurfaces
 from reduction.uncertainty.combine import coverage_factor, effective_degrees_of_freedom
 from reduction.uncertainty.surfacepoints import with_shared_at_points
 
-__all__ = [
-    "CoefficientSpread", "expanded_of_coefficients", "expanded_of_runs", "interval_of_surfaces",
-    "shared_by_runs",
-]  # fmt: skip
-
 _CONTRIBUTION = "_uncertainty_contribution"
 
 

@@ -15,18 +15,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.archive.freedom import effective_freedom
-from reduction.archive.statederrors import says_what_is_shared
 from reduction.record import Floats
 from reduction.report.instruments import NOTHING_STATED, is_stated
 from reduction.report.sources import FROM_READINGS, in_order, source_words
 from reduction.report.view import TestView
 from reduction.uncertainty.combine import coverage_factor, effective_degrees_of_freedom
 from reduction.uncertainty.product import LINE_METHODS
-
-__all__ = [
-    "DRAWN", "MANY", "NORMAL", "Expanded", "drawn_interval", "expand", "expanded_of",
-    "factor_words", "plus_minus", "plus_minus_of_tests", "shared_sources",
-]  # fmt: skip
 
 DRAWN = (
     "In brackets: the 95 % interval by Monte Carlo, of the same errors, where they are so large"
@@ -187,7 +181,7 @@ def plus_minus_of_tests(
     found_from: str = _CYCLES,
     mark: str = "±",
 ) -> str:
-    """Return the sentence for quantities of tests: with what is shared, where archives keep it.
+    """Return the sentence for quantities of tests: with what is shared.
 
     Where nothing is stated of the instruments, it says that.
     """
@@ -195,7 +189,7 @@ def plus_minus_of_tests(
     held = found_from
     if shared:
         held += f"; and what all samples share: {', '.join(source_words(one) for one in shared)}"
-    said = plus_minus(factors, held, left_out="", mark=mark) + _not_kept(views, names)
+    said = plus_minus(factors, held, left_out="", mark=mark)
     if set(shared) - FROM_READINGS:
         return said
     if not any(is_stated(view) for view in views):
@@ -204,17 +198,3 @@ def plus_minus_of_tests(
     if any(f"{name}_uncertainty_contribution" in view.data for view in views for name in names):
         return f"{said} Nothing that is stated of the instruments reaches it."
     return f"{said} Not in it: {_INSTRUMENTS}."
-
-
-def _not_kept(views: Sequence[TestView], names: Sequence[str]) -> str:
-    """Which tests have their scatter alone, beside others with what they share."""
-    kept = [f"{name}_uncertainty_contribution" for name in names]
-    if not any(name in view.data for view in views for name in kept):
-        return ""
-    silent = dict.fromkeys(view.id for view in views if not says_what_is_shared(view.data))
-    if not silent:
-        return ""
-    return (
-        f" Not of {', '.join(silent)}: their archives do not keep what they share, and ± is their"
-        " scatter alone; reduce them again."
-    )

@@ -15,8 +15,6 @@ from reduction.report.figure import Figure, Trace
 from reduction.report.vectoraxes import DrawnAxis, axis_of, plain_label
 from reduction.report.vectormarks import drawn_key, drawn_trace
 
-__all__ = ["can_be_drawn", "vector_of"]
-
 _LEFT, _RIGHT, _TOP, _BOTTOM = 30.0, 12.0, 34.0, 44.0
 _LEGEND_ROW, _LEGEND_KEY, _LETTER = 15.0, 34.0, 5.9
 _FEWEST_LETTERS = 4

@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from math import ceil, floor, isfinite, log10, nan
 from typing import Any
 
-__all__ = ["DrawnAxis", "Tick", "axis_of", "plain_label", "round_ticks"]
-
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _MARGIN = 0.04
 _ROUNDING = 1e-9

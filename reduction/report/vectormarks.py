@@ -10,8 +10,6 @@ from typing import Any
 from reduction.report.figure import Trace
 from reduction.report.vectoraxes import DrawnAxis
 
-__all__ = ["drawn_key", "drawn_trace"]
-
 _DASHES = {
     "dash": "6 3.5", "dot": "1.5 3", "dashdot": "6 3 1.5 3", "longdash": "10 4",
     "longdashdot": "10 4 1.5 4",

@@ -13,8 +13,6 @@ from reduction.archive.kept import stored_cycles
 from reduction.record import Floats, Integers
 from reduction.units import UnitSystem
 
-__all__ = ["OF_NO_TEST", "Status", "TestView", "all_specimens", "any_synthetic", "natural_order"]
-
 OF_NO_TEST = "of_no_test"
 """Status of an archive that status.csv has no row for: the campaign has no such test now."""
 _REACHED = ("mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
@@ -190,7 +188,9 @@ class TestView:
         return replace(self, data=data.drop_vars(single).load())
 
     def at_cycles(self, places: Integers) -> TestView:
-        """Return the same test with some of its cycles, counted from 0."""
+        """Return the same test with some of its cycles, counted from 0 and in order."""
+        if len(places) == self.data.sizes["cycle"]:
+            return self
         return replace(self, data=self.data.isel(cycle=places))
 
 

@@ -16,29 +16,26 @@ from reduction.report.comparisonsection import (
     comparison_tiles,
     make_comparison_section,
 )
-from reduction.report.comparisontables import verdict_table
 from reduction.report.comparisonview import ComparisonView, view_comparisons
 from reduction.report.experimentsection import make_experiment_section
+from reduction.report.experimenttables import answer_table
 from reduction.report.experimentview import ExperimentView
 from reduction.report.experimentwords import experiment_findings
 from reduction.report.figures.comparisons import draw_all_comparisons
 from reduction.report.figures.hoses import draw_all_hoses
 from reduction.report.hosesection import hose_findings, hose_tiles, make_hose_section
-from reduction.report.hosetables import answer_of_hoses
 from reduction.report.hoseview import HoseView, view_hoses
 from reduction.report.htmltable import Table
 from reduction.report.outcomesection import make_outcome_section
 from reduction.report.outcomeview import OutcomeView, view_outcomes
+from reduction.report.predictiontables import answer_of_hoses, verdict_table
 from reduction.report.ropesection import make_rope_section, rope_tiles
 from reduction.report.ropetables import answer_of_ropes
 from reduction.report.ropeview import RopeView, view_ropes
 from reduction.report.section import Part, Section, make_part
 from reduction.report.summary import Finding, Tile
-from reduction.report.surfacetables import answer_table
 from reduction.report.view import TestView
 from reduction.units import UnitSystem
-
-__all__ = ["WholeCampaign", "is_there", "read_whole"]
 
 _SHOWN = ("outcomes", "surfaces", "predictions", "comparisons", "change_in_length")
 _STRAY = (

@@ -15,8 +15,6 @@ from reduction.record import Floats
 from reduction.reproduce.item import Item, judge, not_testable
 from reduction.reproduce.wording import judge_limit
 
-__all__ = ["Answer", "Answers", "Key", "item_of", "items_from", "log_slope"]
-
 _ROUND_OFF = 1e-9
 
 Key = tuple[str, str, str]

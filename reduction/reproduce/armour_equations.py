@@ -22,8 +22,6 @@ from reduction.predict.armouryield import layer_strength
 from reduction.record import Floats
 from reduction.reproduce.answers import Answer, Answers, log_slope
 
-__all__ = ["ELASTIC_MODULUS", "POISSON_RATIO", "armour", "equation_answers", "response"]
-
 ELASTIC_MODULUS, POISSON_RATIO = 210_000e6, 0.3
 """Table 1; the modulus in [Pa]."""
 _WIRE, _STRAIN = 2.5e-3, 1e-3  # sections 4.1 and 4.2

@@ -12,16 +12,6 @@ from reduction.published.cell import Cell, number_of, printed_step
 from reduction.record import Floats
 from reduction.reproduce.item import Item, not_testable
 
-__all__ = [
-    "CUBIC_SCALES",
-    "POLYNOMIAL_SCALES",
-    "Check",
-    "Pages",
-    "always",
-    "number",
-    "rounding",
-]
-
 POLYNOMIAL_SCALES = np.array([1e4, 1.0, 1e-3, 1e-7])
 """Of A, B, C, D of Tables 6 and 7: to pounds."""
 CUBIC_SCALES = np.array([1e-4, 1e-4, 1e-8, 1e-12])

@@ -27,8 +27,6 @@ from reduction.reproduce.wording import judge_round, judge_word
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.terms import model_matrix, quadratic_exponents
 
-__all__ = ["CLAIMS_OF_STIFFNESS"]
-
 COLUMN_LOST = "the column of the five-year line is lost in the text"
 
 

@@ -12,8 +12,6 @@ from reduction.reproduce.wording import judge_word
 from reduction.surface.coding import coded_from_engineering
 from reduction.surface.designs import box_behnken, plackett_burman
 
-__all__ = ["CLAIMS_OF_SETTINGS"]
-
 SETTING = "a setting of the tests"
 PRINTED_IN = {"sec 4.3": "sec 4.4.2", "sec 4.4.2": "sec 4.3", "sec 6.3.1": "App G",
               "App G": "sec 6.3.1"}  # fmt: skip

@@ -16,8 +16,6 @@ from reduction.reproduce.cg_lines import (
 from reduction.reproduce.item import Item, agree, judge
 from reduction.reproduce.wording import judge_word
 
-__all__ = ["CLAIMS_OF_PULLS"]
-
 STRENGTH = {
     NYLON_BRAID: ("2", f"{NYLON_BRAID} | all", "rated_break_strength"),
     NYLON_PLAITED: ("10", f"{NYLON_PLAITED} | new", "tensile_strength mean"),

@@ -20,8 +20,6 @@ from reduction.reproduce.cg_tests import change_of_table_10
 from reduction.reproduce.item import Item, agree, judge
 from reduction.reproduce.wording import judge_round, judge_word
 
-__all__ = ["CLAIMS_OF_TESTS"]
-
 CYCLES = "abrasion_cycles"
 FIGURE_19 = "Figure 19 is not in the text"
 

@@ -23,8 +23,6 @@ from reduction.reproduce.cg_surfaces import TABLES_OF, item_of_surface
 from reduction.reproduce.cg_tests import item_of_test
 from reduction.reproduce.item import Item, not_testable
 
-__all__ = ["item_of", "items", "items_of"]
-
 SURFACES = {table for tables in TABLES_OF.values() for table in tables}
 OF_TABLE = {
     **dict.fromkeys(("1", "2", "A-1"), item_of_level),

@@ -10,11 +10,6 @@ from reduction.reproduce.cg_cells import Pages, number, rounding
 from reduction.reproduce.cg_lines import PLAITED, SCREEN, STRAIN_AT_FAILURE, STRENGTH
 from reduction.reproduce.item import Item, judge, not_testable
 
-__all__ = [
-    "AFTER", "DRY", "GROUPS", "HIGH", "LOW", "MEASURED", "SAMPLES", "WET", "common_step",
-    "item_of_f_test", "item_of_group",
-]  # fmt: skip
-
 MEASURED = "measured"
 DRY, WET, AFTER = "dry, not cycled", "wet, before cycling", "wet, after cycling"
 LOW, HIGH, UNCYCLED = (

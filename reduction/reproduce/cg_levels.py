@@ -10,8 +10,6 @@ from reduction.reproduce.cg_cells import Pages
 from reduction.reproduce.cg_lines import K_AP
 from reduction.reproduce.item import Item, judge, not_testable
 
-__all__ = ["item_of_level"]
-
 SETTING = "a setting that is printed once"
 BRAID = "nylon | double braid"
 # a line with these levels, the table of its range, the row of its strength

@@ -4,12 +4,6 @@ from __future__ import annotations
 
 from reduction.reproduce.cg_cells import Pages
 
-__all__ = [
-    "CENTRE_LINES", "ENERGY", "K_1", "K_AP", "NYLON_BRAID", "NYLON_BRAIDS", "NYLON_PLAITED",
-    "PLAITED", "POLYESTER_BRAID", "POLYESTER_PLAITED", "SCREEN", "STRAIN_AT_FAILURE", "STRENGTH",
-    "TIME", "centre_stiffness", "levels_of",
-]  # fmt: skip
-
 K_AP, ENERGY, K_1, TIME = (
     "apparent_spring_constant", "hysteresis_energy", "dissipation_spring_constant",
     "relaxation_time",

@@ -16,8 +16,6 @@ from reduction.reproduce.cg_lines import CENTRE_LINES, levels_of
 from reduction.reproduce.item import Item, agree, beside, judge, not_testable
 from reduction.reproduce.wording import judge_as
 
-__all__ = ["item_of_static"]
-
 REST, STRAIN = "quasi_static_spring_constant", "quasi_static_strain"
 RANGE = "mean_tension high"
 FITTED = "a fit to pulls that are not printed"

@@ -28,8 +28,6 @@ from reduction.reproduce.item import Item, beside, judge, not_testable
 from reduction.surface.overall import statistics_from_r2
 from reduction.surface.terms import model_matrix, quadratic_exponents
 
-__all__ = ["TABLES_OF", "change_of_mean", "item_of_surface"]
-
 TABLES_OF = {
     K_AP: ("3", "4", "5"), ENERGY: ("11", "12", "13"), K_1: ("14", "15", "16"),
     TIME: ("17", "18", "19"),

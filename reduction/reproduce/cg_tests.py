@@ -25,8 +25,6 @@ from reduction.reproduce.cg_ftests import (
 from reduction.reproduce.cg_lines import PLAITED, STRAIN_AT_FAILURE, STRENGTH
 from reduction.reproduce.item import Item, judge, not_testable
 
-__all__ = ["change_of_table_10", "item_of_test"]
-
 
 def item_of_test(cell: Cell, pages: Pages) -> Item:
     """Verdict on a cell of Tables 10, 20, 21, A-2, A-3 and A-4."""

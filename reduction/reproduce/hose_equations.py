@@ -22,8 +22,6 @@ from reduction.predict.wrapangle import current_wrap_angle
 from reduction.record import Floats
 from reduction.reproduce.answers import Answer, Answers, log_slope
 
-__all__ = ["equation_answers"]
-
 _ANGLE = np.radians(68.0)
 _WRAP, _CORDS_PER_INCH = 3.5, 34.0
 _HOSE = HoseDesign(

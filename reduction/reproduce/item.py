@@ -10,8 +10,6 @@ import numpy as np
 
 from reduction.published.cell import Cell, number_of, printed_step
 
-__all__ = ["Item", "Verdict", "agree", "beside", "judge", "not_testable"]
-
 Verdict = Literal["reproduced", "erratum", "open", "not_testable", "unexplained"]
 
 

@@ -24,8 +24,6 @@ from reduction.reproduce.reports import (
     touched_errata,
 )
 
-__all__ = ["TITLES", "number_beside", "render_reproduction"]
-
 TITLES: Mapping[ReportId, str] = {
     "WHOI-2004-06": "W. Paul, Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical "
     "Properties, Woods Hole Oceanog. Inst., 2004",

@@ -14,17 +14,6 @@ from reduction.published.read import REPORTS, errata_of
 from reduction.reproduce import cg_d_39_80, wang_2022, whoi_2004_06, whoi_2005_10, zhang_2015
 from reduction.reproduce.item import Item, Verdict
 
-__all__ = [
-    "VERDICTS",
-    "Counts",
-    "TouchedErratum",
-    "counts_by_table",
-    "counts_of",
-    "csv_of",
-    "reproduce",
-    "touched_errata",
-]
-
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 Counts = dict[str, int]

@@ -26,8 +26,6 @@ from reduction.reproduce.tether_rows import Row, number_in_use, rows_of
 from reduction.reproduce.wording import judge_limit, judge_round
 from reduction.units import scale_to_si
 
-__all__ = ["items_of_claims"]
-
 _INCH = scale_to_si("inch", "length")[0]
 _PSI = scale_to_si("psi", "stress")[0]
 _NEAR = 0.1  # of strain: how far the line of a first segment is carried down to 100 %

@@ -20,8 +20,6 @@ from reduction.reproduce.tether_rows import Row, rows_of
 from reduction.strain.splice import free_length_fraction, free_length_strain
 from reduction.strain.stress import constant_volume_diameter
 
-__all__ = ["items_of_diameters", "items_of_marks", "items_of_weights", "static_gauge_length"]
-
 _PART = {
     "splice_fraction near": "splice_length near",
     "free_fraction": "free_length",

@@ -20,8 +20,6 @@ from reduction.published.cell import Cell, printed_step
 from reduction.reproduce.item import Item, judge, not_testable
 from reduction.reproduce.tether_rows import Row, rows_of
 
-__all__ = ["areas_of_tables", "items_of_segments", "shared_area"]
-
 HIGH, LOW = "segment_tension_high", "segment_tension_low"
 UPPER, LOWER = "segment_strain_high", "segment_strain_low"
 MODULUS = "segment_modulus"

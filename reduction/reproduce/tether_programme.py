@@ -17,8 +17,6 @@ from reduction.reproduce.answers import Key
 from reduction.reproduce.item import Item, judge, not_testable
 from reduction.reproduce.tether_rows import Row, number_in_use, rows_of
 
-__all__ = ["item_of_programme", "item_printed_twice", "items_of_plan"]
-
 _SECTION = {
     "T-1": "4.1", "T-2": "4.2", "T-3": "4.3", "T-4": "4.4", "T-5": "4.5", "T-6": "4.6",
     "T-4 Extended": "4.7",

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from reduction.published.cell import Cell, number_of
 
-__all__ = ["Row", "number_in_use", "rows_of"]
-
 
 def number_in_use(cell: Cell) -> float:
     """Number of a cell as corrected, or as printed where it is open; NaN where there is none.

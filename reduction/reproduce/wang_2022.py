@@ -20,8 +20,6 @@ from reduction.reproduce.answers import Answer, Answers, items_from
 from reduction.reproduce.armour_equations import armour, equation_answers, response
 from reduction.reproduce.item import Item
 
-__all__ = ["answers", "items"]
-
 _AXIAL, _SHEAR, _BENDING, _TORSION = (
     "axial force T", "shear force N'", "bending moment G'", "torsion moment H",
 )  # fmt: skip

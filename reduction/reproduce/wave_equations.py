@@ -30,8 +30,6 @@ from reduction.reproduce.wave_settings import (
     SPEED,
 )
 
-__all__ = ["equation_answers"]
-
 
 def equation_answers() -> Answers:
     """Answers to the numbers in equations (1) to (17).

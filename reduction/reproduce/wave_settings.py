@@ -7,18 +7,6 @@ from math import pi
 from reduction.published.cell import Cell
 from reduction.published.read import cells_of
 
-__all__ = [
-    "DEPTH",
-    "FREQUENCY",
-    "GRAVITY",
-    "HEIGHT",
-    "LENGTH",
-    "NUMBER",
-    "PERIOD",
-    "SPEED",
-    "cells_of_table",
-]
-
 LENGTH, PERIOD, SPEED, HEIGHT = 20.0, 3.57, 5.6, 1.25
 """Table 4. [m], [s], [m/s], [m]."""
 NUMBER, FREQUENCY = 2 * pi / LENGTH, 2 * pi / PERIOD

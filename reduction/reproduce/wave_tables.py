@@ -40,8 +40,6 @@ from reduction.reproduce.wave_settings import (
     cells_of_table,
 )
 
-__all__ = ["table_answers"]
-
 _METHODS = {"Morison theory": "F0", "improved Morison theory": "F1"}
 _SETTINGS = "(1), (10) with 1030 kg/m3, z = 0, omega = 2 pi / 3.57 s, g = 9.8 m/s2"
 _WITH_15 = "velocity of (15) in both columns"

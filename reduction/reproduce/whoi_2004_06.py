@@ -19,8 +19,6 @@ from reduction.reproduce.answers import Answer, Answers, items_from
 from reduction.reproduce.hose_equations import equation_answers
 from reduction.reproduce.item import Item
 
-__all__ = ["answers", "items"]
-
 _FABRIC, _HOSE = "nylon tire cord fabric", "stretch hose"
 _MEDIUM, _HIGH = "medium high stretching hose", "high stretching hose"
 _TEST = "sec 3.0"

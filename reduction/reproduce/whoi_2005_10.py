@@ -24,8 +24,6 @@ from reduction.reproduce.tether_programme import (
     items_of_plan,
 )
 
-__all__ = ["items", "items_of"]
-
 _TEXT = "a statement, not a number that others give; see its erratum"
 _OF_THE_FIELD = "from use at sea, or a pull without record"
 _OF_OTHERS = "of another component or test, with no numbers of it here"

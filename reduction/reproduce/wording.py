@@ -7,8 +7,6 @@ from dataclasses import replace
 from reduction.published.cell import Cell, number_of, printed_step
 from reduction.reproduce.item import Item, judge
 
-__all__ = ["judge_as", "judge_limit", "judge_round", "judge_word", "last_counted_place"]
-
 _WORDS = {
     "one": 1.0, "one-and-a-half": 1.5, "two": 2.0, "twice": 2.0, "three": 3.0, "four": 4.0,
     "five": 5.0, "six": 6.0, "nine": 9.0, "twelve": 12.0,

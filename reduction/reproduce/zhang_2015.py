@@ -15,7 +15,7 @@ from __future__ import annotations
 from math import pi
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from reduction.predict.breaking import breaking_height
 from reduction.predict.dispersion import STANDARD_GRAVITY, wave_period_of
@@ -35,8 +35,6 @@ from reduction.reproduce.wave_settings import (
     cells_of_table,
 )
 from reduction.reproduce.wave_tables import table_answers
-
-__all__ = ["answers", "items"]
 
 _HOSE = {
     "outer_diameter": 114.0,
@@ -159,7 +157,7 @@ def _needed(name: str, immersion: float) -> float:
     def miss(value: float) -> float:
         return _immersed(**(_HOSE | {name: value}))[0] - immersion
 
-    return float(brentq(miss, 0.95 * _HOSE[name], 1.05 * _HOSE[name], xtol=1e-12))
+    return float(scipy.optimize.brentq(miss, 0.95 * _HOSE[name], 1.05 * _HOSE[name], xtol=1e-12))
 
 
 def _waves() -> Answers:
@@ -242,7 +240,7 @@ def _depths() -> Answers:
             "horizontal F0 at 0.90 s in Table 7, nearly all inertia",
         ),
         ("sec 5.2", stokes, "water_depth"): Answer(
-            float(brentq(miss, 1.0, 10.0)),
+            float(scipy.optimize.brentq(miss, 1.0, 10.0)),
             "vertical F0 at t = 0 in Table 7: inertia of both harmonics",
         ),
     }

@@ -15,18 +15,6 @@ from numpy.typing import NDArray
 
 from reduction.samples.scratch import empty_like, is_on_disk, let_go
 
-__all__ = [
-    "BLOCK",
-    "copied",
-    "count_samples",
-    "finite_extremes",
-    "full_like",
-    "join_columns",
-    "mean_of_rows",
-    "sample_blocks",
-    "take_samples",
-]
-
 BLOCK = 1 << 16
 """Samples of a block, which stay in the cache. [1]."""
 

@@ -11,8 +11,6 @@ from reduction.samples.blocks import sample_blocks
 from reduction.samples.scratch import empty_like
 from reduction.samples.search import Where
 
-__all__ = ["chosen", "mean_of", "median_step_reaches", "shifted"]
-
 Floats = NDArray[np.float64]
 
 

@@ -10,11 +10,6 @@ from numpy.typing import NDArray
 from reduction.samples.blocks import BLOCK, sample_blocks
 from reduction.samples.scratch import empty_like, let_go
 
-__all__ = [
-    "interval_labels",
-    "over_intervals",
-]
-
 
 def interval_labels(
     like: NDArray[Any],

@@ -18,18 +18,6 @@ from numpy.typing import DTypeLike, NDArray
 
 from reduction.errors import DataError
 
-__all__ = [
-    "ColumnWriter",
-    "beside",
-    "check_room",
-    "empty_like",
-    "give_back",
-    "is_on_disk",
-    "let_go",
-    "scratch_folder",
-    "zeros_like",
-]
-
 # of the GNU C library; other systems give back by themselves
 _MALLOC_TRIM = getattr(ctypes.CDLL(None), "malloc_trim", None) if os.name == "posix" else None
 
@@ -37,10 +25,14 @@ _ON_DISK_FROM = 1 << 20  # bytes; less is not worth a file
 _LONG = 1 << 22  # bytes of a series from which what its stages have freed is worth giving back
 
 
+_name: str | None = None  # how the names of scratch files begin, where they have one
+
+
 class _ScratchMap(mmap.mmap):
-    """A mapped scratch file without a name: it is gone with the last array on it."""
+    """A mapped scratch file; one without a name is gone with the last array on it."""
 
     folder: Path
+    name: str | None
 
 
 def scratch_folder() -> Path:
@@ -75,6 +67,26 @@ def check_room(folder: Path, n_bytes: int) -> None:
     free = disk.f_bavail * disk.f_frsize
     if n_bytes > free:
         raise _no_space(folder, n_bytes, f"{free / 1e6:.0f} MB are free")
+
+
+def name_scratch_files(beginning: str) -> None:
+    """Give scratch files names from now on, so that another process can take them over.
+
+    Parameters
+    ----------
+    beginning : str
+        Of each name; the other process removes them.
+    """
+    global _name
+    _name = beginning
+
+
+def name_of_scratch_file(array: NDArray[Any]) -> tuple[str, Path] | None:
+    """Name and folder of the file that holds an array and no more; None where there is none."""
+    found = _map_of(array)
+    if found is None or found.name is None or array.nbytes != len(found) or array.ndim != 1:
+        return None
+    return found.name, found.folder
 
 
 def is_on_disk(array: NDArray[Any]) -> bool:
@@ -142,7 +154,7 @@ def empty_like(
         return np.empty(shape, dtype=kind)
     with _scratch_file(beside.folder) as file:
         _reserve(file, n_bytes, beside.folder)
-        return _mapped(file, n_bytes, beside.folder, kind).reshape(shape)
+        return mapped(file, n_bytes, beside.folder, kind).reshape(shape)
 
 
 def beside(reference: NDArray[Any], made: NDArray[Any]) -> NDArray[Any]:
@@ -218,7 +230,7 @@ class ColumnWriter:
         """
         if self._file is not None and self._folder is not None:
             with self._file as file:
-                return _mapped(file, self.size * self._dtype.itemsize, self._folder, self._dtype)
+                return mapped(file, self.size * self._dtype.itemsize, self._folder, self._dtype)
         if len(self._parts) == 1 and self._parts[0].flags.writeable:
             return self._parts[0]
         return np.concatenate([np.empty(0, dtype=self._dtype), *self._parts])
@@ -238,6 +250,8 @@ def _map_of(array: NDArray[Any]) -> _ScratchMap | None:
 
 def _scratch_file(folder: Path) -> IO[bytes]:
     try:
+        if _name is not None:
+            return tempfile.NamedTemporaryFile(buffering=0, prefix=_name, dir=folder, delete=False)
         return tempfile.TemporaryFile(buffering=0, dir=folder)
     except OSError as error:
         raise DataError(
@@ -259,7 +273,8 @@ def _reserve(file: IO[bytes], n_bytes: int, folder: Path) -> None:
         raise _no_space(folder, n_bytes, error.strerror) from error
 
 
-def _mapped(file: IO[bytes], n_bytes: int, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
+def mapped(file: IO[bytes], n_bytes: int, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
+    """A scratch file as an array; `DataError` where a limit on address space is reached."""
     if not n_bytes:
         return np.empty(0, dtype=dtype)
     try:
@@ -273,6 +288,7 @@ def _mapped(file: IO[bytes], n_bytes: int, folder: Path, dtype: np.dtype[Any]) -
             "counts them: see ulimit -v and ulimit -n.",
         ) from error
     found.folder = folder
+    found.name = file.name if isinstance(file.name, str) else None  # a number where it has none
     return np.ndarray(n_bytes // dtype.itemsize, dtype=dtype, buffer=found)
 
 

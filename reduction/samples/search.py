@@ -11,14 +11,6 @@ from numpy.typing import NDArray
 from reduction.samples.blocks import BLOCK, sample_blocks
 from reduction.samples.scratch import let_go
 
-__all__ = [
-    "Where",
-    "any_sample",
-    "first_sample",
-    "last_sample",
-    "thinned",
-]
-
 Where = Callable[[slice], NDArray[np.bool_]]
 """Of a slice of samples: for which of them it is true."""
 

@@ -22,18 +22,12 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite, as_positive, as_same_shape
 from reduction.errors import DataError
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, read_only_arrays
 from reduction.strain.scatter import row_scatter
-
-__all__ = [
-    "Calibration",
-    "fit_free_length_line",
-    "fit_splice_ratio",
-    "line_slope",
-]
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Calibration:
     """Coefficients of one method.
 
@@ -56,10 +50,6 @@ class Calibration:
     relaxed_sensitivity: Floats
     residual: Floats
     note: str = ""
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def line_slope(position: ArrayLike, values: ArrayLike) -> float:

@@ -27,8 +27,6 @@ from reduction.strain.model import StrainModel
 from reduction.strain.splice import free_length_strain
 from reduction.strain.tensiondriven import tension_driven_strain
 
-__all__ = ["extrapolated", "strain_by_model", "strain_sensitivity_of"]
-
 _OF_POSITION: dict[StrainMethod, Callable[..., Floats]] = {
     "marks": marked_line_strain,
     "strain-ratio": splice_ratio_strain,

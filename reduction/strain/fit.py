@@ -24,8 +24,6 @@ from reduction.strain.model import StrainModel
 from reduction.strain.pool import TENSION_SPAN, PooledMarks, fit_to_marks
 from reduction.strain.remarks import remarks_on
 
-__all__ = ["fit_strain_model", "zero_strain_position"]
-
 _BY_POSITION: tuple[StrainMethod, ...] = ("marks", "strain-ratio", "constant-fraction")
 
 _EXACT_LENGTH = (

@@ -20,8 +20,6 @@ from reduction.record import Floats
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
 
-__all__ = ["position_by_model", "with_free_length"]
-
 # lengths that grow with the free length; the others of a method do not, or say nothing of splices
 _SCALED = {
     "tension-driven": "relaxed_free_length",

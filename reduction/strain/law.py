@@ -12,16 +12,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize_scalar
 
 from reduction.checks import as_positive, as_same_shape
 from reduction.errors import DataError, FitError
 from reduction.record import Floats
 from reduction.strain.calibration import Calibration
 from reduction.strain.scatter import row_scatter
-
-__all__ = ["EXPONENT_BOUNDS", "HELD_EXPONENT", "fit_splice_law"]
 
 EXPONENT_BOUNDS = (0.3, 1.9)
 """Exponents between which a splice law is looked for: a friction-locked splice
@@ -113,7 +111,7 @@ def fit_splice_law(
         return best, best * power - strain
 
     if exponent is None:
-        search = minimize_scalar(
+        search = scipy.optimize.minimize_scalar(
             lambda trial: float(np.sum(compliance(trial)[1] ** 2)),
             bounds=EXPONENT_BOUNDS,
             method="bounded",

@@ -19,8 +19,6 @@ from reduction.errors import DataError
 from reduction.phases.standstill import Standstills
 from reduction.record import Floats, SpliceMarks
 
-__all__ = ["MarkReading", "check_marks", "measure_mark_tension"]
-
 MarkReading = Literal["start", "end"]
 
 # the tape is read in about this long, or in a third of a shorter hold

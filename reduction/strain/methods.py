@@ -19,12 +19,6 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_finite, as_positive
 from reduction.record import Floats
 
-__all__ = [
-    "gauge_length_strain",
-    "marked_line_strain",
-    "splice_ratio_strain",
-]
-
 
 def marked_line_strain(
     position: ArrayLike,

@@ -6,10 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, read_only_arrays
 from reduction.settings import StrainMethod
-
-__all__ = ["StrainModel"]
 
 
 def _empty() -> Floats:
@@ -17,6 +15,7 @@ def _empty() -> Floats:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class StrainModel:
     """How crosshead position becomes strain of one specimen in one test.
 
@@ -85,7 +84,3 @@ class StrainModel:
         """Length that stretches, at zero strain; NaN where the method knows none. [m]."""
         known = self.coefficients
         return known.get("relaxed_free_length", known.get("gauge_length", float("nan")))
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)

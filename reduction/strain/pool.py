@@ -29,8 +29,6 @@ from reduction.strain.model import StrainModel
 from reduction.strain.relaxed import RelaxedLengths, relaxed_lengths
 from reduction.strain.splice import free_length_fraction
 
-__all__ = ["TENSION_SPAN", "PooledMarks", "fit_to_marks"]
-
 TENSION_SPAN = 2.0
 """Marks must span this factor in tension before an exponent is fitted to them. [1]"""
 # an exponent less certain than this says nothing that a straight line does not

@@ -16,16 +16,15 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_positive, as_same_shape
 from reduction.errors import DataError
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, read_only_arrays
 from reduction.strain.scatter import row_scatter
-
-__all__ = ["RelaxedLengths", "relaxed_lengths"]
 
 # free = far toe - near toe; splices = far thimble - far toe + near toe
 _OF_READINGS = np.array([[2.0, -2.0], [-2.0, 3.0]])
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class RelaxedLengths:
     """Mean lengths of the slack rows.
 
@@ -42,10 +41,6 @@ class RelaxedLengths:
     values: Floats
     covariance: Floats
     note: str = ""
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def relaxed_lengths(

@@ -13,14 +13,12 @@ from collections.abc import Sequence
 from math import sqrt
 
 import numpy as np
-from scipy.stats import linregress
+from scipy.special import betainc
 
 from reduction.record import Bools, Floats, SpliceMarks
 from reduction.strain.calibration import line_slope
 from reduction.strain.evaluate import strain_by_model
 from reduction.strain.model import StrainModel
-
-__all__ = ["remarks_on"]
 
 # a strain slope that differs by less than this is not worth a sentence
 _SLOPE_NOTICE = 0.01
@@ -98,10 +96,13 @@ def _on_slack(marks: SpliceMarks) -> tuple[str, ...]:
     length = marks.far_thimble[marks.is_slack]
     if length.size < _TREND_ROWS or np.ptp(length) == 0:
         return ()
-    trend = linregress(np.arange(length.size), length)
-    if trend.slope <= 0 or trend.pvalue > _TREND_CHANCE:
+    row = np.arange(length.size)
+    slope, correlation = line_slope(row, length), float(np.corrcoef(row, length)[0, 1])
+    # of a correlation this far from zero among rows without a trend (Student's t, both sides)
+    chance = betainc(length.size / 2 - 1, 0.5, max(0.0, 1 - correlation**2))
+    if slope <= 0 or chance > _TREND_CHANCE:
         return ()
-    growth = trend.slope * (length.size - 1)
+    growth = slope * (length.size - 1)
     return (
         f"{marks.specimen}: the slack length grows by {1e3 * growth:.0f} mm "
         f"({100 * growth / length[0]:.1f} %) from the first test to the last "

@@ -14,12 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import chdtrc, ndtri, stdtrit
 
 from reduction.errors import DataError
 from reduction.record import Floats
-
-__all__ = ["LEVEL", "RowScatter", "row_scatter"]
 
 LEVEL = 0.005
 """Chance at which sound marks are taken to scatter too much. [1]"""
@@ -119,7 +117,7 @@ def row_scatter(
     away = free.T @ left
     covariance = stated * np.eye(spare) + common.T @ common
     chi_square = float(away @ np.linalg.solve(covariance, away))
-    chance = float(stats.chi2.sf(chi_square, spare))
+    chance = float(chdtrc(spare, chi_square))
     if chance >= LEVEL:
         return RowScatter(stated)
     ratio = float(np.sqrt(chi_square / spare))
@@ -137,7 +135,7 @@ def _unstated(residual: Floats, spare: int) -> RowScatter:
         return RowScatter(
             0.0, note="have no stated reading error and none to spare: they count as exact"
         )
-    factor = float(stats.t.ppf(_CONFIDENCE, spare) / stats.norm.ppf(_CONFIDENCE))
+    factor = float(stdtrit(spare, _CONFIDENCE) / ndtri(_CONFIDENCE))
     return RowScatter(
         float(residual @ residual) / spare * factor**2,
         note="have no stated reading error: their scatter is taken, with "

@@ -21,8 +21,6 @@ from numpy.typing import ArrayLike
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = ["free_length_fraction", "free_length_strain"]
-
 
 def free_length_fraction(free_length: ArrayLike, total_length: ArrayLike) -> float:
     """Mean share of the thimble-to-thimble length that is splice-free.

@@ -13,17 +13,11 @@ from math import sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from reduction.checks import as_positive
 from reduction.errors import DataError
 from reduction.record import Floats, Specimen
-
-__all__ = [
-    "check_constant_volume",
-    "constant_volume_diameter",
-    "nominal_stress",
-]
 
 _CONFIDENCE = 0.95
 
@@ -159,7 +153,7 @@ def check_constant_volume(specimen: Specimen) -> tuple[str, ...]:
     scatter = float(np.std(implied, ddof=1))
     mean, stated = float(np.mean(implied)), specimen.mean_diameter
     standard_error = scatter * sqrt(1 / implied.size + 1 / len(specimen.diameter))
-    allowed = float(student_t.ppf((1 + _CONFIDENCE) / 2, implied.size - 1)) * standard_error
+    allowed = float(stdtrit(implied.size - 1, (1 + _CONFIDENCE) / 2)) * standard_error
     if abs(mean - stated) <= allowed:
         return ()
     change = (stated / mean) ** 2 - 1

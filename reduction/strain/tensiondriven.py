@@ -17,8 +17,6 @@ from numpy.typing import ArrayLike
 from reduction.checks import as_positive, as_same_shape
 from reduction.record import Floats
 
-__all__ = ["splice_strain", "tension_driven_strain"]
-
 # the logarithm of this times any exponent below 2 is finite, and its power is zero in effect
 _NO_TENSION = 1e-150
 

@@ -16,8 +16,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.special import fdtrc
 
 from reduction.errors import DataError, SettingsError
@@ -25,8 +25,6 @@ from reduction.record import Integers
 from reduction.surface.leastsquares import LeastSquares
 from reduction.surface.parts import Anova, LackOfFit
 from reduction.surface.rows import times
-
-__all__ = ["anova_table", "lack_of_fit", "replicate_cells"]
 
 _LEVEL_ROUNDING = 1e-9
 """Coded levels closer than this are one level: rounding of the change of units."""
@@ -75,8 +73,10 @@ def replicate_cells(coded: ArrayLike, *, tolerance: float = 0.1) -> Integers:
     if known.size < 2:
         cell[known] = 0
         return cell
-    tree = linkage(levels[known], method="complete", metric="chebyshev")
-    label = fcluster(tree, tolerance + _LEVEL_ROUNDING, criterion="distance")
+    tree = scipy.cluster.hierarchy.linkage(levels[known], method="complete", metric="chebyshev")
+    label = scipy.cluster.hierarchy.fcluster(
+        tree, tolerance + _LEVEL_ROUNDING, criterion="distance"
+    )
     _, first, number = np.unique(label, return_index=True, return_inverse=True)
     cell[known] = np.argsort(np.argsort(first))[number]
     return cell

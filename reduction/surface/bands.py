@@ -26,7 +26,7 @@ from scipy.special import fdtri, stdtrit
 
 from reduction.checks import as_finite
 from reduction.errors import DataError, SettingsError
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Bools, Floats, read_only_arrays
 from reduction.surface.coding import coded_from_engineering, engineering_from_coded
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.rows import times
@@ -35,10 +35,9 @@ from reduction.surface.tested import ABOVE_LEVERAGE, greatest_leverage, is_withi
 from reduction.surface.transform import back_transform, retransformed_mean
 from reduction.surface.variance import variance_factor
 
-__all__ = ["SurfaceValues", "evaluate_surfaces"]
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SurfaceValues:
     """Surfaces at points; shape (n_responses, n_points), intervals with a last axis of 2.
 
@@ -93,10 +92,6 @@ class SurfaceValues:
     degrees_of_freedom: Floats
     confidence: float
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def evaluate_surfaces(

@@ -25,11 +25,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
-from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 from reduction.surface.rows import block_contrasts, patterns_of
 from reduction.surface.search import highest_of_each
-
-__all__ = ["RandomIntercept", "block_columns", "fit_random_intercept"]
 
 _LARGEST = 6.0
 """Decimal logarithm of the largest ratio of variances that is searched."""
@@ -38,6 +36,7 @@ _SINGULAR = 1e-9
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class RandomIntercept:
     """Surfaces with one random level a block.
 
@@ -67,10 +66,6 @@ class RandomIntercept:
     degrees_of_freedom: Floats
     is_between: Bools
     at_boundary: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def block_columns(labels: Sequence[str]) -> tuple[tuple[str, ...], Integers, Floats]:

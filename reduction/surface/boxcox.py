@@ -21,8 +21,6 @@ from reduction.surface.rows import patterns_of, times
 from reduction.surface.search import highest_of_each
 from reduction.surface.transform import transform
 
-__all__ = ["BoxCoxExponent", "box_cox_exponent"]
-
 LIMITS = (-2.0, 2.0)
 """Exponents that are searched."""
 _GRID = 81

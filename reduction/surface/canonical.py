@@ -31,8 +31,6 @@ from reduction.surface.parts import Canonical
 from reduction.surface.terms import model_matrix
 from reduction.surface.variance import variance_factor
 
-__all__ = ["canonical_analysis", "curvature", "ridge_path"]
-
 _FLAT = 1e-10
 """Smallest over largest curvature below which a direction has none."""
 _HALVINGS = 100

@@ -16,8 +16,6 @@ from numpy.typing import ArrayLike
 from reduction.record import Floats, Integers
 from reduction.surface.terms import gradient_matrix, model_matrix
 
-__all__ = ["canonical_slopes"]
-
 
 def canonical_slopes(
     point: ArrayLike, eigenvalue: ArrayLike, eigenvector: ArrayLike, exponents: Integers

@@ -19,8 +19,6 @@ from reduction.errors import SettingsError
 from reduction.record import Bools, Floats
 from reduction.surface.runsheet import RunSheet
 
-__all__ = ["MEASURED_SLACK", "Caution", "CautionKind", "find_cautions"]
-
 CautionKind = Literal[
     "load-not-known",
     "slack",

@@ -20,8 +20,6 @@ from reduction.checks import as_finite
 from reduction.errors import SettingsError
 from reduction.record import Floats, Integers
 
-__all__ = ["coded_from_engineering", "engineering_from_coded", "engineering_matrix"]
-
 
 def coded_from_engineering(levels: ArrayLike, *, low: ArrayLike, high: ArrayLike) -> Floats:
     r"""Levels on the scale where the low one is -1 and the high one +1.

@@ -19,12 +19,11 @@ from scipy.special import ndtri
 
 from reduction.checks import as_finite
 from reduction.errors import DataError
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = ["HalfNormal", "alias_matrix", "half_normal_coordinates", "two_level_columns"]
+from reduction.record import Floats, Integers, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class HalfNormal:
     """Points of a half-normal plot, smallest first.
 
@@ -41,10 +40,6 @@ class HalfNormal:
     order: Integers
     quantile: Floats
     size: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def two_level_columns(name: str, columns: ArrayLike) -> Floats:

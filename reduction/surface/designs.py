@@ -20,9 +20,7 @@ from typing import Literal
 import numpy as np
 
 from reduction.errors import SettingsError
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["Design", "DesignKind", "box_behnken", "plackett_burman"]
+from reduction.record import Floats, read_only_arrays
 
 DesignKind = Literal["box-behnken", "plackett-burman"]
 
@@ -40,6 +38,7 @@ FIRST_ROWS = {
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Design:
     """Runs of an experiment in coded units, in standard order.
 
@@ -57,10 +56,6 @@ class Design:
     kind: DesignKind
     coded: Floats
     dummy: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def n_runs(self) -> int:

@@ -17,8 +17,6 @@ from reduction.record import Bools, Floats
 from reduction.surface.leastsquares import LeastSquares
 from reduction.surface.parts import Diagnostics
 
-__all__ = ["diagnose"]
-
 _FIXES_A_TERM = 1 - 1e-9
 """Leverage from which a run is fitted by itself alone and has no residual to look at."""
 

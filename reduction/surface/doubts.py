@@ -17,8 +17,6 @@ from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.drift import Drift
 from reduction.surface.product import ResponseSurfaces
 
-__all__ = ["drifting_responses", "negative_surfaces"]
-
 _DRIFTS = 0.05
 """A p below this is worth a word."""
 

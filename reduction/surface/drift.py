@@ -24,8 +24,6 @@ from reduction.surface.product import ResponseSurfaces
 from reduction.surface.rows import block_contrasts
 from reduction.surface.terms import model_matrix
 
-__all__ = ["Drift", "drift_over_order"]
-
 
 class Drift(NamedTuple):
     """Slope over the order, its standard uncertainty, t and p; NaN where it is not told apart."""

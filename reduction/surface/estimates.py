@@ -15,8 +15,6 @@ from reduction.surface.leastsquares import LeastSquares
 from reduction.surface.parts import BlockEffects
 from reduction.surface.variance import variance_factor
 
-__all__: list[str] = []
-
 
 @dataclass(frozen=True)
 class Estimates:

@@ -27,8 +27,6 @@ from reduction.surface.rows import block_contrasts, patterns_of, times
 from reduction.surface.student import student_p
 from reduction.surface.variance import is_singular
 
-__all__ = ["fit_least_squares", "two_sided_p"]
-
 _ROUNDING = 1e-12
 """Residuals smaller than this share of the response are rounding of the arithmetic."""
 _HUGE = 1e150

@@ -12,9 +12,7 @@ import numpy as np
 from numpy import int8
 from numpy.typing import NDArray
 
-from reduction.record import Bools, Floats, Integers, freeze_arrays
-
-__all__ = ["FIT_REASONS", "LeastSquares"]
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 
 FIT_REASONS: dict[int, str] = {
     0: "",
@@ -29,6 +27,7 @@ FIT_REASONS: dict[int, str] = {
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LeastSquares:
     """Batched least squares of many responses on one matrix; the baseline columns stand first.
 
@@ -72,10 +71,6 @@ class LeastSquares:
     prediction_sum_of_squares: Floats
     degrees_of_freedom: Integers
     reason: NDArray[int8]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def sigma(self) -> Floats:

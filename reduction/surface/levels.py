@@ -22,8 +22,6 @@ from reduction.errors import DataError, SettingsError
 from reduction.record import Floats
 from reduction.surface.coding import engineering_from_coded
 
-__all__ = ["FactorLevels", "LevelBasis", "engineering_levels"]
-
 LevelBasis = Literal["absolute", "rated_break_strength", "mean_tension"]
 
 LOADS = ("mean_tension", "tension_amplitude")

@@ -22,8 +22,6 @@ from scipy.special import fdtrc, fdtri
 from reduction.errors import SettingsError
 from reduction.record import Floats
 
-__all__ = ["statistics_from_r2"]
-
 
 class OverallF(NamedTuple):
     """Statistics of one r2: the right test, and the one the report printed.

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from numpy import int8
 from numpy.typing import NDArray
 
-from reduction.record import Bools, Floats, Integers, freeze_arrays
-
-__all__ = ["Anova", "BlockEffects", "Canonical", "Diagnostics", "LackOfFit"]
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Anova:
     """Analysis of variance, sequential in the order of ``source``; the total is about the mean.
 
@@ -39,12 +38,9 @@ class Anova:
     p_value: Floats
     error_term: tuple[str, ...]
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LackOfFit:
     """Scatter about the surface against scatter of repeated runs; arrays (n_responses,).
 
@@ -74,12 +70,9 @@ class LackOfFit:
     cell: Integers
     tolerance: float
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Canonical:
     """Stationary point and curvature of each surface.
 
@@ -119,12 +112,9 @@ class Canonical:
     is_inside: Bools
     reason: NDArray[int8]
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Diagnostics:
     """Residuals of each run, looked at; shape (n_responses, n_runs) unless said.
 
@@ -148,12 +138,9 @@ class Diagnostics:
     deleted_residual: Floats
     probability_plot_correlation: Floats
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class BlockEffects:
     """Several specimens in one surface.
 
@@ -180,7 +167,3 @@ class BlockEffects:
     effect: Floats
     standard_deviation: Floats
     at_boundary: Bools
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)

@@ -16,12 +16,11 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_finite
 from reduction.errors import DataError
-from reduction.record import Floats, freeze_arrays
-
-__all__ = ["PlanPoints", "plan_points"]
+from reduction.record import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class PlanPoints:
     """Points of a plan, none twice.
 
@@ -38,10 +37,6 @@ class PlanPoints:
     coded: Floats
     name: tuple[str, ...]
     kind: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def plan_points(plan: ArrayLike) -> PlanPoints:

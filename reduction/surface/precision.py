@@ -22,14 +22,13 @@ from scipy.special import stdtrit
 
 from reduction.checks import as_finite, as_positive
 from reduction.errors import DataError, FitError, SettingsError
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Bools, Floats, read_only_arrays
 from reduction.surface.terms import model_matrix, quadratic_exponents, term_names
 from reduction.surface.variance import covariance_factor, variance_factor
 
-__all__ = ["ExpectedPrecision", "expected_precision"]
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ExpectedPrecision:
     """Expected half widths of the intervals of a quadratic surface.
 
@@ -71,10 +70,6 @@ class ExpectedPrecision:
     degrees_of_freedom: int
     confidence: float
     condition_number: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def _points(coded: Floats) -> tuple[Floats, tuple[str, ...]]:

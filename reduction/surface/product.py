@@ -13,15 +13,8 @@ from dataclasses import dataclass
 from numpy import int8
 from numpy.typing import NDArray
 
-from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 from reduction.surface.parts import Anova, BlockEffects, Canonical, Diagnostics, LackOfFit
-
-__all__ = [
-    "LACK_OF_FIT_REASONS",
-    "STATIONARY_KINDS",
-    "STATIONARY_REASONS",
-    "ResponseSurfaces",
-]
 
 LACK_OF_FIT_REASONS: dict[int, str] = {
     0: "",
@@ -41,6 +34,7 @@ STATIONARY_KINDS: dict[int, str] = {0: "", 1: "minimum", 2: "maximum", 3: "saddl
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ResponseSurfaces:
     """Quadratic surfaces of many responses over the same runs.
 
@@ -146,10 +140,6 @@ shape (n_responses, n_terms)
     condition_number: float
     reason: NDArray[int8]
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def labels(self) -> tuple[str, ...]:

@@ -15,8 +15,6 @@ from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
 
-__all__ = ["ON_PLAN", "levels_off_plan"]
-
 ON_PLAN = 0.3
 """Coded distance from the plan of a run that a machine with poor control still meets. [1]."""
 

@@ -11,8 +11,6 @@ from reduction.record import Bools, Floats
 from reduction.surface.leastsquares import FIT_REASONS, LeastSquares
 from reduction.surface.parts import BlockEffects, LackOfFit
 
-__all__: list[str] = []
-
 _STRAY = 0.1
 """Coded distance beyond the levels of the plan, or short of them, that is worth a word."""
 _ALONE = 0.99

@@ -6,8 +6,6 @@ import numpy as np
 
 from reduction.record import Bools, Floats, Integers
 
-__all__: list[str] = []
-
 _PIECE = 200_000
 """Multiplications in one call of the linear algebra library: below it stays in one thread."""
 

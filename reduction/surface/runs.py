@@ -13,8 +13,6 @@ from reduction.errors import DataError, SettingsError
 from reduction.record import Floats
 from reduction.surface.coding import coded_from_engineering
 
-__all__: list[str] = []
-
 _STILL = 1e-6
 """Coded range below which a factor does not move."""
 

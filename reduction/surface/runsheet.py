@@ -15,11 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.errors import SettingsError
-from reduction.record import Floats, Integers, freeze_arrays
+from reduction.record import Floats, Integers, read_only_arrays
 from reduction.surface.designs import Design
 from reduction.surface.levels import FactorLevels, engineering_levels
-
-__all__ = ["RepeatPlacing", "RunSheet", "make_run_sheet"]
 
 RepeatPlacing = Literal["together", "spread"]
 
@@ -27,6 +25,7 @@ SAME_LOAD = 1e-9  # of the greatest peak; levels are typed to three digits
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class RunSheet:
     """Runs in the order in which they are to be run; one row a run.
 
@@ -57,10 +56,6 @@ class RunSheet:
     minimum_tension: Floats
     peak_share: Floats
     minimum_share: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def n_runs(self) -> int:

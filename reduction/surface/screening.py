@@ -27,22 +27,16 @@ from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
 from reduction.errors import DataError, SettingsError
-from reduction.record import Bools, Floats, freeze_arrays
+from reduction.record import Bools, Floats, read_only_arrays
 from reduction.surface.confounding import two_level_columns
 from reduction.surface.designs import Design
 from reduction.surface.fit import two_sided_p
-
-__all__ = [
-    "EffectError",
-    "ScreeningEffects",
-    "screening_effects",
-    "screening_remarks",
-]
 
 EffectError = Literal["dummy", "lenth"]
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ScreeningEffects:
     """Effects of the factors on one response or many.
 
@@ -89,10 +83,6 @@ class ScreeningEffects:
     is_significant: Bools
     significance: float
     reason: np.ndarray[tuple[int, ...], np.dtype[np.str_]]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def _pseudo_standard_error(effects: Floats) -> Floats:

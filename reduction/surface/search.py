@@ -8,8 +8,6 @@ import numpy as np
 
 from reduction.record import Floats
 
-__all__: list[str] = []
-
 _STEPS = 60
 _GOLDEN = (5**0.5 - 1) / 2
 

@@ -20,19 +20,18 @@ from itertools import combinations
 import numpy as np
 
 from reduction.errors import SettingsError
-from reduction.record import Bools, Floats, Integers, freeze_arrays
+from reduction.record import Bools, Floats, Integers, read_only_arrays
 from reduction.surface.fit import two_sided_p
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.rows import block_contrasts
 from reduction.surface.terms import model_matrix
-
-__all__ = ["ReducedSurfaces", "reduce_terms"]
 
 _MOST = 50_000
 """Subsets that are looked at before the search is refused."""
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ReducedSurfaces:
     """The subset of terms of each surface; the full surface stays what it was.
 
@@ -75,10 +74,6 @@ class ReducedSurfaces:
     n_within_two: Integers
     hierarchical: bool
     notes: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> ReducedSurfaces:

@@ -20,8 +20,6 @@ from reduction.errors import SettingsError
 from reduction.record import Floats
 from reduction.surface.designs import Design
 
-__all__ = ["smallest_effect"]
-
 
 def smallest_effect(design: Design, *, sigma: ArrayLike, significance: float = 0.10) -> Floats:
     r"""Smallest effect that the screening is expected to call significant.

@@ -35,8 +35,6 @@ from reduction.surface.stiffness_runs import (
     relative_stiffness,
 )
 
-__all__ = ["fit_del_vecchio_stiffness", "fit_mean_load_stiffness"]
-
 
 def _form(
     form: StiffnessFormName,

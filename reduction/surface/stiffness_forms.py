@@ -28,8 +28,6 @@ from reduction.surface.stiffness_runs import (
 )
 from reduction.surface.terms import model_matrix, quadratic_exponents
 
-__all__ = ["compare_stiffness_forms"]
-
 FORMS = ("del-vecchio", "mean-load", "quadratic")
 
 

@@ -13,16 +13,15 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, read_only_arrays
 from reduction.surface.leastsquares import FIT_REASONS, LeastSquares
-
-__all__ = ["FormQuality", "StiffnessForm", "StiffnessFormName", "form_quality"]
 
 StiffnessFormName = Literal["del-vecchio", "mean-load"]
 Texts = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class FormQuality:
     """How well forms fit the same runs; stiffness over break strength throughout.
 
@@ -55,12 +54,9 @@ class FormQuality:
     degrees_of_freedom: np.ndarray[tuple[int, ...], np.dtype[np.int64]]
     reason: Texts
 
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
-
 
 @dataclass(frozen=True)
+@read_only_arrays
 class StiffnessForm:
     """One form with its coefficients and their uncertainty (type A).
 
@@ -109,10 +105,6 @@ class StiffnessForm:
     mean_load_range: tuple[float, float]
     rated_break_strength: float
     confidence: float
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def form_quality(

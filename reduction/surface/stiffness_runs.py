@@ -11,8 +11,6 @@ from reduction.checks import as_same_shape
 from reduction.errors import DataError, SettingsError
 from reduction.record import Floats
 
-__all__ = ["LoadAmplitude"]
-
 LoadAmplitude = Literal["half-range", "full-range"]
 
 

@@ -13,8 +13,6 @@ from scipy.special import betainc
 
 from reduction.record import Floats
 
-__all__: list[str] = []
-
 _CLOSED = 60
 """Degrees of freedom up to which the closed form of p is the quicker one."""
 _KEEPS_DIGITS = 1e-2

@@ -36,8 +36,6 @@ from reduction.surface.terms import model_matrix, quadratic_exponents, term_kind
 from reduction.surface.transform import Transform, transform
 from reduction.surface.variance import covariance_factor
 
-__all__ = ["fit_surfaces"]
-
 _SEQUENCE = {"linear": "first order", "interaction": "interactions", "square": "squares"}
 """Order of the sources in the analysis of variance, that of R's rsm."""
 

@@ -32,8 +32,6 @@ from reduction.checks import as_finite
 from reduction.errors import DataError, SettingsError
 from reduction.record import Floats, Integers
 
-__all__ = ["gradient_matrix", "model_matrix", "quadratic_exponents", "term_kinds", "term_names"]
-
 
 def quadratic_exponents(n_factors: int) -> Integers:
     """Powers of each factor in each term of the quadratic surface, in printed order.

@@ -17,8 +17,6 @@ from reduction.surface.reached import ON_PLAN
 from reduction.surface.terms import model_matrix
 from reduction.surface.variance import variance_factor
 
-__all__ = ["ABOVE_LEVERAGE", "greatest_leverage", "is_within_levels", "levels_tested"]
-
 ABOVE_LEVERAGE = 1 + 1e-9
 """Leverage of a point over the greatest of a tested one beyond which the runs say less. [1]."""
 

@@ -28,10 +28,6 @@ from scipy.special import boxcox
 from reduction.errors import DataError
 from reduction.record import Floats
 
-__all__ = [
-    "Transform", "back_transform", "back_transformed_change", "retransformed_mean", "transform",
-]  # fmt: skip
-
 Transform = Literal["none", "log", "box-cox"]
 
 

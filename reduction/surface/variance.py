@@ -20,8 +20,6 @@ from reduction.errors import DataError, FitError
 from reduction.record import Floats, Integers
 from reduction.surface.rows import times
 
-__all__ = ["covariance_factor", "find_confounded", "is_singular", "variance_factor"]
-
 _SINGULAR = 1e-9
 """Smallest over largest singular value, columns of equal length, below which terms are one."""
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from reduction.tables.derived import with_cycle_count
+from reduction.tables.derived import cycle_count
 from reduction.tables.table import Table
-
-__all__ = ["CHANGE_TABLES"]
 
 _IDENTITY = ("stroke_mean_modulus_difference", "tension_loss_modulus", "identity_residual")
 _TREND = ("peak_tension_per_decade", "dynamic_modulus_per_decade", "peak_tension_change")
@@ -36,7 +34,7 @@ CHANGE_TABLES = (
         ("specimen",),
         ("mean_identity_residual", "n_cycles"),
         ("mean_identity_residual",),
-        with_cycle_count,
+        cycle_count,
     ),
     Table(
         "history",

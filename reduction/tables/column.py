@@ -15,13 +15,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar
 
+import numpy as np
 from numpy.typing import NDArray
 
 from reduction.archive.variable import TEXT, Variable
 from reduction.tables.digits import number_texts
 from reduction.visible import safe_cell
-
-__all__ = ["Cell", "Column", "csv_field", "csv_lines", "csv_text", "texts_of", "uncertainty_of"]
 
 Cell = str | int | float | None
 _Label = TypeVar("_Label", int, str)
@@ -55,6 +54,32 @@ def uncertainty_of(column: Column) -> Column:
     return Column(
         name, Variable(source, column.variable.dims, "f8", no_uncertainty="is an uncertainty")
     )
+
+
+def texts_of_columns(columns: Sequence[tuple[NDArray[Any], Variable]]) -> list[list[str]]:
+    """Return columns of one length as fields, those of real numbers written in one go.
+
+    Parameters
+    ----------
+    columns : sequence of ndarray, shape (n_rows,), and Variable
+        Values, and what they are. [unit of each]
+
+    Returns
+    -------
+    texts : list of list of str
+        A field a row of each, as `texts_of` has it.
+    """
+    is_real = [
+        values.dtype.kind == "f" and not variable.flags and variable.dtype != TEXT
+        for values, variable in columns
+    ]
+    real = [values for (values, _), one in zip(columns, is_real, strict=True) if one]
+    written = number_texts(np.concatenate(real)) if real else []
+    numbers = (written[len(part) * at : len(part) * (at + 1)] for at, part in enumerate(real))
+    return [
+        next(numbers) if one else texts_of(values, variable)
+        for (values, variable), one in zip(columns, is_real, strict=True)
+    ]
 
 
 def texts_of(values: NDArray[Any], variable: Variable) -> list[str]:

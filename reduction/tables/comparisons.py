@@ -6,8 +6,6 @@ from reduction.archive.shared import COMPONENT
 from reduction.tables.shared import ERROR
 from reduction.tables.table import Table
 
-__all__ = ["COMPARISON_TABLES"]
-
 
 def _table(
     name: str, dims: tuple[str, ...], variables: tuple[str, ...], needs: tuple[str, ...]

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from reduction.archive.schema import SCHEMA
 from reduction.archive.variable import SUFFIXES
-from reduction.tables.derived import with_chords, with_cycle_count, with_edges
+from reduction.tables.derived import chords_of_branches, cycle_count, edges_of_bins
 from reduction.tables.table import Table
 from reduction.vocabulary import BRANCH_NAMES
-
-__all__ = ["CURVE_TABLES"]
 
 _PER_CYCLE = tuple(
     name
@@ -32,14 +30,14 @@ CURVE_TABLES = (
             "segment_criterion",
         ),
         ("segment_modulus",),
-        with_cycle_count,
+        cycle_count,
     ),
     Table(
         "cycles",
         ("specimen", "cycle"),
         (*_PER_CYCLE, *(f"chord_modulus_{branch}" for branch in BRANCH_NAMES)),
         _PER_CYCLE,
-        with_chords,
+        chords_of_branches,
     ),
     Table(
         "tangent_modulus",
@@ -57,7 +55,7 @@ CURVE_TABLES = (
             "branch_tension_count",
         ),
         ("tangent_modulus", "tangent_modulus_untrimmed"),
-        with_edges,
+        edges_of_bins,
     ),
     Table(
         "first_loading",

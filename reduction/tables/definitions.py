@@ -11,8 +11,6 @@ from reduction.tables.ropelines import LINE_TABLES
 from reduction.tables.rubber import RUBBER_TABLES, STEPWISE_TABLES
 from reduction.tables.shared import SHARED_TABLES
 
-__all__ = ["TABLES"]
-
 TABLES = (
     *CURVE_TABLES,
     *HOLD_TABLES,

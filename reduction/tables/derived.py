@@ -5,55 +5,46 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from reduction.tables.table import Variables
 from reduction.vocabulary import BRANCH_NAMES
 
-__all__ = [
-    "with_chords",
-    "with_cycle_count",
-    "with_edges",
-    "with_fit_of_parameter",
-    "with_its_one_specimen",
-]
 
-
-def with_edges(dataset: xr.Dataset) -> xr.Dataset:
+def edges_of_bins(archive: xr.Dataset) -> Variables:
     """Give each bin of strain its edges as columns."""
-    edges = dataset["strain_bin_bounds"]
-    return dataset.assign(strain_bin_low=edges[:, 0], strain_bin_high=edges[:, 1])
+    edges = archive.variables["strain_bin_bounds"]
+    return {"strain_bin_low": edges[:, 0], "strain_bin_high": edges[:, 1]}
 
 
-def with_cycle_count(dataset: xr.Dataset) -> xr.Dataset:
+def cycle_count(archive: xr.Dataset) -> Variables:
     """Count the cycles."""
-    return dataset.assign(n_cycles=dataset.sizes.get("cycle", 0))
+    return {"n_cycles": xr.Variable((), archive.sizes.get("cycle", 0))}
 
 
-def with_chords(dataset: xr.Dataset) -> xr.Dataset:
+def chords_of_branches(archive: xr.Dataset) -> Variables:
     """Give each branch a column of its own, so that a cycle stays one row."""
-    if "chord_modulus" not in dataset:
-        return dataset
-    return dataset.assign(
-        {
-            f"chord_modulus_{branch}{suffix}": dataset[f"chord_modulus{suffix}"][:, :, index]
-            for index, branch in enumerate(BRANCH_NAMES)
-            for suffix in ("", "_standard_uncertainty")
-        }
-    )
+    if "chord_modulus" not in archive:
+        return {}
+    return {
+        f"chord_modulus_{branch}{suffix}": archive.variables[f"chord_modulus{suffix}"][:, :, index]
+        for index, branch in enumerate(BRANCH_NAMES)
+        for suffix in ("", "_standard_uncertainty")
+    }
 
 
-def with_fit_of_parameter(dataset: xr.Dataset) -> xr.Dataset:
+def fit_of_parameters(archive: xr.Dataset) -> Variables:
     """Repeat what is said of a fit beside each of its parameters."""
-    fit = dataset.variables["elastomer_parameter_fit"].values - 1
-    of_fit = [
-        name for name in dataset.variables if dataset.variables[name].dims == ("elastomer_fit",)
-    ]
-    return dataset.assign(
-        {
-            name: ("elastomer_parameter", np.asarray(dataset.variables[name].values)[fit])
-            for name in of_fit
-        }
-    )
+    fit = archive.variables["elastomer_parameter_fit"].values - 1
+    return {
+        str(name): xr.Variable("elastomer_parameter", np.asarray(variable.values)[fit])
+        for name, variable in archive.variables.items()
+        if variable.dims == ("elastomer_fit",)
+    }
 
 
-def with_its_one_specimen(dataset: xr.Dataset) -> xr.Dataset:
+def one_specimen(archive: xr.Dataset) -> Variables:
     """Leave out the axis of a specimen that is alone."""
-    return dataset.isel(specimen=0)
+    return {
+        str(name): variable.isel(specimen=0)
+        for name, variable in archive.variables.items()
+        if "specimen" in variable.dims
+    }

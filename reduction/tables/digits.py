@@ -8,8 +8,6 @@ import pyarrow.compute  # type: ignore[import-untyped]
 
 from reduction.record import Floats
 
-__all__ = ["number_texts"]
-
 _LOW, _HIGH = 1e-4, 1e9
 """Between these Arrow, which is three times as fast, and Python write a number alike."""
 

@@ -19,8 +19,6 @@ from reduction.tables.column import Cell, Column
 from reduction.tables.table import SYNTHETIC
 from reduction.uncertainty.product import Contributions
 
-__all__ = ["ENVELOPE_COLUMNS", "Curve", "curves_of", "envelope_rows", "on_grid", "read_curve"]
-
 _BIN = ("specimen", "branch_name", "strain_bin")
 ENVELOPE_COLUMNS = (
     Column("specimen", SCHEMA["specimen"]),

@@ -7,8 +7,6 @@ from reduction.tables.stiffness import STIFFNESS_TABLES
 from reduction.tables.surfaces import SURFACE_TABLES
 from reduction.vocabulary import RESPONSES
 
-__all__ = ["EXPERIMENT_TABLES"]
-
 EXPERIMENT_TABLES = (
     table_of_experiments(
         "experiments",

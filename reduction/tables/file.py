@@ -11,8 +11,6 @@ from reduction.tables.column import Cell, Column, csv_field, csv_lines, csv_text
 from reduction.tables.holes import lonely_numbers
 from reduction.tables.outcomes import GroupColumn
 
-__all__ = ["TableFile"]
-
 
 class TableFile:
     """A table that grows by rows; without rows there is no file.

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.tables.table import Table
 
-__all__ = ["HOLD_TABLES"]
-
 HOLD_TABLES = (
     Table(
         "relaxation",

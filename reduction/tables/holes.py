@@ -8,15 +8,10 @@ from itertools import pairwise
 from reduction.tables.column import Cell, Column
 from reduction.tables.outcomes import GroupColumn
 
-__all__ = ["column_descriptions", "lonely_numbers"]
-
 _U = "_standard_uncertainty"
 _ONE_READING = "there is one reading, and nothing is stated of it"
 _OF_DESIGN = "nothing is stated of the numbers of the hose"
-_OF_RUNS = (
-    "a run does not keep what it shares with the others (a note of surfaces.nc names it), or the "
-    "runs leave no scatter to judge by"
-)
+_OF_RUNS = "the runs leave no scatter to judge by"
 _WHY = {
     "diameter": _ONE_READING,
     "area": _ONE_READING,
@@ -31,10 +26,6 @@ _WHY = {
     "property_stiffness_over_strength": "property_remark says why",
     "property_strain": "property_remark says why",
 }
-_SILENT = (
-    "the archive of the test does not keep what it shares, beside others that do: it would count "
-    "as exact; reduce it again"
-)
 _UNKNOWN = "nothing is known of its scatter"
 
 
@@ -66,9 +57,7 @@ def lonely_numbers(
 
 
 def column_descriptions(
-    columns: Sequence[Column | GroupColumn],
-    lonely: Collection[int] = (),
-    silent: Collection[str] = (),
+    columns: Sequence[Column | GroupColumn], lonely: Collection[int] = ()
 ) -> Iterator[list[Cell]]:
     """Return the rows of columns.csv of one table.
 
@@ -78,8 +67,6 @@ def column_descriptions(
         Of the table.
     lonely : collection of int
         From `lonely_numbers`, of all its rows. [1]
-    silent : collection of str
-        Quantities that a test has without uncertainty, since it does not keep what it shares.
 
     Yields
     ------
@@ -90,10 +77,7 @@ def column_descriptions(
     for place, column in enumerate(columns):
         *about, reason = column.description
         if place in lonely:
-            name = quantities[place]
-            known = [_WHY[name]] if name in _WHY else []
-            why = [*known, *([_SILENT] if name in silent else [])] or [_UNKNOWN]
-            reason = f"{reason}; empty where {', or '.join(why)}"
+            reason = f"{reason}; empty where {_WHY.get(quantities[place], _UNKNOWN)}"
         yield [*about, reason]
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.tables.table import Table
 
-__all__ = ["RUN", "table_of_experiments"]
-
 RUN = ("run_name", "run_specimen")
 """Columns that say which run a row is of."""
 

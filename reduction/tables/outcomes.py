@@ -24,8 +24,6 @@ from reduction.outcomes.rows import exposure_rows, strength_rows
 from reduction.tables.column import Cell, Column
 from reduction.tables.table import SYNTHETIC
 
-__all__ = ["OUTCOME_TABLES", "GroupColumn", "outcome_table_rows"]
-
 
 @dataclass(frozen=True)
 class GroupColumn:

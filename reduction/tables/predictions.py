@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.tables.table import Table
 
-__all__ = ["PREDICTION_TABLES"]
-
 
 def _table(
     name: str, dims: tuple[str, ...], variables: tuple[str, ...], needs: tuple[str, ...]

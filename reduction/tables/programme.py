@@ -6,9 +6,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.record import Integers
-from reduction.tables.table import Table
-
-__all__ = ["ROPE_TABLES"]
+from reduction.tables.table import Table, Variables
 
 _BEDDING = (
     "bedding_cycles",
@@ -63,23 +61,24 @@ _PULLED = (
 )
 
 
-def _one_a_specimen(dataset: xr.Dataset) -> xr.Dataset:
+def _one_a_specimen(archive: xr.Dataset) -> Variables:
     """Give a step one static stiffness and one creep: of its last pair, its longest hold."""
-    if "programme_step" not in dataset:
-        return dataset
-    names = dataset.variables["specimen"].values.tolist()
-    if "static_stiffness" in dataset:
-        given = np.isfinite(dataset.variables["static_stiffness"].values).astype(np.float64)
-        last = _chosen(dataset.variables["held_pair_specimen"].values.tolist(), names, given)
-        dataset = _along_specimen(dataset, _STATIC, "held_pair", last)
-    if "hold_specimen" in dataset:
+    if "programme_step" not in archive:
+        return {}
+    found: dict[str, xr.Variable] = {}
+    names = archive.variables["specimen"].values.tolist()
+    if "static_stiffness" in archive:
+        given = np.isfinite(archive.variables["static_stiffness"].values).astype(np.float64)
+        last = _chosen(archive.variables["held_pair_specimen"].values.tolist(), names, given)
+        found |= _along_specimen(archive, _STATIC, "held_pair", last)
+    if "hold_specimen" in archive:
         longest = _chosen(
-            dataset.variables["hold_specimen"].values.tolist(),
+            archive.variables["hold_specimen"].values.tolist(),
             names,
-            dataset.variables["hold_duration"].values,
+            archive.variables["hold_duration"].values,
         )
-        dataset = _along_specimen(dataset, _CREEP, "hold", longest)
-    return dataset
+        found |= _along_specimen(archive, _CREEP, "hold", longest)
+    return found
 
 
 def _chosen(of_row: list[str], names: list[str], rank: np.ndarray) -> Integers:
@@ -94,16 +93,16 @@ def _chosen(of_row: list[str], names: list[str], rank: np.ndarray) -> Integers:
 
 
 def _along_specimen(
-    dataset: xr.Dataset, names: tuple[str, ...], dim: str, rows: Integers
-) -> xr.Dataset:
+    archive: xr.Dataset, names: tuple[str, ...], dim: str, rows: Integers
+) -> dict[str, xr.Variable]:
     every = [f"{name}{suffix}" for name in names for suffix in ("", "_standard_uncertainty")]
-    return dataset.assign(
-        {
-            name: ("specimen", np.where(rows >= 0, dataset.variables[name].values[rows], np.nan))
-            for name in every
-            if name in dataset and dataset.variables[name].dims == (dim,)
-        }
-    )
+    return {
+        name: xr.Variable(
+            "specimen", np.where(rows >= 0, archive.variables[name].values[rows], np.nan)
+        )
+        for name in every
+        if name in archive and archive.variables[name].dims == (dim,)
+    }
 
 
 ROPE_TABLES = (

@@ -9,8 +9,6 @@ from reduction.archive.shared import COMPONENT
 from reduction.tables.shared import ERROR
 from reduction.tables.table import Table
 
-__all__ = ["PROPERTY_TABLES"]
-
 _CONTRIBUTIONS = tuple(
     f"property_{name}_uncertainty_contribution"
     for name in ("stiffness", "stiffness_over_strength", "strain")

@@ -5,8 +5,6 @@ from __future__ import annotations
 from reduction.archive.schema import COEFFICIENTS
 from reduction.tables.table import Table
 
-__all__ = ["RECORD_TABLES", "SPLICE_TABLES"]
-
 RECORD_TABLES = (
     Table(
         "specimens",

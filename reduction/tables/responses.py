@@ -17,8 +17,6 @@ from reduction.archive.variable import SUFFIXES
 from reduction.units import combined_unit
 from reduction.vocabulary import QUANTITIES, RESPONSE_PATTERNS, SURFACE_NAMES
 
-__all__ = ["by_response"]
-
 
 def by_response(archive: xr.Dataset) -> xr.Dataset:
     """Set the responses side by side along a dimension ``response``.

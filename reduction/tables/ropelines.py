@@ -6,8 +6,6 @@ from reduction.archive.schema import SCHEMA
 from reduction.archive.variable import SUFFIXES
 from reduction.tables.table import Table
 
-__all__ = ["LINE_TABLES"]
-
 _LINE = (
     "test_quasi_static_spring_constant",
     "test_dissipation_spring_constant",

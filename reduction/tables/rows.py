@@ -11,10 +11,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.record import Bools
-from reduction.tables.column import csv_field, texts_of
+from reduction.tables.column import csv_field, texts_of_columns
 from reduction.tables.table import SYNTHETIC, TEST, Table
-
-__all__ = ["BLOCK_ROWS", "table_blocks"]
 
 BLOCK_ROWS = 1 << 12
 """Rows of a block: three megabytes of text where a table is as wide as that of the cycles. [1]"""
@@ -44,9 +42,9 @@ def table_blocks(
     needed = [name for name in table.needs if name in archive]
     if not needed or not set(table.dims) <= set(archive.sizes):
         return
-    dataset = table.prepare(archive)
-    variables = {str(name): variable for name, variable in dataset.variables.items()}
-    sizes = {dim: dataset.sizes[dim] for dim in table.dims}
+    variables = {str(name): variable for name, variable in archive.variables.items()}
+    variables |= table.derive(archive)
+    sizes = {dim: archive.sizes[dim] for dim in table.dims}
     global_fields = {
         TEST.name: csv_field(archive.attrs.get("test", "")),
         SYNTHETIC.name: csv_field(archive.attrs.get("synthetic", "no")),
@@ -56,18 +54,18 @@ def table_blocks(
         laid_out = [_laid_out(variables[name], block) for name in needed]
         known = np.any([_is_known(values) for values in laid_out], axis=0)
         n_rows = int(known.sum())
-        fields = []
-        for column in columns:
-            source = column.variable.name
-            if column.name in global_fields:
-                fields.append([global_fields[column.name]] * n_rows)
-            elif source in variables:
-                values = _laid_out(variables[source], block)[known]
-                fields.append(texts_of(values, column.variable))
-            else:
-                fields.append([""] * n_rows)
-        if n_rows:
-            yield fields
+        if not n_rows:
+            continue
+        values = {
+            place: (_laid_out(variables[column.variable.name], block)[known], column.variable)
+            for place, column in enumerate(columns)
+            if column.name not in global_fields and column.variable.name in variables
+        }
+        texts = dict(zip(values, texts_of_columns(list(values.values())), strict=True))
+        yield [
+            texts[place] if place in texts else [global_fields.get(column.name, "")] * n_rows
+            for place, column in enumerate(columns)
+        ]
 
 
 def _blocks(sizes: Mapping[str, int], most: int) -> Iterator[dict[str, range]]:
@@ -85,9 +83,14 @@ def _blocks(sizes: Mapping[str, int], most: int) -> Iterator[dict[str, range]]:
 
 def _laid_out(variable: xr.Variable, block: Mapping[str, range]) -> NDArray[Any]:
     """Repeat a variable over the dimensions it lacks, and unroll it."""
-    own = [dim for dim in block if dim in variable.dims]
-    part = variable.isel({dim: slice(block[dim].start, block[dim].stop) for dim in own})
-    values = part.values.transpose([part.dims.index(dim) for dim in own])
+    dims = variable.dims
+    own = [dim for dim in block if dim in dims]
+    if any(len(block[dim]) < variable.sizes[dim] for dim in own):
+        variable = variable.isel({dim: slice(block[dim].start, block[dim].stop) for dim in own})
+    values = np.asarray(variable.values)
+    if dims == tuple(block):
+        return values.ravel()
+    values = values.transpose([dims.index(dim) for dim in own])
     axes = tuple(slice(None) if dim in own else np.newaxis for dim in block)
     return np.broadcast_to(values[axes], [len(entries) for entries in block.values()]).ravel()
 

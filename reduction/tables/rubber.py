@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from reduction.tables.derived import with_fit_of_parameter, with_its_one_specimen
+from reduction.tables.derived import fit_of_parameters, one_specimen
 from reduction.tables.table import Table
-
-__all__ = ["RUBBER_TABLES", "STEPWISE_TABLES"]
 
 RUBBER_TABLES = (
     Table(
@@ -24,7 +22,7 @@ RUBBER_TABLES = (
             "elastomer_aicc",
         ),
         ("elastomer_parameter_name",),
-        with_fit_of_parameter,
+        fit_of_parameters,
     ),
     Table(
         "stress_at_strain",
@@ -74,7 +72,7 @@ STEPWISE_TABLES = (
             "relaxed_gauge_length",
         ),
         ("clock",),
-        with_its_one_specimen,
+        one_specimen,
         product="stepwise test",
     ),
     Table(
@@ -82,7 +80,7 @@ STEPWISE_TABLES = (
         ("interval",),
         ("specimen", "interval_branch", "interval_strain", "interval_modulus"),
         ("interval_modulus",),
-        with_its_one_specimen,
+        one_specimen,
         product="stepwise test",
     ),
 )

@@ -5,8 +5,6 @@ from __future__ import annotations
 from reduction.archive.shared import COMPONENT, SHARED, SHARED_OF_STEPS
 from reduction.tables.table import Table
 
-__all__ = ["ERROR", "SHARED_TABLES"]
-
 ERROR = (
     "uncertainty_source", "uncertainty_source_of", "uncertainty_source_number",
     "uncertainty_source_degrees_of_freedom",

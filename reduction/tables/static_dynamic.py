@@ -23,8 +23,6 @@ from reduction.uncertainty.product import Component
 from reduction.uncertainty.ratio import ratio_contributions
 from reduction.vocabulary import BRANCH_VALUES
 
-__all__ = ["STATIC_DYNAMIC_COLUMNS", "Slope", "slopes_of", "static_dynamic_rows"]
-
 _STATIC, _DYNAMIC = (Column(name, SCHEMA[name]) for name in ("interval_modulus", "tangent_modulus"))
 STATIC_DYNAMIC_COLUMNS = (
     Column("static_test", label("static_test")[0]),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.tables.ofexperiments import RUN, table_of_experiments
 
-__all__ = ["STIFFNESS_TABLES"]
-
 STIFFNESS_TABLES = (
     table_of_experiments(
         "stiffness_forms",

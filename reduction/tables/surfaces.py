@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.tables.ofexperiments import table_of_experiments
 
-__all__ = ["SURFACE_TABLES"]
-
 _ERRORS = (
     "uncertainty_source",
     "uncertainty_source_of",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import xarray as xr
@@ -17,11 +18,11 @@ from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.variable import Variable, count, label, measured, stated
 from reduction.tables.column import Column, uncertainty_of
 
-__all__ = ["SYNTHETIC", "TEST", "Product", "Table"]
-
 Product = Literal[
     "test", "stepwise test", "experiments", "predictions", "comparisons", "properties"
 ]
+Variables = Mapping[str, xr.Variable]
+"""By name, as those of an archive."""
 
 TEST = Column("test", label("test")[0])
 SYNTHETIC = Column("synthetic", label("synthetic")[0])
@@ -55,8 +56,8 @@ _SCHEMAS: dict[Product, dict[str, Variable]] = {
 }
 
 
-def _as_it_is(dataset: xr.Dataset) -> xr.Dataset:
-    return dataset
+def _nothing(_: xr.Dataset) -> Variables:
+    return {}
 
 
 @dataclass(frozen=True)
@@ -74,8 +75,8 @@ class Table:
         measured one is followed by its standard uncertainty.
     needs : tuple of str
         A row is written where one of these is known.
-    prepare : callable
-        What has to be done to the archive first.
+    derive : callable
+        From the archive to variables that the table needs beside or in place of its own.
     product : str
         Whose names they are. A row of a test names it; any other names its experiment or hose.
     """
@@ -84,10 +85,10 @@ class Table:
     dims: tuple[str, ...]
     variables: tuple[str, ...]
     needs: tuple[str, ...]
-    prepare: Callable[[xr.Dataset], xr.Dataset] = _as_it_is
+    derive: Callable[[xr.Dataset], Variables] = _nothing
     product: Product = "test"
 
-    @property
+    @cached_property
     def columns(self) -> list[Column]:
         """Every column, the test first and the word on synthetic data last."""
         schema = _SCHEMAS[self.product]

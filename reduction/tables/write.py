@@ -11,7 +11,6 @@ from typing import Any
 import xarray as xr
 
 from reduction.archive.open import Opener, reading
-from reduction.archive.statederrors import says_what_is_shared
 from reduction.archive.variable import label
 from reduction.archive.whole import take_away
 from reduction.tables.column import Column
@@ -26,7 +25,6 @@ from reduction.tables.predictions import PREDICTION_TABLES
 from reduction.tables.properties import PROPERTY_TABLES
 from reduction.tables.responses import by_response
 from reduction.tables.rows import table_blocks
-from reduction.tables.silent import as_silent, quantities_kept
 from reduction.tables.static_dynamic import (
     STATIC_DYNAMIC_COLUMNS,
     Slope,
@@ -34,8 +32,6 @@ from reduction.tables.static_dynamic import (
     static_dynamic_rows,
 )
 from reduction.tables.table import Table
-
-__all__ = ["write_tables"]
 
 _Place = tuple[float, list[tuple[int, str]]]
 _ALL = (
@@ -101,7 +97,7 @@ def write_tables(
             name: TableFile(folder / f"{name}.csv", listed, whole)
             for name, listed in columns.items()
         }
-        silent = _add_tests(files, archives, opener)
+        _add_tests(files, archives, opener)
         _add_experiments(files, surfaces, opener)
         _add_outcomes(files, outcomes, opener)
         _add_as_it_is(files, predictions, PREDICTION_TABLES, opener)
@@ -112,7 +108,7 @@ def write_tables(
             [
                 [f"{name}.csv", *described]
                 for name in filled
-                for described in column_descriptions(columns[name], files[name].lonely, silent)
+                for described in column_descriptions(columns[name], files[name].lonely)
             ]
         )
     for name in columns:
@@ -128,29 +124,21 @@ def _place(attributes: dict[str, Any]) -> _Place:
     return float(attributes.get("test_order", "inf")), digits
 
 
-def _add_tests(
-    files: Mapping[str, TableFile], archives: Sequence[Path], opener: Opener
-) -> set[str]:
-    """Write the rows of tests; what some have no uncertainty of for being silent."""
-    kept, says = set[str](), set[bool]()
+def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path], opener: Opener) -> None:
     places: dict[Path, _Place] = {}
     for path in archives:
         with opener(path) as archive:
-            kept |= quantities_kept(archive)
-            says.add(says_what_is_shared(archive))
             places[path] = _place(archive.attrs)
     curves: list[Curve] = []
     slopes: list[Slope] = []
     for path in sorted(archives, key=places.__getitem__):
-        with opener(path) as whole:
-            archive = as_silent(whole, kept)
+        with opener(path) as archive:
             for table in TABLES:
                 _add(files[table.name], archive, table)
             curves += curves_of(archive)
             slopes += slopes_of(archive)
     files["envelope"].add_rows(envelope_rows(curves))
     files["static_dynamic"].add_rows(static_dynamic_rows(slopes, curves))
-    return kept if False in says else set()
 
 
 def _add_experiments(files: Mapping[str, TableFile], surfaces: Path | None, opener: Opener) -> None:

@@ -20,8 +20,6 @@ from reduction.uncertainty.combine import (
 )
 from reduction.uncertainty.product import Component
 
-__all__ = ["RANDOM", "Budget", "BudgetRow", "budget_of"]
-
 _ROUNDING = 1e-9
 RANDOM = "random"
 """Source of what is not shared: scatter, noise, regression."""

@@ -10,15 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import stdtrit
 
 from reduction.record import Floats
-
-__all__ = [
-    "combined_standard_uncertainty",
-    "coverage_factor",
-    "effective_degrees_of_freedom",
-]
 
 CONFIDENCE = 0.95
 _FEWEST, _MANY = 1.0, 1e9
@@ -151,4 +145,4 @@ def coverage_factor(degrees_of_freedom: ArrayLike, *, confidence: float = CONFID
     """
     freedom = np.asarray(degrees_of_freedom, dtype=np.float64)
     bounded = np.clip(freedom, _FEWEST, _MANY)
-    return np.asarray(stats.t.ppf((1 + confidence) / 2, bounded))
+    return np.asarray(stdtrit(bounded, (1 + confidence) / 2))

@@ -11,10 +11,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from reduction.laboratory import DecisionRule
-
-__all__ = ["Verdict", "conformity"]
-
+DecisionRule = Literal["simple acceptance", "guard band"]
 Verdict = Literal["conforms", "does not conform", "no statement"]
 
 

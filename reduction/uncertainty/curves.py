@@ -29,8 +29,6 @@ from reduction.record import Floats
 from reduction.uncertainty.field import ErrorField
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
-__all__ = ["by_diameter", "curve_contributions", "diameter_error", "strain_rate_of_wave"]
-
 Waveform = Literal["triangular", "sinusoidal", "other"]
 
 

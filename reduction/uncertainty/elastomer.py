@@ -27,8 +27,6 @@ from reduction.moduli.elastomer import even_grid
 from reduction.moduli.hyperelastic import PARAMETERS, Law, hyperelastic_stress
 from reduction.record import Floats
 
-__all__ = ["elastomer_contributions"]
-
 _STEP, _WIDE_STEP = 1e-6, 1e-4  # of a parameter: for first and for second differences
 
 

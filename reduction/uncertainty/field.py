@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reduction.checks import as_same_shape
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, read_only_arrays
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.fieldlength import coefficient_parts, position_parts
 from reduction.uncertainty.fieldload import load_parts, strain_by_tension
@@ -31,12 +31,11 @@ from reduction.uncertainty.fieldrows import ROWS, field_rows
 from reduction.uncertainty.product import Component, InstrumentErrors
 from reduction.uncertainty.splicemethod import splice_method_error
 
-__all__ = ["ErrorField", "error_field"]
-
 _PIECE = 4096  # points
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class ErrorField:
     """Errors at points of the plane; arrays have shape (n_components, ...).
 
@@ -64,10 +63,6 @@ class ErrorField:
     strain_slope: Floats
     strain_slope_over_tension: Floats
     strain_by_tension: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def divergence(self) -> Floats:

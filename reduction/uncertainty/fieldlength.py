@@ -17,8 +17,6 @@ from reduction.strain.model import StrainModel
 from reduction.uncertainty.fieldrows import FieldPart, field_rows, steps_of
 from reduction.uncertainty.product import Component, InstrumentErrors
 
-__all__ = ["coefficient_errors", "coefficient_parts", "position_parts"]
-
 _REACH = 1e-4  # of the strain 1, for the slopes
 
 

@@ -25,8 +25,6 @@ from reduction.strain.model import StrainModel
 from reduction.uncertainty.fieldrows import FieldPart, field_rows, steps_of
 from reduction.uncertainty.product import Component, InstrumentErrors
 
-__all__ = ["load_parts", "strain_by_tension"]
-
 
 def load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> list[FieldPart]:
     """Gain and zero of each load cell: that of the samples, and those of the marks.

@@ -13,8 +13,6 @@ import numpy as np
 from reduction.record import Floats
 from reduction.uncertainty.product import Component
 
-__all__ = ["ROWS", "FieldPart", "field_rows", "steps_of"]
-
 ROWS = (
     "tension", "strain", "tension_slope", "strain_slope", "strain_slope_over_tension",
 )  # fmt: skip

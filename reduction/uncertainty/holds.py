@@ -27,8 +27,6 @@ from reduction.record import Floats
 from reduction.uncertainty.field import ErrorField
 from reduction.uncertainty.product import Contributions
 
-__all__ = ["hold_contributions"]
-
 
 def hold_contributions(
     field_at: Callable[[Floats, Floats], ErrorField], hold: HoldResult

@@ -15,8 +15,6 @@ import numpy as np
 from reduction.record import Floats
 from reduction.uncertainty.product import Component, Contributions
 
-__all__ = ["added", "merged", "renamed", "stacked"]
-
 
 def merged(parts: Sequence[Contributions]) -> Contributions:
     """Contributions to different quantities, on the components of all of them.

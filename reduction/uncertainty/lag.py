@@ -37,10 +37,8 @@ from numpy.typing import ArrayLike
 
 from reduction.errors import DataError
 from reduction.phases.intervals import median_step
-from reduction.record import Floats, Integers, freeze_arrays
+from reduction.record import Floats, Integers, read_only_arrays
 from reduction.samples.blocks import BLOCK, sample_blocks, take_samples
-
-__all__ = ["LAG_REFUSALS", "LagEstimate", "lag_by_turns"]
 
 LAG_REFUSALS = {
     "given": 0,
@@ -65,6 +63,7 @@ _PASSES = 3
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LagEstimate:
     """Lag of the tension channels; arrays have shape (n_specimens,).
 
@@ -84,10 +83,6 @@ class LagEstimate:
     standard_uncertainty: Floats
     n_turns: Integers
     refusal: Integers
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def lag_by_turns(

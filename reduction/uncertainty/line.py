@@ -36,8 +36,6 @@ from reduction.record import Floats
 from reduction.uncertainty.field import ErrorField
 from reduction.uncertainty.product import Contributions
 
-__all__ = ["line_contributions", "pull_contributions"]
-
 _K_0 = "quasi_static_spring_constant"
 
 

@@ -32,8 +32,6 @@ from reduction.strain.model import StrainModel
 from reduction.uncertainty.field import error_field
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
-__all__ = ["loop_contributions"]
-
 _LAG_SHAPE = {"sinusoidal": 2 * np.pi**2, "triangular": 16.0, "other": 16.0}
 """Integral of tension rate over strain, by f T_a eps_a: of a sine, and of straight ramps."""
 

@@ -23,7 +23,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import gammaincinv
 
 from reduction.checks import as_same_shape
 from reduction.errors import DataError
@@ -35,9 +35,7 @@ from reduction.line.sensitivity import (
     amplitude_sensitivities,
     line_sensitivities,
 )
-from reduction.record import Bools, Floats, freeze_arrays
-
-__all__ = ["N_DRAWS", "PARAMETERS", "LineDraws", "draw_line"]
+from reduction.record import Bools, Floats, read_only_arrays
 
 PARAMETERS = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
 """K_1, tau and N = K_1 tau, in the order of the arrays of `LineDraws`."""
@@ -50,6 +48,7 @@ _ONE_SIGMA = (0.158655, 0.841345)
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LineDraws:
     """What drawing gives of the line of each specimen; rows are `PARAMETERS`.
 
@@ -72,10 +71,6 @@ class LineDraws:
     low: Floats
     high: Floats
     without_solution_share: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
     @property
     def is_linear(self) -> Bools:
@@ -190,7 +185,7 @@ def draw_line(
         scattered = np.einsum("dj,ij->di", own, _root(random[place]))
         moved = np.einsum("dc,ci->di", common, shared[:, place])
         normal = _identified(at * (1 + scattered + moved), reading)
-        wide = np.sqrt(freedom[place] / stats.chi2.ppf(uniform, freedom[place]))[:, None]
+        wide = np.sqrt(freedom[place] / (2 * gammaincinv(freedom[place] / 2, uniform)))[:, None]
         heavy = _identified(at * (1 + scattered * wide + moved), reading)
         solved = np.isfinite(normal).all(axis=0)
         without[place] = 1 - solved.mean()

@@ -28,14 +28,6 @@ from reduction.uncertainty.curves import by_diameter, diameter_error
 from reduction.uncertainty.field import ErrorField
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
-__all__ = [
-    "chord_contributions",
-    "secant_contributions",
-    "section_contributions",
-    "stress_contributions",
-    "with_diameter",
-]
-
 
 def with_diameter(
     found: Contributions, errors: InstrumentErrors, values: dict[str, Floats], *, area: float

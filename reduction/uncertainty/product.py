@@ -21,9 +21,7 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from reduction.errors import SettingsError
-from reduction.record import Floats, Integers, freeze_arrays
-
-__all__ = ["LINE_METHODS", "Component", "Contributions", "InstrumentErrors", "LineSpread"]
+from reduction.record import Floats, Integers, read_only_arrays
 
 LINE_METHODS = {"not_given": 0, "linear": 1, "monte_carlo": 2}
 """How the uncertainty of a line was found, by its code in `LineSpread`."""
@@ -123,6 +121,7 @@ class Component:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class Contributions:
     """What each component adds to some quantities.
 
@@ -140,7 +139,6 @@ class Contributions:
 
     def __post_init__(self) -> None:
         """Check that every quantity has a row for each component, and make arrays read-only."""
-        freeze_arrays(self)
         if len(set(self.component)) != len(self.component):
             raise SettingsError("a component stands twice among the contributions")
         for name, rows in self.values.items():
@@ -163,6 +161,7 @@ class Contributions:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class LineSpread:
     """Uncertainty and 95 % interval of K_1, tau and N of a test, and how they were found.
 
@@ -181,7 +180,3 @@ class LineSpread:
     standard_uncertainty: dict[str, Floats]
     low: dict[str, Floats]
     high: dict[str, Floats]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)

@@ -23,8 +23,6 @@ from reduction.line.product import SlowPull
 from reduction.line.quasistatic import quasi_static_spring_constant
 from reduction.uncertainty.product import Component, Contributions
 
-__all__ = ["fit_contributions"]
-
 _NEGLIGIBLE = 1e-12  # of the greatest variance
 
 

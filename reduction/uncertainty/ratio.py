@@ -28,8 +28,6 @@ from reduction.uncertainty.combine import (
     effective_degrees_of_freedom,
 )
 
-__all__ = ["ratio_contributions", "with_shared_interval"]
-
 _BOTH = (
     "the interval holds what differs from cycle to cycle (type A), and errors of instruments, "
     "diameters and splice strain as far as the two do not share them"

@@ -16,8 +16,6 @@ from reduction.checks import as_increasing, as_positive
 from reduction.uncertainty.curves import by_diameter
 from reduction.uncertainty.product import Contributions, InstrumentErrors
 
-__all__ = ["segment_contributions"]
-
 
 def segment_contributions(
     of_curve: Contributions,

@@ -28,8 +28,6 @@ from reduction.strain.inverse import position_by_model
 from reduction.strain.model import StrainModel
 from reduction.strain.tensiondriven import splice_strain
 
-__all__ = ["splice_method_error"]
-
 
 def splice_method_error(
     model: StrainModel, *, strain: ArrayLike, tension: ArrayLike

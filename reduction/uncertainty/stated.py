@@ -17,8 +17,6 @@ from reduction.checks import as_positive
 from reduction.errors import SettingsError
 from reduction.uncertainty.product import InstrumentErrors
 
-__all__ = ["Shape", "StatedErrors", "of_expanded", "of_half_width", "of_resolution"]
-
 Shape = Literal["rectangular", "triangular", "arcsine"]
 _SHAPE: dict[Shape, float] = {
     "rectangular": np.sqrt(3),

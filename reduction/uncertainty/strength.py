@@ -17,8 +17,6 @@ import numpy as np
 from reduction.record import Floats
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
-__all__ = ["over_strength"]
-
 
 def over_strength(
     found: Contributions, errors: InstrumentErrors, powers: Mapping[str, tuple[Floats, float]]

@@ -22,8 +22,6 @@ from reduction.errors import DataError
 from reduction.record import Floats, Integers
 from reduction.surface.terms import model_matrix
 
-__all__ = ["coefficient_contributions"]
-
 
 def coefficient_contributions(
     coded: ArrayLike,

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import fdtri
 
-from reduction.record import Floats, freeze_arrays
+from reduction.record import Floats, read_only_arrays
 from reduction.surface.bands import SurfaceValues
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.terms import model_matrix
@@ -34,12 +34,11 @@ from reduction.uncertainty.combine import (
     effective_degrees_of_freedom,
 )
 
-__all__ = ["SharedAtPoints", "with_shared_at_points"]
-
 _MANY = 1e9
 
 
 @dataclass(frozen=True)
+@read_only_arrays
 class SharedAtPoints:
     """Surfaces at points with both parts of their uncertainty, on the scale of the response.
 
@@ -63,10 +62,6 @@ class SharedAtPoints:
     confidence_interval: Floats
     prediction_interval: Floats
     simultaneous_interval: Floats
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze_arrays(self)
 
 
 def with_shared_at_points(

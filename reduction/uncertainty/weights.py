@@ -26,8 +26,6 @@ from reduction.record import Floats
 from reduction.uncertainty.points import with_diameter
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
-__all__ = ["stepwise_contributions"]
-
 
 def stepwise_contributions(
     result: StepwiseResult, errors: InstrumentErrors, *, area: float

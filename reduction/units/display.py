@@ -10,11 +10,17 @@ from typing import Literal
 from reduction.errors import SettingsError
 from reduction.units.scale import registry
 
-__all__ = ["UnitSystem", "combined_unit", "display_unit"]
-
 UnitSystem = Literal["si", "us"]
-_US = {"m": "ft", "N": "lbf", "Pa": "psi", "m2": "in2", "J m-1": "ft lbf / ft", "m s-1": "ft s-1"}
-_US_PINT = {"in2": "in**2", "ft s-1": "ft/s", "ft lbf / ft": "lbf"}
+_US = {
+    "m": "ft",
+    "N": "lbf",
+    "Pa": "psi",
+    "m2": "in2",
+    "J m-1": "ft lbf / ft",
+    "m s-1": "ft s-1",
+    "N s": "lbf s",
+}
+_US_PINT = {"in2": "in**2", "ft s-1": "ft/s", "ft lbf / ft": "lbf", "lbf s": "lbf*s"}
 _UNIT_AND_POWER = re.compile(r"([^\s\d/-]+)(-?\d+)?")
 
 

@@ -9,8 +9,6 @@ from reduction.errors import SettingsError
 from reduction.units.scale import DIMENSIONS, Dimension, scale_of_unit, scale_to_si
 from reduction.visible import cut
 
-__all__ = ["parse_in_unit", "parse_quantity"]
-
 _QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
 
 

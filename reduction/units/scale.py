@@ -11,8 +11,6 @@ import pint
 
 from reduction.errors import SettingsError
 
-__all__ = ["DIMENSIONS", "Dimension", "registry", "scale_of_unit", "scale_to_si"]
-
 Dimension = Literal[
     "time", "length", "force", "strain", "stress", "area", "frequency", "temperature", "angle",
     "mass", "velocity", "number", "force_rate", "density", "per_length",

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.vocabulary.row import Quantity
 
-__all__ = ["OF_CATALOGUE"]
-
 OF_CATALOGUE = (
     Quantity("campaign", "", "campaign"),
     Quantity("archive", "", "archive that the row is from, below the folder of the products"),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.vocabulary.row import Quantity
 
-__all__ = ["OF_COMPARISONS"]
-
 OF_COMPARISONS = (
     Quantity("comparison", "", "comparison of a test with a predicted hose"),
     Quantity("comparison_test", "", "test that is compared"),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.vocabulary.row import Quantity
 
-__all__ = ["OF_EXPERIMENTS"]
-
 OF_EXPERIMENTS = (
     # experiments; numbers of factors stand beside the unit of the factor, which differs
     Quantity("experiment", "", "experiment"),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.vocabulary.row import Quantity
 
-__all__ = ["OF_LINE"]
-
 OF_LINE = (
     # the three-parameter line, of each cycle and from the means over the cycles of a test
     Quantity("dashpot_coefficient", "N s", "dashpot coefficient, K_1 times tau", "003 N"),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.vocabulary.row import Quantity
 
-__all__ = ["OF_OUTCOMES"]
-
 OF_OUTCOMES = (
     # outcomes without a log, one row each
     Quantity("outcome_row", "1", "line of the table of results, its header being 1"),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.vocabulary.row import Quantity
 
-__all__ = ["OF_PREDICTIONS"]
-
 OF_PREDICTIONS = (
     Quantity("hose", "", "hose that is predicted"),
     Quantity("hose_point", "1", "number of the strain in the table of the hose"),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.vocabulary.row import Quantity
 
-__all__ = ["OF_REDUCED"]
-
 OF_REDUCED = (
     # per sample; no standard name for time: the table's wants an epoch, a test has none
     Quantity("time", "s", "elapsed time"),

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from reduction.vocabulary.row import Quantity
 
-__all__ = ["RESPONSES", "RESPONSE_PATTERNS", "SCALES", "SURFACE_NAMES"]
-
 RESPONSES = (
     "apparent_spring_constant",
     "hysteresis_energy",

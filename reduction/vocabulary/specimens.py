@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from reduction.vocabulary.row import Quantity
 
-__all__ = ["OF_SPECIMENS"]
-
 OF_SPECIMENS = (
     # splices and specimens
     Quantity("free_length", "m", "splice toe to splice toe"),

@@ -74,6 +74,7 @@ def test_a_cycle_typed_by_keyboard_is_shown_in_every_figure(shown, small):
     assert shown.errors == []
 
 
+@pytest.mark.nightly
 def test_a_figure_says_when_the_chosen_cycle_is_not_drawn_in_it(shown):
     choose(shown, 5)
     shown.drawn(f"{KEY}-loops-0")
@@ -100,6 +101,7 @@ def test_a_point_that_is_clicked_chooses_its_cycle_and_the_button_lets_it_go(sho
     wait_for(lambda: marks(shown, "record") == [])
 
 
+@pytest.mark.nightly
 def test_the_span_that_is_clicked_in_the_record_chooses_its_cycle(shown, small):
     start, end = (archive(small, "cycle_start_time")[0][0, place] for place in (7, 8))
     plot = shown.drawn(f"{KEY}-record")
@@ -114,12 +116,14 @@ def test_the_span_that_is_clicked_in_the_record_chooses_its_cycle(shown, small):
     assert shown.state.inner_text().startswith("Cycle 8 of 12")
 
 
+@pytest.mark.nightly
 def test_a_number_without_a_cycle_chooses_the_nearest_and_says_so(shown):
     choose(shown, 99)
     assert shown.state.inner_text().startswith("Cycle 12 of 12, from ")
     assert shown.state.inner_text().endswith("; 99 cannot be chosen here")
 
 
+@pytest.mark.nightly
 def test_another_test_keeps_its_own_choice(shown):
     choose(shown, 6)
     other = shown.open_section("T02.a")

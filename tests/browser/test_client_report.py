@@ -8,9 +8,8 @@ import subprocess
 import pytest
 from commandruns import reduction
 
-from reduction.archive.laboratory import keep_details, read_details
+from reduction.archive.laboratory import Laboratory, ReportDetails, keep_details, read_details
 from reduction.archive.open import open_archive
-from reduction.laboratory import Party, ReportDetails
 
 TMT = "tmt-synthetic"
 A4, LETTER = (595, 842), (612, 792)
@@ -79,10 +78,10 @@ def test_every_field_of_the_campaign_is_on_paper(text, campaigns):
         details.method, details.deviations, details.sampling, details.environment, details.opinions,
         details.laboratory.name, details.laboratory.address, details.laboratory.contact,
         details.laboratory.location, details.client.name, details.client.address,
-        details.client.order, details.authorised_by, details.authorised_function,
+        details.client.order, details.authorised.by, details.authorised.function,
     ):  # fmt: skip
         assert given and " ".join(given.split()) in text
-    for item in details.items:
+    for item in details.items.values():
         assert item.identification in text
 
 
@@ -110,6 +109,7 @@ def test_figures_are_vectors(pdf):
     assert len(read("pdfimages", "-list", pdf).splitlines()) == 2  # the heading alone
 
 
+@pytest.mark.nightly
 def test_paper_is_what_the_laboratory_chose(pdf, campaigns, tmp_path):
     assert size_of(pdf) == A4
     folder = tmp_path / "static"
@@ -123,11 +123,14 @@ def test_paper_is_what_the_laboratory_chose(pdf, campaigns, tmp_path):
     assert "".join(pages).count("not stated") > 15
 
 
+@pytest.mark.nightly
 def test_nothing_hostile_leaves_its_place(campaigns, tmp_path):
     folder = tmp_path / "static"
     shutil.copytree(campaigns("buoy-technology-1997").processed, folder)
     nasty = '</style><script>document.title=1</script><img src=file:///etc/hostname> "} @page{x}'
-    keep_details(folder, ReportDetails(number=nasty, method=nasty, laboratory=Party(nasty)))
+    keep_details(
+        folder, ReportDetails(number=nasty, method=nasty, laboratory=Laboratory(name=nasty))
+    )
     pages = pages_of(printed(folder, tmp_path))
     text = " ".join(" ".join(pages).split())
     assert nasty in text
@@ -149,6 +152,7 @@ def test_the_page_has_no_serious_fault_for_who_cannot_see_it(campaigns, visit):
         assert shown.faults() == []
 
 
+@pytest.mark.nightly
 def test_figures_are_inside_the_width_of_the_page(campaigns, visit):
     shown = visit(campaigns(TMT).reports / "client-report.html")
     outside = shown.page.evaluate(

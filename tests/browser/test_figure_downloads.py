@@ -35,6 +35,7 @@ def test_the_data_of_a_figure_have_units_and_the_numbers_of_the_archive(shown, s
     assert (upper + lower) / 2 == pytest.approx(np.array(values), rel=1e-5)
 
 
+@pytest.mark.nightly
 def test_everything_that_a_record_draws_is_in_its_data(shown, small):
     _, content = take(shown, f"{KEY}-record", "CSV")
     _, columns, rows = table_of(content)
@@ -62,6 +63,7 @@ def test_a_figure_is_saved_as_a_drawing_and_as_a_picture(shown):
     assert shown.beyond == []
 
 
+@pytest.mark.nightly
 def test_a_figure_that_was_not_drawn_yet_is_saved_too_and_what_was_switched_off_stays_off(shown):
     name, content = take(shown, "campaign-moduli-0", "SVG")
     assert name == "many_campaign-moduli-0.svg"
@@ -75,6 +77,7 @@ def test_a_figure_that_was_not_drawn_yet_is_saved_too_and_what_was_switched_off_
     assert [text.count(b'class="trace scatter') for text in (whole, content)] == [2, 1]
 
 
+@pytest.mark.nightly
 def test_a_figure_in_space_is_saved_as_all_others(campaigns, visit):
     shown = visit(campaigns("nylon-synthetic").page)
     key = "experiment-0-apparent_spring_constant-surface"

@@ -16,7 +16,7 @@ LONG = "N" * 500
 NAMES = {"markup": MARKUP, "long": LONG}
 
 
-@pytest.fixture(scope="module", params=NAMES)
+@pytest.fixture(scope="module", params=["markup", pytest.param("long", marks=pytest.mark.nightly)])
 def hostile(request, small, tmp_path_factory):
     """The small campaign with such a name for all that has a name; of archives made elsewhere."""
     name = NAMES[request.param]
@@ -41,7 +41,7 @@ def hostile(request, small, tmp_path_factory):
     return name, folder / "reports" / "many" / "index.html"
 
 
-@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize("width", [390, pytest.param(1280, marks=pytest.mark.nightly)])
 def test_a_name_is_text_and_breaks_no_layout(hostile, visit, width):
     name, page = hostile
     shown = visit(page, width=width)
@@ -87,6 +87,7 @@ def test_a_name_is_text_where_a_reader_points(hostile, visit):
     assert shown.page.evaluate("window.hurt") is None
 
 
+@pytest.mark.nightly
 def test_a_name_is_text_in_a_file_and_no_formula(hostile, visit):
     name, page = hostile
     shown = visit(page)

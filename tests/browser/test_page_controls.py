@@ -42,6 +42,7 @@ def _unmarked(control):
     return control.replace(' aria-current="true"', "")
 
 
+@pytest.mark.nightly
 def test_no_control_of_a_figure_sends_it_anywhere(shown):
     shown.drawn("campaign-moduli-0")
     names = shown.page.locator("#campaign-moduli-0 .modebar-btn").evaluate_all(
@@ -64,6 +65,7 @@ def test_a_fold_opens_by_its_link_by_an_address_and_by_a_key(shown, small, visit
     assert addressed.locator("#test-2").is_visible()
 
 
+@pytest.mark.nightly
 def test_an_address_inside_a_fold_opens_it(small, visit):
     page = visit(f"{small.page.as_uri()}#test-1-record").page
     page.locator(
@@ -72,6 +74,7 @@ def test_an_address_inside_a_fold_opens_it(small, visit):
     assert page.locator("#test-1-record").is_visible()
 
 
+@pytest.mark.nightly
 def test_one_button_opens_and_closes_all(shown):
     shown.page.get_by_role("button", name="Open all sections").click()
     assert shown.page.locator("details.chapter:not([open])").count() == 0
@@ -79,6 +82,7 @@ def test_one_button_opens_and_closes_all(shown):
     assert shown.page.locator("details.chapter[open]").count() == 0
 
 
+@pytest.mark.nightly
 def test_the_contents_mark_where_a_reader_is(shown):
     shown.open_section("T02.b")
     marked = shown.page.locator("nav [aria-current]")
@@ -86,6 +90,7 @@ def test_the_contents_mark_where_a_reader_is(shown):
     assert marked.count() == 1
 
 
+@pytest.mark.nightly
 def test_the_contents_of_a_long_page_are_searched(campaigns, visit):
     page = visit(campaigns("nylon-synthetic").page).page
     box = page.get_by_role("searchbox", name="Filter")

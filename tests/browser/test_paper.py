@@ -16,7 +16,7 @@ CUT = """width => {
 }"""
 
 
-@pytest.mark.parametrize("paper", SHEETS)
+@pytest.mark.parametrize("paper", ["A4", pytest.param("Letter", marks=pytest.mark.nightly)])
 def test_nothing_is_wider_than_the_sheet_and_all_is_there(paper, small, visit):
     width = SHEETS[paper]
     shown = visit(small.page, width=width, dark=True)
@@ -39,6 +39,7 @@ def test_nothing_is_wider_than_the_sheet_and_all_is_there(paper, small, visit):
     assert shown.errors == []
 
 
+@pytest.mark.nightly
 def test_figures_that_are_put_away_while_they_are_drawn_are_put_away(small, visit):
     shown = visit(small.page)
     page = shown.page
@@ -50,6 +51,7 @@ def test_figures_that_are_put_away_while_they_are_drawn_are_put_away(small, visi
     assert shown.errors == []
 
 
+@pytest.mark.nightly
 def test_a_column_headed_by_a_long_name_is_not_cut_off(small, visit):
     shown = visit(small.page)
     page = shown.page
@@ -89,6 +91,7 @@ def test_a_reader_who_opens_the_page_and_prints_it_has_every_section_and_figure(
     assert not set(last) & {"Record", "Loops", "Cycle by cycle", "Holds", "First loading"}
 
 
+@pytest.mark.nightly
 def test_the_chosen_cycle_stays_chosen_on_paper(small, visit):
     shown = visit(small.page)
     section = shown.open_section("T01")

@@ -42,3 +42,13 @@ def synthetic(tmp_path_factory):
 @pytest.fixture(scope="session")
 def static(tmp_path_factory):
     return run_once("buoy-technology-1997", shared_by_processes(tmp_path_factory))
+
+
+@pytest.fixture(scope="session")
+def nylon_campaign(tmp_path_factory):
+    return run_once("nylon-synthetic", shared_by_processes(tmp_path_factory))
+
+
+@pytest.fixture(scope="session")
+def hose_campaign(tmp_path_factory):
+    return run_once("hose-synthetic", shared_by_processes(tmp_path_factory))

@@ -13,6 +13,8 @@ from reduction.archive.open import open_archive
 from reduction.archive.version import SCHEMA_VERSION
 from reduction.cli.main import app
 
+pytestmark = pytest.mark.slow
+
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 STATED = """
 [uncertainty]

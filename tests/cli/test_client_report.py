@@ -12,6 +12,8 @@ from reduction.cli import printing
 from reduction.cli.printing import find_browser, print_page
 from reduction.errors import ArchiveError, SettingsError
 
+pytestmark = pytest.mark.slow
+
 RAW = ROOT / "raw" / "buoy-technology-1997"
 REPORT = '\n[report]\nnumber = "17"\n[report.client]\nname = "Buoy Company"\n'
 

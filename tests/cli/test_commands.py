@@ -63,6 +63,7 @@ def test_check_prints_what_it_found_and_writes_nothing(small, command):
     assert sorted(small.rglob("*")) == before
 
 
+@pytest.mark.slow
 def test_a_test_that_did_not_change_is_not_done_again(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"
     product = reduced / "processed" / "small" / "A.nc"
@@ -81,6 +82,7 @@ def test_a_test_that_did_not_change_is_not_done_again(reduced, command):
     assert json.loads(report.stdout)["reports"] == [str(Path("reports/small/index.html"))]
 
 
+@pytest.mark.slow
 def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"
     old, beside = (
@@ -182,6 +184,7 @@ def test_a_log_in_steps_gives_one_product_a_step(small, command):
     assert '"braided, one core"' in specimens
 
 
+@pytest.mark.slow
 def test_a_product_of_no_test_is_named_and_left_alone(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"
     campaign.write_text(campaign.read_text().split("[tests.B]")[0])
@@ -230,6 +233,7 @@ def test_the_program_itself_answers_refuses_and_ends_with_its_status(process):
     assert "cannot be read" in refused.stderr and "Traceback" not in refused.stderr
 
 
+@pytest.mark.slow
 def test_a_log_that_is_not_there_fails_its_own_test_alone(small, command):
     (small / "raw" / "A.csv").unlink()
     done = command("run", small / "raw" / "campaign.toml", "--json", cwd=small)
@@ -245,6 +249,7 @@ def test_the_start_of_a_command_loads_no_heavy_package():
     assert done.stdout == "[]\n"
 
 
+@pytest.mark.slow
 def test_a_run_in_which_every_test_fails_has_a_page_that_says_so(small, command):
     for name in ("A.csv", "B.csv"):
         (small / "raw" / name).unlink()
@@ -267,6 +272,7 @@ def test_a_run_in_which_every_test_fails_has_a_page_that_says_so(small, command)
         ('diameter = ["1.04 in"]', 'diameter = ["1.04 in"]\nnote = "cut from one length"'),
     ],
 )
+@pytest.mark.slow
 def test_whatever_a_product_says_is_part_of_what_makes_it_unchanged(reduced, command, change):
     campaign = reduced / "raw" / "campaign.toml"
     text = campaign.read_text().replace(*change)
@@ -283,6 +289,7 @@ def test_whatever_a_product_says_is_part_of_what_makes_it_unchanged(reduced, com
     assert json.loads(done.stdout)["tests"][0]["status"] == "reduced_with_notes"
 
 
+@pytest.mark.slow
 def test_limits_make_no_archive_again_and_refuse_what_is_beyond_them(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"
     before = (reduced / "processed" / "small" / "A.nc").read_bytes()
@@ -296,6 +303,7 @@ def test_limits_make_no_archive_again_and_refuse_what_is_beyond_them(reduced, co
     assert (reduced / "processed" / "small" / "A.nc").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_marks_of_a_log_in_steps_serve_the_other_tests_as_before(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"
     archives = reduced / "processed" / "small"
@@ -312,6 +320,7 @@ def test_marks_of_a_log_in_steps_serve_the_other_tests_as_before(reduced, comman
     assert of_a and of_a == [line for line in split if line.startswith("A,")]
 
 
+@pytest.mark.slow
 def test_one_test_alone_leaves_the_rows_of_the_others_in_the_status(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"
     assert command("run", campaign, "--quiet", "--test", "B", cwd=reduced).returncode == 0
@@ -341,6 +350,7 @@ def test_a_fault_of_one_row_is_told_with_file_row_and_channel(small, command):
     assert place in done.stderr.replace("\n", " ")
 
 
+@pytest.mark.slow
 def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
     (small / "a.csv").write_text("no folder")
     done = command(

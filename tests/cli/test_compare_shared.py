@@ -12,6 +12,8 @@ from reduction.batch.comparisons import compare_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
+pytestmark = pytest.mark.slow
+
 RAW = Path(__file__).parents[2] / "raw" / "hose-synthetic"
 LBF, INCH, LENGTH = 4.4482216152605, 0.0254, 96.0
 PLAN = {"L-64": "H64-static", "S-64": "H64-pull"}
@@ -91,7 +93,17 @@ def right(tmp_path_factory):
     return both(tmp_path_factory.mktemp("right"))
 
 
-@pytest.fixture(scope="module", params=list(WRONG))
+@pytest.fixture(
+    scope="module",
+    params=[
+        "tension_gain",
+        *(
+            pytest.param(name, marks=pytest.mark.nightly)
+            for name in WRONG
+            if name != "tension_gain"
+        ),
+    ],
+)
 def wrong(request, tmp_path_factory):
     return request.param, both(tmp_path_factory.mktemp("wrong"), change=WRONG[request.param])
 
@@ -173,6 +185,7 @@ def test_a_gain_is_a_share_of_the_tension_at_every_strain(tmp_path):
     assert found.validation.chi_square_freedom > 90
 
 
+@pytest.mark.nightly
 def test_noise_of_one_reading_is_no_error_that_samples_share(tmp_path):
     """Thousands of samples average it, and their scatter holds it already."""
     found = [
@@ -189,7 +202,11 @@ def test_noise_of_one_reading_is_no_error_that_samples_share(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "source", "share"), [(STRAIN, "strain_gain", None), (WARM, "temperature", 0.05)]
+    ("text", "source", "share"),
+    [
+        (STRAIN, "strain_gain", None),
+        pytest.param(WARM, "temperature", 0.05, marks=pytest.mark.nightly),
+    ],
 )
 def test_strain_and_temperature_reach_a_comparison_as_they_reach_the_test(
     tmp_path, text, source, share

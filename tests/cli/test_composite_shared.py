@@ -12,6 +12,8 @@ from reduction.archive.open import open_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
+pytestmark = pytest.mark.slow
+
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 TESTS = ("T-1", "T-2")
 STATED = """
@@ -92,6 +94,7 @@ def test_a_gain_makes_the_curve_less_sure_and_its_pieces_no_more_alike(
     assert np.hypot(*parts) == pytest.approx(after["tension_standard_uncertainty"])
 
 
+@pytest.mark.nightly
 def test_the_curve_moves_by_what_it_says_where_every_log_reads_1_percent_high(
     command, gain, tmp_path
 ):

@@ -2,8 +2,11 @@
 
 import json
 
+import pytest
 from commandruns import reduction
 from manytests import run, write_many
+
+pytestmark = pytest.mark.slow
 
 
 def test_a_run_and_a_report_write_the_page(tmp_path):

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
+pytestmark = pytest.mark.slow
+
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 
 

@@ -136,6 +136,7 @@ def test_first_tests_have_no_history_and_later_ones_the_sum_of_it(synthetic):
     assert strain == pytest.approx(float(top["stretch_true"][0]), abs=0.03)
 
 
+@pytest.mark.nightly
 def test_two_runs_give_the_same_bytes_in_another_place_time_zone_and_locale(
     synthetic, tmp_path_factory
 ):
@@ -153,6 +154,7 @@ def test_two_runs_give_the_same_bytes_in_another_place_time_zone_and_locale(
     assert hashes(folder / "p" / "tmt-synthetic") == hashes(synthetic.processed)
 
 
+@pytest.mark.nightly
 def test_every_product_follows_cf(synthetic, static):
     products = [*synthetic.processed.glob("*.nc"), *static.processed.glob("*.nc")]
     assert len(products) == 11

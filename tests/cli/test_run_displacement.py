@@ -7,6 +7,8 @@ import pytest
 
 from reduction.archive.open import open_archive
 
+pytestmark = pytest.mark.slow
+
 CAMPAIGN = """
 [campaign]
 id = "travel"

@@ -7,12 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from reduction.archive import inmemory
+from reduction.archive import open as opening
 from reduction.archive.open import open_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 from reduction.errors import ArchiveError
 from reduction.surface.levels import FactorLevels
+
+pytestmark = pytest.mark.slow
 
 RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
 KEPT = ("R01", "R02", "R03", "Q01")
@@ -76,7 +78,7 @@ def test_a_changed_pull_does_not_fit_runs_that_hold_the_one_before(folder):
     done, said = run(folder, ["Q01"])
     assert said["one"].status == "no_work"
     assert said["one"].message == (
-        "not fitted: 2 of its runs made with another slow pull than the one that stands now "
+        "not fitted: 2 of its runs not reduced yet from logs and settings as they stand now "
         "(R01, R02)"
     )
     # the experiment beside it waits for nothing
@@ -86,7 +88,7 @@ def test_a_changed_pull_does_not_fit_runs_that_hold_the_one_before(folder):
     before = pull_of(done, "R01")
     assert before["test"] == "Q01"
     done, said = run(folder, ["R01"])
-    assert said["one"].message.startswith("not fitted: 1 of its runs made with another slow pull")
+    assert said["one"].message.startswith("not fitted: 1 of its runs not reduced yet from")
     done, said = run(folder, ["R02"])
     assert said["one"].status == "failed"  # as a fit: two runs
     # the whole pull is scaled, and so is its range of use
@@ -99,7 +101,7 @@ def test_a_changed_log_that_was_not_asked_for_is_waited_for(folder):
     log.write_text("".join(log.read_text().splitlines(keepends=True)[:-1]))
     _, said = run(folder, ["R01"])
     assert said["two"].message == (
-        "not fitted: 1 of its runs made from other logs, settings or software (R03)"
+        "not fitted: 1 of its runs not reduced yet from logs and settings as they stand now (R03)"
     )
     assert said["one"].status != "no_work"
 
@@ -109,7 +111,8 @@ def test_where_all_wait_what_stands_is_of_an_earlier_run(folder):
     (folder / "p" / "nylon-synthetic" / "R03.nc").unlink()
     done, said = run(folder, ["Q01"])
     assert said["two"].message == (
-        "not fitted: 1 of its runs not reduced yet (R03); surfaces.nc is of an earlier run"
+        "not fitted: 1 of its runs not reduced yet from logs and settings as they stand now (R03); "
+        "surfaces.nc is of an earlier run"
     )
     assert done.exit_status == 0
 
@@ -180,14 +183,14 @@ def test_a_run_whose_archive_cannot_be_read_is_not_one_that_is_missing(folder, m
     """Surfaces over the other runs would be other surfaces."""
     (surfaces,) = folder.glob("p/*/surfaces.nc")
     before = surfaces.read_bytes()
-    opened = inmemory.reading
+    opened = opening.reading
 
     def refused(path):
         if path.name == "R02.nc":
             raise ArchiveError(f"{path} cannot be read", found="Input/output error")
         return opened(path)
 
-    monkeypatch.setattr(inmemory, "reading", refused)
+    monkeypatch.setattr(opening, "reading", refused)
     with pytest.raises(ArchiveError, match=r"R02\.nc cannot be read; found Input/output error"):
         run(folder)
     assert surfaces.read_bytes() == before

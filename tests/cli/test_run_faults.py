@@ -15,12 +15,14 @@ from reduction.archive import products as products_module
 from reduction.archive.open import reading
 from reduction.batch import reduce as reduce_module
 from reduction.batch import run as run_module
-from reduction.batch.lock import LOCK_NAME
+from reduction.batch.lock import run_named
 from reduction.batch.survey import as_reduction_error, survey_log
 from reduction.campaign.load import load_campaign
 from reduction.cli import designvalues as values_module
 from reduction.designpage import campaigns as campaigns_module
 from reduction.errors import ArchiveError
+
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +55,7 @@ def test_a_log_that_vanishes_while_the_campaign_runs_fails_its_test_and_keeps_th
     assert done.returncode == 3
     assert "raw/A.csv: the file cannot be read; found No such file or directory" in done.stderr
     assert (older / "processed/short/A.nc").read_bytes() == before
-    assert not (older / "processed/short" / LOCK_NAME).exists()
+    assert run_named(older / "processed/short") == ""
 
 
 def test_a_log_that_changes_while_the_campaign_runs_is_found_out_though_size_and_time_are_kept(

@@ -1,5 +1,6 @@
 """What a specimen had seen before a test: from logs, from weights, and where an earlier test failed."""
 
+import hashlib
 import json
 
 import numpy as np
@@ -8,6 +9,8 @@ import pytest
 import reduction.batch.reduce
 import reduction.batch.wanted
 from reduction.archive.open import open_archive
+
+pytestmark = pytest.mark.slow
 
 CAMPAIGN = """
 [campaign]
@@ -132,7 +135,9 @@ def test_what_a_failed_test_did_is_not_known_and_is_said(row, command):
         ) in notes
 
 
-def test_products_of_a_complete_run_stand_when_an_earlier_test_fails(row, command):
+def test_products_are_made_anew_without_an_earlier_test_that_fails_and_with_it_when_it_is_mended(
+    row, command
+):
     run(row, command)
     folder = row / "processed" / "row"
     before = {path.name: path.read_bytes() for path in folder.glob("*.nc")}
@@ -141,25 +146,18 @@ def test_products_of_a_complete_run_stand_when_an_earlier_test_fails(row, comman
     statuses = run(row, command)
     assert statuses["A"]["status"] == "failed"
     for test in ("weights", "B", "C"):
-        assert statuses[test]["status"] == "unchanged"
-        assert statuses[test]["message"].startswith(
-            "kept as an earlier, complete run made it: A failed in this one"
-        )
-    assert {path.name: path.read_bytes() for path in folder.glob("*.nc")} == before
-    # what is its own is looked at all the same
-    write_log(row / "C.csv", 0.1, 0.22, 8, 4)
-    statuses = run(row, command)
-    assert statuses["B"]["status"] == "unchanged"
-    assert statuses["C"]["status"] == "reduced_with_notes"
-    assert np.isnan(history(row, "C")[1]).all()
-    # made without A on request; with A again from then on
-    assert run(row, command, "--force")["B"]["status"] == "reduced_with_notes"
-    assert np.isnan(history(row, "B")[1]).all()
+        assert statuses[test]["status"] == "reduced_with_notes"
+        names, numbers, notes = history(row, test)
+        assert names.startswith("A") and np.isnan(numbers).all()
+        assert any(note.startswith("earlier test A failed") for note in notes)
+    assert (folder / "A.nc").read_bytes() == before["A.nc"]
     again = run(row, command)
-    assert again["B"]["status"] == "unchanged" and "kept as" not in again["B"]["message"]
+    assert {again[test]["status"] for test in ("weights", "B", "C")} == {"unchanged"}
     (row / "A.csv").write_text(sound)
-    assert run(row, command)["B"]["status"] == "reduced_with_notes"
-    assert (folder / "B.nc").read_bytes() == before["B.nc"]
+    statuses = run(row, command)
+    assert statuses["A"]["status"] == "unchanged"
+    assert statuses["B"]["status"] == "reduced_with_notes"
+    assert {path.name: path.read_bytes() for path in folder.glob("*.nc")} == before
 
 
 def test_a_product_made_while_one_test_failed_does_not_stand_for_another(row, command):
@@ -222,7 +220,9 @@ def test_a_run_tells_the_rate_and_the_gaps_that_it_was_drawn_with(row, command):
         assert found["C"]["found"]["gaps"] == 0
 
 
-def test_a_log_in_steps_that_fails_is_one_earlier_test_and_the_later_products_stand(row, command):
+def test_a_log_in_steps_has_each_in_the_history_and_one_that_fails_is_one_earlier_test(
+    row, command
+):
     text = (row / "campaign.toml").read_text()
     steps = "".join(
         f'[[tests.A.steps]]\nname = "{name}"\nfrom = "{low} s"\nto = "{high} s"\n'
@@ -233,10 +233,17 @@ def test_a_log_in_steps_that_fails_is_one_earlier_test_and_the_later_products_st
     names, numbers, _ = history(row, "B")
     assert names == "A.first, A.second, weights"
     assert numbers == pytest.approx(greatest(["A", "weights"]), rel=3e-3)
-    before = (row / "processed" / "row" / "B.nc").read_bytes()
     break_log(row, "A.csv")
     statuses = run(row, command)
     assert statuses["A"]["status"] == "failed"
-    assert statuses["B"]["status"] == "unchanged"
-    assert ": A failed in this one" in statuses["B"]["message"]
-    assert (row / "processed" / "row" / "B.nc").read_bytes() == before
+    assert statuses["B"]["status"] == "reduced_with_notes"
+    names, numbers, _ = history(row, "B")
+    assert names == "A, weights" and np.isnan(numbers).all()
+
+
+def test_each_product_has_the_key_of_its_settings(row, command):
+    run(row, command)
+    for path in (row / "processed" / "row").glob("*.nc"):
+        with open_archive(path) as archive:
+            settings = archive.attrs["settings"].encode()
+            assert archive.attrs["key"] == hashlib.sha256(settings).hexdigest()

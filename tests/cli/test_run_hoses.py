@@ -8,11 +8,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from commandruns import run_campaign as run_by_command
 
 from reduction.archive.open import open_archive
 from reduction.batch.comparisons import compare_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
+
+pytestmark = pytest.mark.slow
 
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 RAW = Path(__file__).parents[2] / "raw" / "hose-synthetic"
@@ -22,12 +25,8 @@ FAST = ["H64-dynamic", "H68-dynamic"]
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("hoses")
-    return run_campaign(
-        load_campaign(RAW / "campaign.toml"), processed=folder / "p", reports=folder / "r",
-        clock=lambda: 0.0, command="reduction run campaign.toml",
-    )  # fmt: skip
+def run(hose_campaign):
+    return hose_campaign
 
 
 @pytest.fixture(scope="module")
@@ -60,10 +59,11 @@ def built(truth, name):
 
 
 def test_every_test_hose_and_comparison_is_done(run):
-    assert run.exit_status == 0
-    assert [one.id for one in run.hoses] == ["H64", "H68"]
-    assert {one.status for one in run.comparisons} == {"compared_with_notes"}
-    assert len(run.comparisons) == 8
+    assert run.done.returncode == 0
+    assert [one["id"] for one in run.said["hoses"]] == ["H64", "H68"]
+    comparisons = run.said["comparisons"]
+    assert {one["status"] for one in comparisons} == {"compared_with_notes"}
+    assert len(comparisons) == 8
 
 
 @pytest.mark.parametrize("name", [*SLOW, *FAST])
@@ -123,16 +123,15 @@ def test_predicted_events_are_those_of_the_designs(run):
         assert events[hose, "pick_up"] == pytest.approx(alive * pick_up, abs=1e-12)
 
 
+@pytest.mark.nightly
 def test_two_runs_give_the_same_bytes(run, tmp_path):
-    again = run_campaign(
-        load_campaign(RAW / "campaign.toml"), processed=tmp_path / "p", reports=tmp_path / "r",
-        clock=lambda: 1.0, command="reduction run campaign.toml",
-    )  # fmt: skip
+    again = run_by_command("hose-synthetic", tmp_path)
     for name in ("predictions.nc", "comparisons.nc", "tables/comparisons.csv"):
         assert (again.processed / name).read_bytes() == (run.processed / name).read_bytes()
 
 
 @pytest.mark.parametrize("name", ["predictions", "comparisons"])
+@pytest.mark.nightly
 def test_products_follow_cf(run, name):
     done = subprocess.run(
         [sys.executable, str(COMPLIANCE), str(run.processed / f"{name}.nc")],
@@ -199,7 +198,7 @@ def test_the_history_of_a_hose_holds_the_cycles_that_no_log_has(run):
     # the generated hoses do not creep: what there is comes from the wider loop of the fast tests
     left = table.loc[["L-64", "D-64", "B-64", "L-68", "D-68"], "permanent_set [1]"]
     assert (left.abs() < 5e-3).all()
-    page = run.report.read_text(encoding="utf-8")
+    page = (run.reports / "index.html").read_text(encoding="utf-8")
     assert "earlier flex cycles" in page
 
 
@@ -287,12 +286,15 @@ def test_a_test_that_is_not_as_it_would_be_made_now_is_waited_for(tmp_path):
     assert first.exit_status == 0
     assert statuses["H64-break"].status == "compared_with_notes"
     assert statuses["H64-static"].status == "no_work"
-    assert "L-64 is not reduced yet" in statuses["H64-static"].message
+    assert (
+        "L-64 is not reduced yet from logs and settings as they stand now"
+        in statuses["H64-static"].message
+    )
     assert run_again(path, tmp_path).exit_status == 0
     changed = copied(tmp_path, lambda text: text.replace('"96 in"', '"80 in"', 1))
     again = {one.id: one for one in run_again(changed, tmp_path, tests=["B-64"]).comparisons}
     assert again["H64-static"].status == "no_work"
-    assert "other logs, settings or software" in again["H64-static"].message
+    assert "not reduced yet from logs and settings as they stand now" in again["H64-static"].message
     assert again["H68-static"].status == "compared_with_notes"
 
 

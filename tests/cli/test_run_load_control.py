@@ -5,6 +5,8 @@ import csv
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.slow
+
 CAMPAIGN = """
 [campaign]
 id = "load-control"

@@ -11,6 +11,8 @@ import pytest
 
 from reduction.archive.open import open_archive
 
+pytestmark = pytest.mark.slow
+
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 RAW = Path(__file__).parents[2] / "raw" / "buoy-technology-1997"
 CAMPAIGN = """

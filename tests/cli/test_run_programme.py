@@ -14,6 +14,8 @@ from reduction.archive.open import open_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
+pytestmark = pytest.mark.slow
+
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 POSITION = 'control = "position"'
 
@@ -159,6 +161,7 @@ def test_a_level_that_has_not_settled_is_named(whole):
     assert not any("settled" in note for note in notes(whole, "P-7.dynamic-1"))
 
 
+@pytest.mark.nightly
 def test_the_compliance_checker_finds_nothing(whole):
     products = sorted(whole.processed.glob("*.nc"))
     assert len(products) == 9  # each step, the pull, and change_in_length.nc

@@ -11,6 +11,8 @@ from reduction.archive.open import open_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
+pytestmark = pytest.mark.slow
+
 RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
 # mean tensions of 768 and 1920 lbf; that of R05 is its amplitude too
 KEPT = ("R01", "R05", "R11")
@@ -46,8 +48,18 @@ def below(lines):
 @pytest.mark.parametrize(
     ("pull", "cut", "reasons"),
     [
-        (False, None, dict.fromkeys(KEPT, "no slow pull is named for the specimen")),
-        (True, lambda lines: lines[:8], dict.fromkeys(KEPT, "the slow pull Q01 gave no")),
+        pytest.param(
+            False,
+            None,
+            dict.fromkeys(KEPT, "no slow pull is named for the specimen"),
+            marks=pytest.mark.nightly,
+        ),
+        pytest.param(
+            True,
+            lambda lines: lines[:8],
+            dict.fromkeys(KEPT, "the slow pull Q01 gave no"),
+            marks=pytest.mark.nightly,
+        ),
         (True, below, {"R11": "the mean tension lies outside the slow pull Q01"}),
     ],
     ids=["no pull", "a pull that failed", "a mean tension beyond the pull"],

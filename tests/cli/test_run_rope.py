@@ -9,17 +9,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-import xarray as xr
-from experiments import ABOUT
 
-from reduction.archive.budget import budget_from_archive
-from reduction.archive.linesource import line_source_of_experiment
 from reduction.archive.open import open_archive
-from reduction.archive.surfaces import surfaces_to_dataset
-from reduction.batch.experiments import fit_experiments
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
-from reduction.errors import ArchiveError
+
+pytestmark = pytest.mark.slow
 
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
@@ -27,12 +22,8 @@ LBF = 4.4482216152605
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("nylon")
-    return run_campaign(
-        load_campaign(RAW / "campaign.toml"), processed=folder / "p", reports=folder / "r",
-        clock=lambda: 0.0,
-    )  # fmt: skip
+def run(nylon_campaign):
+    return nylon_campaign
 
 
 @pytest.fixture(scope="module")
@@ -47,10 +38,11 @@ def of_test(run, name, quantity):
 
 
 def test_every_test_is_reduced(run):
-    assert run.exit_status == 0
-    assert len(run.tests) == 16
-    assert {test.status for test in run.tests} <= {"reduced", "reduced_with_notes"}
-    assert {test.n_cycles for test in run.tests} == {13, 0}
+    assert run.done.returncode == 0
+    tests = run.said["tests"]
+    assert len(tests) == 16
+    assert {test["status"] for test in tests} <= {"reduced", "reduced_with_notes"}
+    assert {test["n_cycles"] for test in tests} == {13, 0}
 
 
 @pytest.mark.parametrize(
@@ -126,6 +118,7 @@ def test_tables_hold_the_line_and_the_pull(run):
     assert pd.read_csv(tables / "slow_pull.csv")["tension_grid [N]"].is_monotonic_increasing
 
 
+@pytest.mark.nightly
 def test_the_compliance_checker_finds_nothing(run):
     products = [run.processed / "R01.nc", run.processed / "Q01.nc"]
     done = subprocess.run(
@@ -142,8 +135,9 @@ def surfaces(run):
 
 
 def test_the_experiment_is_fitted(run):
-    assert [(one.id, one.exit_status) for one in run.experiments] == [("nylon", 0)]
-    assert run.experiments[0].message.startswith("nylon: 15 of 15 runs of a box-behnken design")
+    (fitted,) = run.said["experiments"]
+    assert (fitted["id"], fitted["exit_status"]) == ("nylon", 0)
+    assert fitted["message"].startswith("nylon: 15 of 15 runs of a box-behnken design")
 
 
 @pytest.mark.parametrize(
@@ -244,67 +238,6 @@ def test_an_experiment_none_of_whose_runs_gave_a_product_has_nothing_to_fit(tmp_
     assert not (found.processed / "surfaces.nc").exists()
 
 
-def without_shared(path):
-    """An archive as an earlier version wrote it: what is shared is not kept."""
-    with xr.open_dataset(path, decode_times=False) as opened:
-        dataset = opened.load()
-    gone = [
-        name for name in dataset.variables
-        if str(name).endswith(("_uncertainty_contribution", "_random_standard_uncertainty"))
-        or str(name).startswith("uncertainty_")
-    ]  # fmt: skip
-    dataset.drop_vars(gone).to_netcdf(path)
-
-
-def test_a_run_of_which_it_is_not_kept_what_it_shares_is_not_exact(run, tmp_path):
-    folder = tmp_path / "nylon-synthetic"
-    shutil.copytree(run.processed, folder)
-    without_shared(folder / "R04.nc")
-    campaign = load_campaign(RAW / "campaign.toml")
-    (result,), _ = fit_experiments(campaign, lambda name: folder / f"{name}.nc", raw_sha256={})
-    index = result.surfaces.response_names.index("apparent_spring_constant")
-    assert np.isfinite(result.surfaces.coefficient[index]).all()
-    assert np.isnan(result.shared.coefficient[:, index]).all()
-    assert any("not kept in the archive of R04, which would count as exact" in one
-               for one in result.notes)  # fmt: skip
-    dataset = surfaces_to_dataset([result], origin=ABOUT)
-    spread = dataset["apparent_spring_constant_coefficient_standard_uncertainty"]
-    assert np.isnan(spread.to_numpy()).all()
-    # nor has a point of the surface an interval, and the run none but its own scatter
-    point = {
-        what: dataset[f"apparent_spring_constant_{what}"].to_numpy()[0]
-        for what in (
-            "point_value", "point_value_standard_uncertainty", "point_confidence_low",
-            "point_prediction_high", "ridge_simultaneous_low", "stationary_point_standard_uncertainty",
-        )
-    }  # fmt: skip
-    assert np.isfinite(point.pop("point_value")).all()
-    assert all(np.isnan(values).all() for values in point.values())
-    own = dataset["apparent_spring_constant_measured_standard_uncertainty"].to_numpy()[0]
-    assert np.flatnonzero(np.isnan(own)).tolist() == [3]
-    random = dataset["apparent_spring_constant_measured_random_standard_uncertainty"].to_numpy()[0]
-    assert np.isfinite(random).all()
-    with pytest.raises(ArchiveError, match="uncertainty of apparent.* there is not known"):
-        budget_from_archive(
-            dataset, "apparent_spring_constant_coefficient",
-            {"experiment": "nylon", "term": "B1"},
-        )  # fmt: skip
-    line = line_source_of_experiment(dataset, "nylon")
-    surface = line.surfaces["apparent_spring_constant"]
-    assert np.isnan(surface.sigma) and not surface.component
-    assert any("no interval is given" in one for one in surface.notes)
-
-
-def test_runs_all_of_which_keep_nothing_are_taken_by_their_scatter(run, tmp_path):
-    folder = tmp_path / "nylon-synthetic"
-    shutil.copytree(run.processed, folder)
-    for path in folder.glob("R*.nc"):
-        without_shared(path)
-    campaign = load_campaign(RAW / "campaign.toml")
-    (result,), _ = fit_experiments(campaign, lambda name: folder / f"{name}.nc", raw_sha256={})
-    assert result.shared is None
-
-
 def test_an_experiment_waits_for_runs_that_were_not_asked_for(tmp_path):
     campaign = load_campaign(RAW / "campaign.toml")
     part = run_campaign(
@@ -313,7 +246,7 @@ def test_an_experiment_waits_for_runs_that_were_not_asked_for(tmp_path):
     )  # fmt: skip
     assert part.exit_status == 0
     assert part.experiments[0].message == (
-        "not fitted: 14 of its runs not reduced yet (R02, R03, R04, R05, ..)"
+        "not fitted: 14 of its runs not reduced yet from logs and settings as they stand now (R02, R03, R04, R05, ..)"
     )
     assert not (part.processed / "surfaces.nc").exists()
 

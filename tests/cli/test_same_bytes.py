@@ -18,6 +18,8 @@ import same_bytes
 
 from reduction import __version__
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 
 

@@ -10,6 +10,8 @@ import sys
 import pytest
 from commandruns import ROOT, reduction
 
+pytestmark = pytest.mark.slow
+
 pty = pytest.importorskip("pty", reason="a terminal is imitated where there are pseudo-terminals")
 fcntl, termios = pytest.importorskip("fcntl"), pytest.importorskip("termios")
 

@@ -3,7 +3,8 @@
 import csv
 
 import pytest
-from commandruns import run_once, shared_by_processes
+
+pytestmark = pytest.mark.slow
 
 _WORDLESS = ("", "label", "is an uncertainty")
 
@@ -21,15 +22,10 @@ def is_number(text):
     return True
 
 
-@pytest.fixture(scope="module")
-def rope(tmp_path_factory):
-    return run_once("nylon-synthetic", shared_by_processes(tmp_path_factory)).processed / "tables"
-
-
 @pytest.fixture(params=["tethers", "ropes"])
 def tables(request):
     if request.param == "ropes":
-        return request.getfixturevalue("rope")
+        return request.getfixturevalue("nylon_campaign").processed / "tables"
     return request.getfixturevalue("synthetic").processed / "tables"
 
 

@@ -30,6 +30,10 @@ SCRIPTS = sorted(
     if path.parent.name in ("examples", "tutorials")
 )  # fmt: skip
 RUN_ALONE = [word for name in ("T-1", "T-2", "T-4-extended") for word in ("--test", name)]
+OPENED = (
+    "index", "method", "errata", "gallery/index", "tutorial/plot_1_whoi_2005_10",
+    "reference/commands",
+)  # fmt: skip
 PAGES_OF = {"examples": "gallery", "tutorials": "tutorial"}
 
 
@@ -213,16 +217,16 @@ def test_every_figure_says_what_its_numbers_are(script):
         assert re.search(r"synthetic|published|computed|made-up", one), one[:200]
 
 
-@pytest.mark.parametrize("width", [1280, 390])
 @pytest.mark.parametrize(
-    "name",
+    ("name", "width"),
     [
-        "index",
-        "method",
-        "errata",
-        "gallery/index",
-        "tutorial/plot_1_whoi_2005_10",
-        "reference/commands",
+        ("index", 1280),
+        ("method", 390),
+        *(
+            pytest.param(name, width, marks=pytest.mark.nightly)
+            for name, width in itertools.product(OPENED, (1280, 390))
+            if (name, width) not in (("index", 1280), ("method", 390))
+        ),
     ],
 )
 def test_a_page_opens_from_the_disk_and_is_as_wide_as_the_screen(name, width, built, visit):

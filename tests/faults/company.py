@@ -114,9 +114,8 @@ class Company:
         self.seen[f"worker: {len(killed)} killed, status {ended.status}"] += 1
         now = contents(self._place)
         wrong = faults(state, now)
-        # a worker that is killed before it is one is refused: perhaps none can be started here
-        is_refused = ended.status == 1 and "worker processes cannot be started" in ended.said
-        if ended.status != 0 and not is_refused:
+        is_told = "a worker process died" in ended.said or "cannot be started" in ended.said
+        if ended.status != (1 if killed and is_told else 0):
             wrong.append(f"status {ended.status}: {ended.said}")
         elif ended.status == 0 and now != state.after:
             wrong.append("other products than those of one process")

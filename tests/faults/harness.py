@@ -14,6 +14,8 @@ from pathlib import Path
 from faults.calls import Calls
 from shortcampaign import TESTS, write_short
 
+from reduction.catalogue.file import FILE_NAME
+from reduction.catalogue.read import write_catalogue
 from reduction.designpage.page import write_design_page
 from reduction.report.page import write_report
 from reduction.tables.write import write_tables
@@ -127,6 +129,8 @@ def contents(folder):
         for path in sorted((folder / root).rglob("*")):
             if path.is_file():
                 data = path.read_bytes()
+                if path.name == "run.lock" and not data:
+                    continue  # given back
                 if path.name == "status.csv":
                     data = _without_run(data)
                 if path.name == "design-values.html":
@@ -180,7 +184,7 @@ def faults(state, now, *, made_of=None, may_be_left=False):
 # what a run puts in place, one layer after the other; within one in any order
 LAYERS = (
     r"processed/[^/]+/[^/]+\.nc", r"processed/[^/]+/status\.csv", r"processed/[^/]+/report\.json",
-    r"processed/[^/]+/tables/[^/]+", r"reports/[^/]+/[^/]+", r"reports/design-values\.html",
+    r"processed/[^/]+/tables/[^/]+", r"processed/[^/]+/catalogue\.parquet", r"reports/[^/]+/[^/]+", r"reports/design-values\.html",
 )  # fmt: skip
 
 
@@ -224,7 +228,9 @@ def made_of_archives(folder, scratch):
     products = scratch / "processed" / "short"
     tests = [products / f"{name}.nc" for name in TESTS]
     shutil.rmtree(products / "tables", ignore_errors=True)
-    write_tables([path for path in tests if path.exists()], products / "tables")
+    there = [path for path in tests if path.exists()]
+    write_tables(there, products / "tables")
+    write_catalogue(there, products / FILE_NAME)
     page = scratch / "reports" / "short"
     write_report(products, page, values_page="../design-values.html")
     write_design_page(scratch / "processed", scratch / "reports")

@@ -30,7 +30,12 @@ def failures(kills, tmp_path_factory):
     return Failures(tmp_path_factory.mktemp("failures"), kills)
 
 
-@pytest.mark.parametrize("number", range(8))
+NIGHTLY = pytest.mark.nightly
+
+
+@pytest.mark.parametrize(
+    "number", [0, *(pytest.param(number, marks=NIGHTLY) for number in range(1, 8))]
+)
 def test_a_run_that_is_killed_leaves_old_or_new_products_and_the_next_one_mends_them(number, kills):
     assert kills.kill(STATES[number % 3], by_time=number < 3) == []
 
@@ -38,12 +43,17 @@ def test_a_run_that_is_killed_leaves_old_or_new_products_and_the_next_one_mends_
 @pytest.mark.parametrize(
     ("call", "path", "how", "stays", "status"),
     [
-        ("open", "raw/B.csv", errno.EIO, False, 3),
-        ("close", "raw/A.csv", errno.EIO, False, 3),
         ("write", "processed/short/.B.nc.", errno.ENOSPC, True, 6),
-        ("rename", "processed/short/tables/trend.csv", errno.EROFS, True, 6),
-        ("unlink", "processed/short/tables/slips.csv", errno.EPERM, False, 6),
-        ("write", "reports/short/.index.html.", SHORT, False, 0),
+        *(
+            pytest.param(*case, marks=NIGHTLY)
+            for case in (
+                ("open", "raw/B.csv", errno.EIO, False, 3),
+                ("close", "raw/A.csv", errno.EIO, False, 3),
+                ("rename", "processed/short/tables/trend.csv", errno.EROFS, True, 6),
+                ("unlink", "processed/short/tables/slips.csv", errno.EPERM, False, 6),
+                ("write", "reports/short/.index.html.", SHORT, False, 0),
+            )
+        ),
     ],
 )
 def test_a_call_that_fails_is_told_and_leaves_old_or_new_products(
@@ -54,13 +64,16 @@ def test_a_call_that_fails_is_told_and_leaves_old_or_new_products(
     assert failures.ended.status == status
 
 
-@pytest.mark.parametrize("share", [0.05, 0.35, 0.65, 0.95])
+@pytest.mark.parametrize(
+    "share", [0.35, *(pytest.param(share, marks=NIGHTLY) for share in (0.05, 0.65, 0.95))]
+)
 def test_a_disk_that_fails_while_an_archive_is_read_is_told_with_the_file(share, failures):
     reads = [number for number, call, path in failures.calls("older") if "pread" in call]
     number = reads[int(share * len(reads))]
     assert failures.fail("older", number, *failures.ways("older", number)[0]) == []
 
 
+@NIGHTLY
 def test_products_of_two_runs_are_told_by_verify(failures, kills):
     """Killed after the first table, and its lock removed by a person."""
     _, (kinds, at) = failures.find("older", "rename", "processed/short/tables/columns.csv")
@@ -74,7 +87,7 @@ def test_products_of_two_runs_are_told_by_verify(failures, kills):
     assert ended.status == 0, ended
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=NIGHTLY)])
 def test_a_request_to_end_at_any_moment_leaves_old_or_new_products_and_no_lock(number, kills):
     assert kills.kill("older", by_time=True, number=number) == []
 
@@ -84,6 +97,7 @@ def test_the_order_in_which_products_become_new_is_known():
     assert not is_in_order((1, 2)) and not is_in_order((0, 1))
 
 
+@NIGHTLY
 def test_no_command_opens_a_raw_file_for_writing_or_touches_its_folder(kills, tmp_path):
     """Seen from below Python, so that the libraries of the formats are seen too."""
     folder = tmp_path / "all"
@@ -105,6 +119,7 @@ def test_no_command_opens_a_raw_file_for_writing_or_touches_its_folder(kills, tm
     assert (folder / "raw").stat().st_mtime_ns == raw_folder.st_mtime_ns
 
 
+@NIGHTLY
 def test_times_of_files_that_lie_ahead_or_went_back_change_no_product(kills, tmp_path):
     state = kills.states["none"]
     folder = tmp_path / "times"

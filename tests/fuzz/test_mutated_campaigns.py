@@ -3,6 +3,8 @@
 import pytest
 from mutatedruns import hold
 
+pytestmark = pytest.mark.nightly
+
 
 @pytest.mark.parametrize(
     ("name", "n_examples"),

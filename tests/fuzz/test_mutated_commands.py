@@ -11,7 +11,13 @@ from reduction.cli.main import app
 STATUSES = (0, 2, 3, 4, 5, 6)
 
 
-@pytest.mark.parametrize("name", ["delimited", "tdms", "campaign", "tables"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "delimited",
+        *(pytest.param(name, marks=pytest.mark.nightly) for name in ("tdms", "campaign", "tables")),
+    ],
+)
 def test_the_command_ends_with_a_status_and_a_message_or_with_products(name, tmp_path):
     @hypothesis.seed(20261122)
     @settings(

@@ -15,8 +15,7 @@ import pytest
 from reduction.cycles.find import find_cycles
 from reduction.lookup.composite import composite_curve
 from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.cyclepiece import piece_of_cycles
-from reduction.lookup.pieces import CurvePiece, pieces_of_curves
+from reduction.lookup.pieces import CurvePiece, pieces_of_branches
 from reduction.moduli.tangent import tangent_curves
 from reduction.phases.standstill import find_standstills
 from reduction.settings import CycleSettings, ModulusSettings, PhaseSettings
@@ -47,12 +46,23 @@ def reduced(test):
 
     strain = true("eps_free_{}")
     curves = tangent_curves(strain, tension, area=AREA, cycles=cycles, settings=ModulusSettings())
-    return curves, cycles, strain, tension, LBF * true("load_{}_lb")
+    return curves, cycles, strain, LBF * true("load_{}_lb")
+
+
+def pieces_of(test, specimen, branch="mean"):
+    curves = reduced(test)[0]
+    return pieces_of_branches(
+        curves.strain_bin,
+        curves.branch_tension[specimen],
+        curves.branch_tension_standard_uncertainty[specimen],
+        name=test,
+        branch=branch,
+    )
 
 
 def true_tension(test, specimen, branch, at):
     """Mean over the cycles of the noise-free tension of a branch."""
-    _, cycles, strain, _, load = reduced(test)
+    _, cycles, strain, load = reduced(test)
     rows = []
     for cycle in range(1, cycles.n_cycles + 1):
         kept = (cycles.cycle_number == cycle) & (cycles.branch == branch + 1)
@@ -65,7 +75,7 @@ def true_tension(test, specimen, branch, at):
 def both(specimen, branch, **rule):
     pieces, truths = [], []
     for test in TESTS:
-        for piece in pieces_of_curves(reduced(test)[0], specimen, name=test, branch=branch):
+        for piece in pieces_of(test, specimen, branch):
             ways = (0, 1) if branch == "mean" else (("ascending", "descending").index(branch),)
             load = np.mean(
                 [true_tension(test, specimen, way, piece.strain) for way in ways], axis=0
@@ -97,22 +107,9 @@ def test_every_window_is_within_three_uncertainties_of_the_composite(specimen):
     found, _ = both(specimen, "mean")
     z = []
     for test in TESTS:
-        for piece in pieces_of_curves(reduced(test)[0], specimen, name=test):
+        for piece in pieces_of(test, specimen):
             spread = np.interp(piece.strain, found.strain, found.standard_uncertainty)
             z.append((piece.tension - found.tension_at(piece.strain)) / spread)
     z = np.concatenate(z)
     assert np.abs(z).max() < 3
     assert 0.3 < np.sqrt(np.mean(z**2)) < 1.5
-
-
-def test_the_mean_of_chosen_cycles_is_that_of_the_truth():
-    _, cycles, strain, tension, load = reduced("T-2")
-    pieces = [
-        piece_of_cycles(
-            strain[0], of[0], cycles.cycle_number, cycles.branch, name="T-2", cycles=(8, 10)
-        )
-        for of in (tension, load)
-    ]
-    error = pieces[0].tension / pieces[1].tension - 1
-    assert np.abs(error).max() < 0.01
-    assert np.abs(error.mean()) < 1e-3

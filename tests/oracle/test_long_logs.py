@@ -21,19 +21,34 @@ from reduction.moduli import tensionlevel
 from reduction.phases import blocks as still_blocks
 from reduction.samples import blocks, intervals, scratch, search
 
+pytestmark = pytest.mark.slow
+
 RAW = Path(__file__).parents[2] / "raw"
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
-# of each kind: cycles of tethers, of a sine, of a hose; a long test; pulls; a hold
+# of each kind: cycles of a tether, a pull, a hold
 TESTS = (
     ("tmt-synthetic", "T-1"),
-    ("tmt-synthetic", "T-4-extended"),
     ("tmt-synthetic", "overnight-hold"),
+    ("hose-synthetic", "B-64"),
+)
+# and a long test, cycles of a sine and of a hose, more pulls
+MORE_TESTS = (
+    ("tmt-synthetic", "T-4-extended"),
     ("nylon-synthetic", "R01"),
     ("nylon-synthetic", "Q01"),
     ("hose-synthetic", "L-64"),
     ("hose-synthetic", "D-64"),
-    ("hose-synthetic", "B-64"),
 )
+
+
+def with_size(size, larger):
+    """Every test with a size that cuts it often; nightly more tests, and a larger size."""
+    nightly = [(*one, size) for one in MORE_TESTS]
+    nightly += [(*one, larger) for one in (*TESTS, *MORE_TESTS)]
+    return [
+        *((*one, size) for one in TESTS),
+        *(pytest.param(*one, marks=pytest.mark.nightly) for one in nightly),
+    ]
 
 
 def reduced(campaign, name):
@@ -98,8 +113,7 @@ def on_disk(monkeypatch, tmp_path):
     return set_up
 
 
-@pytest.mark.parametrize("part", [4_001, 100_000], ids="parts of {} bytes".format)
-@pytest.mark.parametrize(("campaign", "name"), TESTS)
+@pytest.mark.parametrize(("campaign", "name", "part"), with_size(4_001, 100_000))
 def test_a_log_on_disk_gives_the_numbers_of_one_in_memory(on_disk, campaign, name, part):
     in_memory = reduced(campaign, name)
     assert not any(scratch.is_on_disk(test.record.tension) for test in in_memory)
@@ -110,8 +124,7 @@ def test_a_log_on_disk_gives_the_numbers_of_one_in_memory(on_disk, campaign, nam
     assert_same(found, in_memory)
 
 
-@pytest.mark.parametrize("length", [997, 4096])
-@pytest.mark.parametrize(("campaign", "name"), TESTS)
+@pytest.mark.parametrize(("campaign", "name", "length"), with_size(997, 4096))
 def test_the_length_of_the_blocks_is_in_no_number(monkeypatch, campaign, name, length):
     expected = reduced(campaign, name)
     cut = (blocks, intervals, search, runs, constant, tensionlevel, still_blocks, ramp, support)
@@ -144,6 +157,7 @@ print(json.dumps({"peak": int(peak[0]) / 1024, "cycles": test.cycles.n_cycles}))
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no /proc to read the peak from")
 def test_a_log_four_times_as_long_takes_no_more_memory(tmp_path):
     def peak(n_rows):
@@ -197,7 +211,7 @@ print(int(peak[0]) / 1024)
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no /proc to read the peak from")
-@pytest.mark.parametrize("kind", ["relaxation", "creep"])
+@pytest.mark.parametrize("kind", ["relaxation", pytest.param("creep", marks=pytest.mark.nightly)])
 def test_a_hold_six_times_as_long_takes_no_more_memory(tmp_path, kind):
     def peak(n_samples):
         done = subprocess.run(

@@ -25,9 +25,12 @@ from reduction.lookup.source import compose
 from reduction.published.linesource import published_sources
 from reduction.published.piecesource import published_piece_sources
 
-pytestmark = pytest.mark.skipif(
-    importlib.util.find_spec("moordyn") is None, reason="moordyn is not installed"
-)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        importlib.util.find_spec("moordyn") is None, reason="moordyn is not installed"
+    ),
+]
 ASSEMBLIES = Path(__file__).parents[2] / "docs" / "assemblies"
 DRIVER = """
 import json, math, sys
@@ -120,7 +123,7 @@ def test_the_dynamic_stiffness_is_that_of_the_three_parameters(tmp_path, form, p
     assert found == pytest.approx(expected, rel=0.02)
 
 
-@pytest.mark.parametrize("part", [constant(), growing()])
+@pytest.mark.parametrize("part", [constant(), pytest.param(growing(), marks=pytest.mark.nightly)])
 def test_the_slow_stiffness_is_static(tmp_path, part):
     form = "load-dependent" if part.dynamic_stiffness_per_mean_tension else "static-dynamic"
     write(tmp_path, moordyn_files(line(viscoelasticity=part), "deck", form=form))
@@ -224,7 +227,10 @@ POINTS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "coded"), POINTS)
+@pytest.mark.parametrize(
+    ("name", "coded"),
+    [POINTS[0], *(pytest.param(*one, marks=pytest.mark.nightly) for one in POINTS[1:])],
+)
 def test_k_ap_is_that_of_the_look_up_within_2_percent(tmp_path, name, coded):
     source = published_sources()[name]
     surface = source.surfaces["apparent_spring_constant"]

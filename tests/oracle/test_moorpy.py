@@ -13,9 +13,12 @@ from export_readers import moorpy_table
 
 from reduction.export.write import export_line
 
-pytestmark = pytest.mark.skipif(
-    importlib.util.find_spec("moorpy") is None, reason="MoorPy is not installed"
-)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        importlib.util.find_spec("moorpy") is None, reason="MoorPy is not installed"
+    ),
+]
 # matplotlib comes with MoorPy: a process of its own keeps its warnings out of the tests
 DRIVER = """
 import json, sys

@@ -23,7 +23,10 @@ def read(name):
 
 def rise(x):
     """Basis of b1 (1 - exp(-b2 x)): BoxBOD and Misra1a."""
-    return lambda rate: 1 - np.exp(-np.outer(x, rate))
+    return lambda rates: (
+        1 - np.exp(-x[:, None] * rates[:, None, :]),
+        x[:, None] * np.exp(-x[:, None] * rates[:, None, :]),
+    )
 
 
 @pytest.mark.parametrize("start", [[0.0001], [0.0005]])
@@ -53,8 +56,14 @@ def test_boxbod(start):
 def test_mgh17_two_exponentials_and_a_constant():
     x, y = read("MGH17")
     grid = np.geomspace(1 / 640, 1 / 10, 6)
+
+    def basis(rates):
+        decay = np.exp(-x[:, None] * rates[:, None, :])
+        level = np.ones((len(rates), x.size, 1))
+        return np.concatenate([level, decay], axis=2), -x[:, None] * decay
+
     fit = fit_separable(
-        lambda rate: np.column_stack([np.ones_like(x), np.exp(-np.outer(x, rate))]),
+        basis,
         y,
         starts=[(low, high) for low in grid for high in grid if low < high],
     )

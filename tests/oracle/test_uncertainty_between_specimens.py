@@ -15,6 +15,8 @@ from reduction.campaign.load import load_campaign
 from reduction.lookup.against import compare_values
 from reduction.lookup.line import look_up
 
+pytestmark = pytest.mark.slow
+
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 GAIN = 0.1
 INCH = 0.0254
@@ -72,6 +74,7 @@ def at(stated):
     return {"specimen": "new", "branch": "ascending", "segment": "1"}
 
 
+@pytest.mark.nightly
 def test_a_gain_of_the_one_cell_moves_the_difference_by_what_its_interval_holds(stated, tmp_path):
     found = difference(stated)
     small = 0.01

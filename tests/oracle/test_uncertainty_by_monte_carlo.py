@@ -12,6 +12,8 @@ import pytest
 
 from reduction.uncertainty.combine import combined_standard_uncertainty
 
+pytestmark = pytest.mark.nightly
+
 BENCHMARK = Path(__file__).parents[2] / "benchmarks" / "coverage_tethers.py"
 N_DRAWS = 80
 AGREE = 0.05

@@ -11,6 +11,8 @@ from reduction.archive.open import open_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
+pytestmark = pytest.mark.slow
+
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 LAG = 0.020  # as the campaign states it [s]
 STATED_ZERO, ZERO = 0.5, 0.02  # as the campaign says; so small that no sample changes sides [lbf]
@@ -47,12 +49,15 @@ def contribution(archive, name, source):
     return np.nansum(archive[f"{name}_uncertainty_contribution"].to_numpy()[of], axis=0)
 
 
+@pytest.fixture(scope="module")
+def shifted(tmp_path_factory):
+    """Loads that are logged later, and earlier, by the lag that is stated."""
+    return [reduced(tmp_path_factory.mktemp("shifted"), late=way * LAG) for way in (1, -1)]
+
+
 @pytest.mark.parametrize("name", NAMES)
-def test_a_later_load_is_lower_on_the_rise_by_its_rate(stated, tmp_path, name):
-    above, below = (
-        reduced(tmp_path / side, late=way * LAG)[name].to_numpy()
-        for side, way in (("later", 1), ("earlier", -1))
-    )
+def test_a_later_load_is_lower_on_the_rise_by_its_rate(stated, shifted, name):
+    above, below = (one[name].to_numpy() for one in shifted)
     wanted, found = (above - below) / 2, contribution(stated, name, "lag")
     known = np.isfinite(wanted) & np.isfinite(found) & (found != 0)
     assert known.sum() > 3
@@ -63,6 +68,7 @@ def test_a_later_load_is_lower_on_the_rise_by_its_rate(stated, tmp_path, name):
     assert far.mean() < 0.1
 
 
+@pytest.mark.nightly
 def test_a_zero_of_the_load_cell_moves_where_a_specimen_goes_slack(stated, tmp_path):
     name = "slack_strain_at_unloading"
     above, below = (
@@ -77,6 +83,7 @@ def test_a_zero_of_the_load_cell_moves_where_a_specimen_goes_slack(stated, tmp_p
     assert (wanted < 0).all()
 
 
+@pytest.mark.nightly
 def test_a_later_load_goes_slack_when_the_crosshead_is_further_back(stated, tmp_path):
     name = "slack_strain_at_unloading"
     late = 0.1  # one sample of this log

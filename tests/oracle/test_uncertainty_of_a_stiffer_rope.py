@@ -13,6 +13,8 @@ from reduction.archive.open import open_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
+pytestmark = pytest.mark.slow
+
 GAUGE, SHARE, POSITION_GAIN, GAIN = 10.0, 0.01, 0.005, 0.004
 CAMPAIGN = f"""
 [campaign]
@@ -162,7 +164,9 @@ PROGRAMMES = {"load": controlled, "position": relaxing}
 NAMES = {"load": OF_STEP, "position": {"P-7.quasi-static": OF_RELAXATION}}
 
 
-@pytest.fixture(scope="module", params=PROGRAMMES)
+@pytest.fixture(
+    scope="module", params=["position", pytest.param("load", marks=pytest.mark.nightly)]
+)
 def programme(request, tmp_path_factory):
     """The log under one control, as it is and wrong by each error either way."""
     folder, log = tmp_path_factory.mktemp("stiffer"), PROGRAMMES[request.param]()
@@ -194,7 +198,7 @@ def test_each_number_of_a_programme_moves_as_its_contribution_says(programme, so
         compared(found[""][test], found[source, 1][test], found[source, -1][test], source, names)
 
 
-@pytest.mark.parametrize("control", ["load", "position"])
+@pytest.mark.parametrize("control", ["load", pytest.param("position", marks=pytest.mark.nightly)])
 def test_a_pull_that_is_stopped_moves_by_what_the_machine_does_not_set(tmp_path, control):
     single = made.single("B-1", "tensile", f'control = "{control}"')
     (base,), (above,), (below,) = (

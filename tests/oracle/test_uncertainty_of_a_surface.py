@@ -9,6 +9,8 @@ from reduction.surface.surfaces import fit_surfaces
 from reduction.surface.terms import model_matrix, quadratic_exponents
 from reduction.uncertainty.surfacepoints import with_shared_at_points
 
+pytestmark = pytest.mark.slow
+
 CAMPAIGNS = 1500
 PLAN = box_behnken(3).coded
 EXPONENTS = quadratic_exponents(3)
@@ -16,7 +18,9 @@ TRUTH = np.array([10.0, 0.5, 0.2, -0.3, 0.4, 2.0, -1.0, 0.5, 0.3, 0.2])
 GRID = np.stack(np.meshgrid(*[np.linspace(-1, 1, 5)] * 3), axis=-1).reshape(-1, 3)
 
 
-@pytest.mark.parametrize("gain", [0.0, 0.03, 0.1, 0.5])
+@pytest.mark.parametrize(
+    "gain", [0.1, *(pytest.param(gain, marks=pytest.mark.nightly) for gain in (0.0, 0.03, 0.5))]
+)
 def test_intervals_hold_a_drawn_truth_as_often_as_they_say(gain):
     """Scatter of 1 in fifteen runs, a gain that all share and a zero of 0.2 beside it."""
     rng = np.random.default_rng(8)

@@ -15,6 +15,8 @@ from reduction.archive.open import open_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
+pytestmark = pytest.mark.slow
+
 RAW = Path(__file__).parents[2] / "raw" / "nylon-synthetic"
 LBF = 4.4482216152605
 RUN = "R11"  # where K_0 changes fastest with tension
@@ -69,8 +71,18 @@ def stated(tmp_path_factory):
     return reduced(tmp_path_factory.mktemp("stated"), None)
 
 
-@pytest.mark.parametrize("wrong", [RUN, "Q01"])
-@pytest.mark.parametrize("source", SIZE)
+@pytest.mark.parametrize(
+    ("source", "wrong"),
+    [
+        ("tension_gain", "Q01"),
+        *(
+            pytest.param(source, wrong, marks=pytest.mark.nightly)
+            for source, wrong in (
+                ("tension_gain", RUN), ("tension_offset", RUN), ("tension_offset", "Q01")
+            )
+        ),
+    ],
+)  # fmt: skip
 def test_each_cell_moves_the_line_by_its_own_log(stated, tmp_path, wrong, source):
     keyword = source.removeprefix("tension_")
     above, below = (

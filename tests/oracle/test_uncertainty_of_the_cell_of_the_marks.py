@@ -17,6 +17,8 @@ from reduction.archive.open import open_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
+pytestmark = pytest.mark.slow
+
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 GAIN = 0.01
 TESTS = ("T-1", "T-2", "T-3")
@@ -77,7 +79,9 @@ def stated(tmp_path_factory):
     return reduced(tmp_path_factory.mktemp("stated"))
 
 
-@pytest.mark.parametrize(("cell", "wrong"), [("B", ("T-2",)), ("A", ("T-1", "T-3"))])
+@pytest.mark.parametrize(("cell", "wrong"), [
+    ("B", ("T-2",)), pytest.param("A", ("T-1", "T-3"), marks=pytest.mark.nightly),
+])  # fmt: skip
 def test_each_cell_moves_the_numbers_by_the_logs_that_it_read(stated, tmp_path, cell, wrong):
     above, below = (
         reduced(tmp_path / side, wrong, way * GAIN)[0] for side, way in (("a", 1), ("b", -1))

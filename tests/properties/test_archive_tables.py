@@ -8,6 +8,7 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 import xarray as xr
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -51,7 +52,7 @@ def test_every_text_comes_back_from_a_table_but_for_the_apostrophe(labels):
         assert not cell.startswith(("=", "+", "-", "@"))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(st.lists(TEXT.map(lambda text: text.rstrip("\x00")), min_size=1, max_size=4))
 def test_every_text_comes_back_from_a_file(labels):
     variable = xr.Variable(

@@ -2,6 +2,7 @@
 
 import numpy as np
 from assemblies import RUBBER, spring
+from examples import examples
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -17,7 +18,7 @@ parts = st.lists(
 
 # lengths that differ by rounding alone
 @example(free=[2.0, 2.75], in_line=[SeriesPart("wire", 1.0, 1001.0)], soft=True)
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(80), deadline=None)
 @given(lengths, parts, st.booleans())
 def test_loads_add_up_and_length_and_tension_are_inverse(free, in_line, soft):
     assembly = assemble(unequal_tethers(spring() if soft else RUBBER, free), in_line)
@@ -34,7 +35,7 @@ def test_loads_add_up_and_length_and_tension_are_inverse(free, in_line, soft):
     assert (np.diff(assembly.tether_tension[order], axis=0) <= 1e-9 * assembly.tension[-1]).all()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(1, 12), st.floats(0.05, 0.9))
 def test_equal_tethers_are_one_tether_times_their_number(n_tethers, share):
     one, many = assemble([RUBBER]), assemble(equal_tethers(RUBBER, n_tethers))

@@ -1,6 +1,7 @@
 """Properties of the composite curve that hold for any pieces."""
 
 import numpy as np
+from examples import examples
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -50,7 +51,7 @@ def short(low, high):
     [short(2.0, 3.0), short(0.25, 1.25), short(0.125, 0.375)],
     CompositeRule(least_slope=1.0, n_points=2),
 )
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(st.lists(a_piece(), min_size=1, max_size=5), rules)
 def test_it_rises_strictly_from_zero_and_every_interval_has_its_flags(pieces, rule):
     curve = composite_curve(pieces, rule=rule)
@@ -69,7 +70,7 @@ def test_it_rises_strictly_from_zero_and_every_interval_has_its_flags(pieces, ru
     np.testing.assert_allclose(back, at, rtol=1e-5, atol=1e-5 * curve.strain[-1])
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(80), deadline=None)
 @given(st.lists(a_piece(kinds=("cyclic",)), min_size=1, max_size=4))
 def test_a_gap_is_where_no_piece_reaches(pieces):
     curve = composite_curve(pieces)
@@ -80,14 +81,14 @@ def test_a_gap_is_where_no_piece_reaches(pieces):
     np.testing.assert_array_equal(curve.is_gap, ~reached)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(a_piece(kinds=("cyclic",)), rules)
 def test_it_does_not_depend_on_how_often_a_piece_is_given(piece, rule):
     once, twice = composite_curve([piece], rule=rule), composite_curve([piece, piece], rule=rule)
     np.testing.assert_allclose(once.tension, twice.tension, rtol=1e-9)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.lists(a_piece(), min_size=1, max_size=4), st.floats(0.01, 100))
 def test_tension_in_another_unit_is_the_same_curve(pieces, unit):
     other = [
@@ -101,7 +102,7 @@ def test_tension_in_another_unit_is_the_same_curve(pieces, unit):
     np.testing.assert_allclose(two.tension, unit * one.tension, rtol=1e-6)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(a_piece(), rules)
 def test_one_piece_that_rises_is_unchanged(piece, rule):
     if (np.diff(piece.tension) <= 1e-3).any():

@@ -1,6 +1,7 @@
 """Laws of reversals and cycles: what does not change when the signal is scaled, shifted, mirrored."""
 
 import numpy as np
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -61,7 +62,7 @@ def test_noise_below_the_band_changes_no_count(n_cycles, n_samples, share, seed)
     assert find_reversals(signal + noise, band=1.0).size == 2 * n_cycles + 1
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(
     st.integers(2, 12),
     st.integers(20, 60),
@@ -88,7 +89,7 @@ def test_holds_before_and_after_change_no_cycle(n_cycles, n_samples, before, aft
     assert (cycles.branch_last[:, 1] == cycles.last).all()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(st.integers(3, 10), st.floats(0.01, 100), st.floats(-50, 50), st.booleans())
 def test_units_and_datum_of_position_change_no_cycle(n_cycles, scale, shift, is_noisy):
     phase = np.arange(n_cycles * 50 + 1) / 50 % 1

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -75,7 +76,7 @@ def with_drop_outs(places, level):
     return replace(CLEAN, crosshead_position=position, tension=tension)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(drop_outs(longest=1), st.sampled_from([-1.0, 5.0]))
 def test_single_samples_that_drop_out_change_no_cycle_and_no_loop(places, share):
     level = {"position": share, "tension": 1000.0 * share}
@@ -104,7 +105,7 @@ def test_single_samples_that_drop_out_change_no_cycle_and_no_loop(places, share)
     assert np.allclose(loops.hysteresis_energy, LOOPS.hysteresis_energy, rtol=0.1)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(drop_outs(longest=10), st.sampled_from([-1.0, 5.0]))
 def test_drop_outs_of_up_to_ten_samples_are_flagged_and_change_no_count(places, share):
     record = flag_record(

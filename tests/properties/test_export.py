@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import xarray as xr
+from examples import examples
 from export_lines import line
 from export_readers import (
     CableExpression,
@@ -78,7 +79,7 @@ def written(strain, tension, to, folder, **options):
     return [path.read_text() for path in paths if to != "netcdf"]
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(curve=curves())
 def test_every_format_is_valid_and_within_its_stated_error(curve):
     strain, tension = curve
@@ -102,7 +103,7 @@ def test_every_format_is_valid_and_within_its_stated_error(curve):
         check(strain, tension, at, stress * AREA, stated(text)[0], most=200)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(curve=curves())
 def test_cable_has_a_table_and_a_rising_function_with_two_derivatives(curve):
     strain, tension = curve
@@ -136,7 +137,7 @@ def test_cable_has_a_table_and_a_rising_function_with_two_derivatives(curve):
     assert np.median(np.abs(bent - bend(inner))) <= 1e-3 * sharpest + 1e-3 * steepest / at[-1]
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(curve=curves())
 def test_tables_hold_every_point(curve):
     strain, tension = curve

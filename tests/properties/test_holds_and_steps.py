@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -68,7 +69,7 @@ def test_the_centre_of_a_ramp_lies_in_it_and_moves_with_the_clock(rate, stroke, 
     assert later.centre_time - clock == pytest.approx(ramp.centre_time, abs=1e-6)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=examples(8), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.floats(1e-3, 1e3), st.floats(-1e3, 1e3))
 def test_steps_do_not_depend_on_unit_and_zero_of_the_series(seed, unit, zero):
     rng = np.random.default_rng(seed)
@@ -80,7 +81,7 @@ def test_steps_do_not_depend_on_unit_and_zero_of_the_series(seed, unit, zero):
         assert right.size == pytest.approx(unit * left.size, rel=1e-5)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=examples(8), deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_a_mirrored_series_has_mirrored_steps(seed):
     rng = np.random.default_rng(seed)
@@ -105,7 +106,7 @@ def test_a_slack_crossing_is_where_the_line_is(start, stiffness, slack):
     assert crossing == pytest.approx(start + slack / stiffness, abs=1e-9)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=examples(8), deadline=None)
 @given(st.floats(1e4, 1e6), st.floats(0, 1e6), st.floats(0.5, 3))
 def test_small_strain_modulus_of_a_fit_is_the_slope_at_zero(c10, c01, strain_high):
     truth = {"c10": c10, "c01": c01}

@@ -3,6 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
+from examples import examples
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -21,7 +22,9 @@ SOUND = st.lists(
     st.tuples(NUMBERS, st.floats(1e-3, 1e8), st.floats(1e-3, 1e8)), min_size=1, max_size=20
 )
 IN_TMP = settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=examples(60),
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 NAMES = ("t", "x", "F")
 KEYS = ("time", "crosshead_position", "tension.1")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -11,7 +12,7 @@ from reduction.moduli.tangent import tangent_curves
 from reduction.settings import ModulusSettings
 
 SETTINGS = ModulusSettings(strain_bin_width=0.02)
-EXAMPLES = settings(max_examples=15, deadline=None)
+EXAMPLES = settings(max_examples=examples(15), deadline=None)
 SEED = st.integers(0, 2**32 - 1)
 
 

@@ -7,6 +7,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -23,7 +24,7 @@ spread_lives = st.lists(
 ).filter(lambda rows: np.ptp([np.log(life) for life, stopped in rows if not stopped] or [0]) > 0.05)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(spread_lives, st.floats(0.01, 100), st.sampled_from(["weibull", "lognormal"]))
 def test_lives_in_another_unit_are_the_same_lives(rows, factor, law):
     lives, stopped = map(np.array, zip(*rows, strict=True))
@@ -35,7 +36,7 @@ def test_lives_in_another_unit_are_the_same_lives(rows, factor, law):
     assert one.low < one.life < one.high
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(spread_lives)
 def test_a_test_that_ran_longer_never_shortens_the_median(rows):
     lives, stopped = map(np.array, zip(*rows, strict=True))
@@ -106,7 +107,7 @@ outcomes = st.builds(
 )
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.lists(outcomes, min_size=1, max_size=12))
 def test_what_is_written_is_read(rows):
     units = {"tensile_strength": "N", "strain_at_failure": "1"}
@@ -134,7 +135,7 @@ def test_what_is_written_is_read(rows):
             assert getattr(one, name) == pytest.approx(getattr(other, name), rel=1e-12)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.lists(outcomes, min_size=1, max_size=20))
 def test_every_outcome_is_counted_once(rows):
     counted = 0

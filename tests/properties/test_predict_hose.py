@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -49,7 +50,7 @@ def drawn_design(rng, law="neo-hookean", *, degrees=(20, 78), equal=False):
     )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(seed=SEEDS, law=LAWS)
 def test_tension_is_the_derivative_of_the_energy(seed, law):
     rng = np.random.default_rng(seed)
@@ -70,7 +71,7 @@ def test_tension_is_the_derivative_of_the_energy(seed, law):
     np.testing.assert_allclose(tension[is_smooth], slope[is_smooth], rtol=1e-8)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(seed=SEEDS)
 def test_the_pressure_is_that_of_the_membrane(seed):
     # cords as a membrane of N threads at the current angle on the current diameter
@@ -94,7 +95,7 @@ def test_the_pressure_is_that_of_the_membrane(seed):
     )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(seed=SEEDS)
 def test_two_layers_bear_as_one_at_their_mean_diameter(seed):
     rng = np.random.default_rng(seed)
@@ -109,7 +110,7 @@ def test_two_layers_bear_as_one_at_their_mean_diameter(seed):
     assert np.all(two.fill_pressure >= one.fill_pressure * (1 - 1e-14))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(seed=SEEDS, length=st.floats(1e-3, 1e3), force=st.floats(1e-3, 1e3))
 def test_units_of_length_and_force_do_not_matter(seed, length, force):
     rng = np.random.default_rng(seed)
@@ -132,7 +133,7 @@ def test_units_of_length_and_force_do_not_matter(seed, length, force):
     np.testing.assert_allclose(two.cord_spacing, length * one.cord_spacing, rtol=1e-11)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(seed=SEEDS, law=LAWS)
 def test_shares_add_up_and_flags_say_where_numbers_are(seed, law):
     rng = np.random.default_rng(seed)
@@ -149,7 +150,7 @@ def test_shares_add_up_and_flags_say_where_numbers_are(seed, law):
     assert not np.any(found.is_slack & found.is_broken)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(
     degrees=st.floats(1, 89),
     strain=st.floats(0, 1),
@@ -170,7 +171,7 @@ def test_the_closed_inverse_of_the_kinematics(degrees, strain, core):
             )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(seed=SEEDS)
 def test_the_inverse_of_a_cord_curve(seed):
     rng = np.random.default_rng(seed)

@@ -1,6 +1,7 @@
 """Laws of response surfaces: what a change of units, of order or of scale may not change."""
 
 import numpy as np
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -30,7 +31,7 @@ def drawn(seed):
     return rng, runs, rng.normal(10, 2, 15)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(seed=SEEDS, shift=st.floats(-1e3, 1e3), scale=st.floats(1e-4, 1e6))
 def test_a_change_of_units_of_the_response_scales_the_surface(seed, shift, scale):
     _, runs, values = drawn(seed)
@@ -45,7 +46,7 @@ def test_a_change_of_units_of_the_response_scales_the_surface(seed, shift, scale
     )
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(seed=SEEDS)
 def test_a_change_of_units_of_the_factors_changes_the_engineering_equation_alone(seed):
     rng, runs, values = drawn(seed)
@@ -57,7 +58,7 @@ def test_a_change_of_units_of_the_factors_changes_the_engineering_equation_alone
     np.testing.assert_allclose(in_units.p_value, coded.p_value, rtol=1e-6, atol=1e-9)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(seed=SEEDS)
 def test_the_order_of_the_runs_does_not_count(seed):
     rng, runs, values = drawn(seed)
@@ -69,7 +70,7 @@ def test_the_order_of_the_runs_does_not_count(seed):
     np.testing.assert_allclose(other.predicted_r2, one.predicted_r2, rtol=1e-8)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(seed=SEEDS)
 def test_the_order_of_the_factors_does_not_count(seed):
     rng, runs, values = drawn(seed)
@@ -88,7 +89,7 @@ def key(name):
     return "*".join(sorted(name.split("*")))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(seed=SEEDS)
 def test_sums_of_squares_add_up_and_r2_is_the_kindest_of_the_three(seed):
     _, runs, values = drawn(seed)

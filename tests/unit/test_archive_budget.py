@@ -286,16 +286,6 @@ def test_a_slow_pull_is_read_between_its_tensions_and_told_with_the_unit():
         budget_from_archive(pull, name, {})
 
 
-def test_an_archive_without_parts_says_what_it_has_and_names_no_empty_list():
-    old = xr.Dataset(
-        {"segment_modulus": ((), 1e6), "segment_modulus_standard_uncertainty": ((), 5.0)}
-    )
-    with pytest.raises(
-        SettingsError, match=r"no budget in this archive.*as a whole.*Reduce it again"
-    ):
-        budget_from_archive(old, "segment_modulus", {})
-
-
 def test_a_ratio_says_of_which_two(archive):
     archive = archive.assign(
         ratio_numerator=("comparison", ["used"]), ratio_denominator=("comparison", ["new"])

@@ -5,8 +5,7 @@ import shutil
 import netCDF4
 import numpy as np
 import pytest
-
-from reduction.archive.check import check_archive
+from archive_check import check_archive
 
 
 @pytest.fixture

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from archive_check import check_archive
 from compared_hoses import LOOP, NOT_APART, SOURCE, TRUTH, agreeing, dataset, differing, trading
 from measured_hoses import INCH
 
 from reduction.archive.budget import budget_from_archive
-from reduction.archive.check import check_archive
 from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive

@@ -8,18 +8,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from archive_check import check_archive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from long_records import AFTER, BEFORE, PER_CYCLE, cycles_of, long_test
 
-from reduction.archive.check import check_archive
 from reduction.archive.dataset import to_dataset
-from reduction.archive.kept import kept_samples, select_places, stored_cycles
+from reduction.archive.kept import kept_samples, stored_cycles
 from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive
 from reduction.moduli.groups import select_cycles
 from reduction.notes import severity_of
-from reduction.record import Quality
 from reduction.settings import ArchiveSettings, ModulusSettings, ReductionSettings
 
 
@@ -68,52 +67,33 @@ def test_cycles_whose_curves_are_pooled_are_there_by_their_first():
     np.testing.assert_array_equal(found.index, expected)
 
 
-def test_what_is_too_long_is_thinned_and_keeps_its_ends_and_its_extremes():
+def test_of_what_is_too_long_evenly_spaced_samples_and_the_ends_stay():
     test = long_test(n_samples=100_000)
-    tension = test.record.tension.copy()
-    tension[0, 40_001], tension[0, 40_003] = 1e6, -1e6
-    flags = test.record.quality_flag.copy()
-    flags[0, 40_005] = Quality.SPIKE
-    tension[0, 40_005] = 2e6
-    test = replace(test, record=replace(test.record, tension=tension, quality_flag=flags))
     kept = kept_samples(test, wanted(longest=4000))
-    quarter = 250  # of a thousand, a quarter of 4000
-    assert set(range(quarter)) <= set(kept.index)
-    assert set(range(100_000 - quarter, 100_000)) <= set(kept.index)
-    inner = kept.index[(kept.index >= quarter) & (kept.index < 100_000 - quarter)]
-    places, counts = np.unique(np.diff(inner), return_counts=True)
-    assert places[np.argmax(counts)] == 199  # 99500 samples by 500, rounded up
-    assert {40_001, 40_003} <= set(kept.index)
-    assert 40_005 not in kept.index  # a spike is no extreme
-    for row in test.strain:
-        assert {int(row.argmin()), int(row.argmax())} <= set(kept.index)
-    assert kept.index.size <= 1000 + 10
-    assert "1 of the longest cycles and stretches in no cycle are thinned" in kept.words
+    # 500 samples, an eighth of 4000, and the last one
+    np.testing.assert_array_equal(kept.index, [*range(0, 100_000, 200), 99_999])
+    assert kept.words == (
+        "501 of 100000; what is in no cycle, one sample in 200 of it and its ends"
+    )
 
 
-def test_slow_cycles_are_thinned_evenly():
+def test_slow_cycles_are_thinned_evenly_and_short_rests_are_whole():
     cycles = cycles_of(4, before=10, per_cycle=1000, after=10)
-    places = select_places(4021, cycles, np.array([1, 4]), most=420)
-    own = places.index[(places.index >= 10) & (places.index <= 1010)]
-    assert own[0] == 10 and own[-1] == 1010
-    assert np.unique(np.diff(own)[:-1]).tolist() == [6]  # 1000 samples by 199, rounded up
-    assert places.thinned.tolist() == [[10, 1011], [3010, 4011]]
+    test = long_test(cycles=cycles)
+    index = kept_samples(test, wanted("selected", longest=3200)).index
+    # 4004 samples of four cycles for 400
+    expected = [
+        *range(10), *(one for start in range(10, 4010, 1000) for one in range(start, start + 1000, 11)),
+        *range(4010, 4021),
+    ]  # fmt: skip
+    np.testing.assert_array_equal(index, expected)
 
 
-def test_of_very_many_rests_the_longest_and_those_beside_a_kept_cycle_stay():
+def test_every_rest_between_cycles_is_there():
     cycles = cycles_of(3000, per_cycle=10, rest=2, before=5, after=5)
-    places = select_places(cycles.cycle_number.size, cycles, np.array([1, 2900]), most=10**6)
-    start = cycles.first[2899]
-    assert {start - 2, start - 1, start + 10, start + 11} <= set(places.index)
-    number = cycles.cycle_number
-    is_rest = number[places.index] == 0
-    # a thousand of equal length, and both beside cycle 2900
-    assert is_rest.sum() == 5 + 5 + 2 * (998 + 2)
-    assert places.n_left_out == 3001 - 1002
-    words = kept_samples(
-        long_test(cycles=cycles), wanted("selected", longest=10**7, selected=6)
-    ).words
-    assert "of the shorter stretches between cycles are left out" in words
+    found = kept_samples(long_test(cycles=cycles), wanted("selected", longest=10**7)).index
+    expected = places_of(cycles, select_cycles(3000, longest=8))
+    np.testing.assert_array_equal(found, expected)
 
 
 @settings(deadline=None)
@@ -130,17 +110,21 @@ def test_places_rise_stay_in_the_record_and_hold_the_ends_of_every_kept_cycle(
     n_cycles, per_cycle, rest, before, after, longest, most
 ):
     cycles = cycles_of(n_cycles, before=before, per_cycle=per_cycle, after=after, rest=rest)
-    n_samples = cycles.cycle_number.size
+    test = long_test(cycles=cycles)
     numbers = select_cycles(n_cycles, longest=longest)
-    places = select_places(n_samples, cycles, numbers, most=most)
-    index = places.index
-    assert (np.diff(index) > 0).all()
-    assert index[0] == 0 and index[-1] == n_samples - 1
-    assert index.size <= max(most, 8 * (n_cycles + 1 + numbers.size))
-    assert set(cycles.first[numbers - 1]) | set(cycles.last[numbers - 1]) <= set(index)
     expected = places_of(cycles, numbers)
+    kept = kept_samples(test, wanted("selected", longest=most, selected=longest))
+    if kept is None:
+        assert expected.size == test.record.n_samples
+        return
+    index = kept.index
+    assert (np.diff(index) > 0).all()
+    assert index[0] == 0 and index[-1] == test.record.n_samples - 1
+    # every stretch and cycle adds its last sample, and one where its spacing begins anew
+    assert index.size <= most // 4 + 2 * (n_cycles + 1 + numbers.size)
+    assert set(cycles.first[numbers - 1]) | set(cycles.last[numbers - 1]) <= set(index)
     assert set(index) <= set(expected)
-    if not places.thinned.size:
+    if "one sample in" not in kept.words:
         np.testing.assert_array_equal(index, expected)
 
 
@@ -182,7 +166,7 @@ def test_the_archive_says_what_it_holds_and_counts_over_the_whole_record(tmp_pat
         assert archive.attrs["stored_samples"] == kept.words
         assert stored_cycles(archive).tolist() == [1, 2, 3, 10, 32, 98, 99, 100]
     assert kept.words.startswith(
-        f"{index.size} of {n_samples}; 8 of 100 cycles (1, 2, 3, 10, 32, 98, 99, 100) and what"
+        f"{index.size} of {n_samples}; 8 of 100 cycles (1, 2, 3, 10, 32, 98, 99, 100)"
     )
     assert kept.note.startswith(f"samples are stored in part: {index.size} of {n_samples};")
     assert severity_of("test", kept.note) == "method"

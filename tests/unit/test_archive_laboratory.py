@@ -2,15 +2,26 @@
 
 import pytest
 
-from reduction.archive.laboratory import FILE_NAME, keep_details, read_details
+from reduction.archive.laboratory import (
+    FILE_NAME,
+    Client,
+    Instrument,
+    Item,
+    Laboratory,
+    Limit,
+    ReportDetails,
+    keep_details,
+    read_details,
+)
 from reduction.errors import ArchiveError
-from reduction.laboratory import Instrument, Item, Limit, Party, ReportDetails
 
 EVERYTHING = ReportDetails(
-    number="17 <b>", revision=1, laboratory=Party("Läb", location="there"), client=Party("C"),
-    items=(Item("new", condition='"dry"'),), instruments=(Instrument("cell"),),
-    decision_rule="guard band", paper="Letter",
-    limits=(Limit("tangent_modulus", "T-1", {"strain": "1.25"}, lower=0.1 + 0.2),),
+    number="17 <b>", revision=1, laboratory=Laboratory(name="Läb", location="there"),
+    client=Client(name="C"), items={"new": Item(condition='"dry"')},
+    instruments=(Instrument(name="cell"),), decision_rule="guard band", paper="Letter",
+    limits=(
+        Limit(quantity="tangent_modulus", test="T-1", at={"strain": "1.25"}, lower=0.1 + 0.2),
+    ),
 )  # fmt: skip
 
 

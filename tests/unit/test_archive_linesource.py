@@ -19,6 +19,8 @@ from reduction.lookup.line import look_up
 from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.designs import box_behnken
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):

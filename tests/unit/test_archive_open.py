@@ -3,14 +3,15 @@
 import errno
 import os
 import sys
+from contextlib import contextmanager
 
 import h5py
 import netCDF4
+import numpy as np
 import pytest
 
 from reduction.archive import open as module
-from reduction.archive import sound
-from reduction.archive.open import failing_reads, open_archive, reading
+from reduction.archive.open import failing_reads, open_archive, read_once, reading
 from reduction.archive.version import SCHEMA_VERSION
 from reduction.errors import ArchiveError
 
@@ -31,7 +32,9 @@ def test_a_missing_file_is_named(tmp_path):
 def test_a_file_that_is_not_netcdf_is_refused(tmp_path):
     path = tmp_path / "T-1.nc"
     path.write_text("time,tension\n0,1\n")
-    with pytest.raises(ArchiveError, match=r"is not a netCDF file; found .*; needed an archive"):
+    with pytest.raises(
+        ArchiveError, match=r"cannot be read as a netCDF file; found .*; needed an archive"
+    ):
         open_archive(path)
 
 
@@ -57,8 +60,8 @@ def test_an_archive_that_the_system_refuses_is_told_so(tmp_path, monkeypatch):
 
     path = tmp_path / "T-1.nc"
     path.touch()
-    monkeypatch.setattr(module, "check_seal", refused)
-    with pytest.raises(ArchiveError, match="T-1.nc cannot be read; found Input/output error"):
+    monkeypatch.setattr(module, "_fault_stored", refused)
+    with pytest.raises(ArchiveError, match="T-1.nc cannot be read .*Input/output error"):
         open_archive(path)
 
 
@@ -113,24 +116,121 @@ def test_errors_that_are_not_of_the_library_are_passed_on(error):
     assert raised.value is error
 
 
-def test_a_disk_that_refuses_the_library_is_no_fault_of_the_form(rich_test, write, monkeypatch):
-    def refused(*_):
-        # what h5py 3.16 says
-        raise OSError(
-            "Link iteration failed (file read failed: time = Sun Nov 22 13:45:19 2026\n, filename ="
-            " 'A.nc', file descriptor = 9, errno = 5, error message = 'Input/output error')"
-        )
-
-    monkeypatch.setattr(sound, "_faults_stored", refused)
-    with pytest.raises(ArchiveError, match=r"\.nc cannot be read; found Input/output error\."):
-        open_archive(write(rich_test))
-
-
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files are bytes on Linux alone")
 def test_a_name_that_the_process_cannot_write_down_is_no_fault_of_the_file(tmp_path):
     path = tmp_path / os.fsdecode(b"pr\xfcfung.nc")
-    path.write_bytes(b"not read so far")
+    h5py.File(tmp_path / "named.nc", "w").close()
+    (tmp_path / "named.nc").rename(path)
     with pytest.raises(
         ArchiveError, match=r"cannot be given to the netCDF library; found .*Set PYTHONUTF8=1"
     ):
         open_archive(path)
+
+
+@pytest.fixture
+def opened(monkeypatch):
+    """Names of the files that are opened."""
+    names = []
+
+    def told(path):
+        names.append(path.name)
+        return reading(path)
+
+    monkeypatch.setattr(module, "reading", told)
+    return names
+
+
+def test_an_archive_is_opened_once_and_given_as_it_is_on_the_disk(rich_test, write, opened):
+    path, opener = write(rich_test), read_once()
+    with reading(path) as on_disk:
+        for _ in range(3):
+            with opener(path) as archive:
+                assert archive.identical(on_disk)
+                assert list(archive.variables) == list(on_disk.variables)
+                for name, variable in archive.variables.items():
+                    assert variable.dtype == on_disk.variables[name].dtype
+    assert opened == [path.name]
+
+
+def test_a_file_that_was_replaced_is_read_anew(rich_test, bare_test, write, opened):
+    path, opener = write(rich_test), read_once()
+    with opener(path):
+        pass
+    write(bare_test).replace(path)
+    with opener(path) as archive, reading(path) as on_disk:
+        assert archive.identical(on_disk)
+    assert len(opened) == 2
+
+
+def test_a_file_that_is_replaced_while_it_is_read_is_read_anew(
+    rich_test, bare_test, write, monkeypatch, tmp_path
+):
+    path, opener = write(rich_test), read_once()
+    path = path.replace(tmp_path / "one.nc")
+    other = write(bare_test)
+    opened = module.reading
+
+    @contextmanager
+    def replaced(place):
+        with opened(place) as archive:
+            if other.exists():
+                other.replace(place)
+            yield archive
+
+    monkeypatch.setattr(module, "reading", replaced)
+    with opener(path):
+        pass
+    with opener(path) as archive, reading(path) as on_disk:
+        assert archive.identical(on_disk)
+
+
+def test_a_file_that_is_gone_is_not_given_from_memory(rich_test, write):
+    path, opener = write(rich_test), read_once()
+    with opener(path):
+        path.unlink()
+    with pytest.raises(ArchiveError, match="there is no archive"), opener(path):
+        pass
+
+
+def test_a_step_cannot_change_what_the_next_one_is_given(rich_test, write):
+    path, opener = write(rich_test), read_once()
+    for _ in range(2):
+        with opener(path) as archive:
+            assert "added" not in archive
+            archive["added"] = 1.0
+            for variable in archive.drop_vars("added").variables.values():
+                with pytest.raises(ValueError, match="read-only"):
+                    variable.values[...] = 0
+    with opener(path) as archive, reading(path) as on_disk:
+        assert archive.identical(on_disk)
+
+
+def test_as_many_are_kept_as_there_is_room_for(
+    rich_test, bare_test, write, opened, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(module, "_MOST", 1)
+    first, opener = write(rich_test), read_once()
+    first = first.replace(tmp_path / "first.nc")
+    second = write(bare_test)
+    for _ in range(2):
+        for path in (first, second):
+            with opener(path) as archive:
+                assert np.all(np.isfinite(archive["diameter"]))
+    assert opened == ["first.nc", second.name, second.name]
+
+
+@pytest.mark.parametrize("limit", ["_LARGEST", "_ROOM"])
+def test_what_is_large_is_not_read_whole(limit, rich_test, write, opened, monkeypatch):
+    monkeypatch.setattr(module, limit, 100)
+    path, opener = write(rich_test), read_once()
+    for _ in range(2):
+        with opener(path) as archive:
+            assert not archive.variables["tension"]._in_memory
+    assert len(opened) == 2
+
+
+def test_an_error_in_a_block_is_that_of_the_block(rich_test, write):
+    path, opener = write(rich_test), read_once()
+    for _ in range(2):
+        with pytest.raises(KeyError, match="none"), opener(path) as archive:
+            archive.variables["none"]

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from archive_check import check_archive
 
-from reduction.archive.check import check_archive
 from reduction.archive.open import open_archive
 from reduction.archive.outcomes import outcomes_of_dataset, outcomes_to_dataset
 from reduction.archive.write import write_archive

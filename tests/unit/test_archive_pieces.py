@@ -15,11 +15,6 @@ COEFFICIENTS = {
     "splice_exponent": 0.8,
 }  # fmt: skip
 
-NOT_APART = (
-    "what is shared with other tests, as a load cell, is not kept apart: all that is known of the "
-    "uncertainty counts as that of the piece alone"
-)
-
 
 def cyclic(test="T-1", order=1, specimens=("new",), factor=1.0, coefficients=None, **more):
     """A test with cycles and a first rise, straight lines of 100 and 120 N per unit strain."""
@@ -217,7 +212,6 @@ def test_what_is_left_out_is_said():
     found = source_of_tests(tests, "new", branch="mean")
     assert {one.name for one in found.pieces} == {"T-1", "T-2"}
     assert set(found.notes) == {
-        f"T-1, T-2: {NOT_APART}",
         "T-1-end is left out: it is a part of T-1",
         "held (relaxation) has no mean curve",
         "T-2: a splice slipped 2 times, and its strains hold the slip",
@@ -254,7 +248,7 @@ def test_archives_without_the_specimen_are_passed_over():
     assert specimens_of(xr.Dataset()) == ()
     found = source_of_tests(tests, "new", branch="mean")
     assert {one.name for one in found.pieces} == {"T-1"}
-    assert found.notes == ("of other specimens: c/T-2", f"T-1: {NOT_APART}")
+    assert found.notes == ("of other specimens: c/T-2",)
 
 
 def test_one_test_twice_is_refused():

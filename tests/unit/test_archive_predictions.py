@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from archive_check import check_archive
 from predicted_hoses import (
     CORD_LOAD,
     CORD_STRAIN,
@@ -19,7 +20,6 @@ from predicted_hoses import (
     working_tension,
 )
 
-from reduction.archive.check import check_archive
 from reduction.archive.open import open_archive
 from reduction.archive.prediction_schema import HOSE_STATES, PREDICTION_SCHEMA
 from reduction.archive.predictions import EVENTS

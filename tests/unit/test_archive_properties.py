@@ -318,24 +318,3 @@ def test_errors_of_the_steps_of_all_ropes_are_on_one_axis():
     assert of_strain[:, 2].tolist() == [2e-5, 3e-5]
     assert archive["property_stiffness_standard_uncertainty"].values[0] == 5e3
     assert archive["property_stiffness_random_standard_uncertainty"].values[0] == 3e3
-
-
-def test_a_step_that_keeps_nothing_beside_one_that_does_has_no_uncertainty_and_says_why():
-    level = ("dynamic stiffness", 1e5, 60.0, 5.0, 6e-4, 1e4, 3e4, 600.0)
-    found = {
-        "R-1": (
-            ChangeInLength(*level, "T-1", contribution=np.array([0.01e5]),
-                           over_strength_contribution=np.array([0.05])),
-            ChangeInLength(*level, "T-2", reason="of its last cycles"),
-        )
-    }  # fmt: skip
-    component = {("R-1", "T-1"): (CELL,), ("R-1", "T-2"): ()}
-    archive = properties_to_dataset(found, component, origin=ORIGIN, silent={("R-1", "T-2")})
-    name = "property_stiffness_standard_uncertainty"
-    assert archive[name].values[0] == pytest.approx(np.hypot(60.0, 0.01e5))
-    assert np.isnan(archive[name].values[1]) and archive["property_stiffness"].values[1] == 1e5
-    kept, lost = archive["property_remark"].values.tolist()
-    assert kept == ""
-    assert lost.startswith("of its last cycles; no uncertainty: what T-2 shares with the other")
-    alone = properties_to_dataset(found, component, origin=ORIGIN)
-    assert alone[name].values[1] == 60.0

@@ -6,9 +6,9 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
+from archive_check import check_archive
 from experiments import ABOUT, STRENGTH, screening_experiment, surface_experiment
 
-from reduction.archive.check import check_archive
 from reduction.archive.open import open_archive
 from reduction.archive.surface_schema import SURFACE_SCHEMA
 from reduction.archive.surfaces import surfaces_to_dataset

@@ -49,17 +49,6 @@ def test_nothing_is_left_beside_the_archive(rich_test, write):
     assert [entry.name for entry in path.parent.iterdir()] == ["T-1.nc"]
 
 
-def test_a_faulty_dataset_is_refused_and_the_file_before_is_kept(bare_test, write):
-    path = write(bare_test)
-    before = path.read_bytes()
-    dataset = to_dataset(bare_test, version="1.2.3", command="reduction run")
-    del dataset["tension"].attrs["units"]
-    with pytest.raises(ArchiveError, match=r"bare.nc does not follow CF .* tension has no units"):
-        write_archive(dataset, path)
-    assert path.read_bytes() == before
-    assert [entry.name for entry in path.parent.iterdir()] == ["bare.nc"]
-
-
 def test_a_disk_that_refuses_is_an_archive_error(bare_test, tmp_path):
     (tmp_path / "file").write_text("not a folder")
     dataset = to_dataset(bare_test, version="1.2.3", command="reduction run")

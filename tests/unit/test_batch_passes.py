@@ -6,8 +6,9 @@ import pytest
 from manytests import write_many
 
 from reduction.batch import firstpass, secondpass
+from reduction.batch import pulls as pulls_module
 from reduction.batch.basis import Basis
-from reduction.batch.executor import Ended, Serial
+from reduction.batch.executor import Ended, local_workers
 from reduction.batch.firstpass import FirstPass, survey_campaign, with_record
 from reduction.batch.lock import RunLock, run_lock
 from reduction.batch.models import fit_strain_models
@@ -23,19 +24,17 @@ def campaign(tmp_path_factory):
     return load_campaign(write_many(tmp_path_factory.mktemp("many") / "raw", 4, n_cycles=4))
 
 
-class Lossy(Serial):
-    """Its workers die at one test."""
+def lossy(lost):
+    """Workers that die at one test."""
 
-    def __init__(self, test):
-        super().__init__()
-        self.lost = test
-
-    def ended(self, tasks):
+    def work_on(function, tasks, **options):
         for task in tasks:
-            if task.test == self.lost:
+            if task.test == lost:
                 yield Ended(task.test, None, WorkerError("lost with all hands"))
             else:
-                yield Ended(task.test, task.result(), worker="tcp://w:1")
+                yield Ended(task.test, function(*task.arguments), worker="w:1")
+
+    return work_on
 
 
 class Told(Silent):
@@ -59,7 +58,7 @@ def test_surveys_come_in_the_order_of_the_campaign_without_their_samples(campaig
     assert [one.plan.id for one in first.surveys] == ["T01", "T02.a", "T02.b", "T03", "T04"]
     assert all(one.located is None for one in first.surveys)
     assert list(first.kept) == ["T01", "T02", "T03", "T04"]
-    records = [one.located for one in first.kept["T02"].result()]
+    records = [one.located for one in first.kept["T02"]]
     assert len(records) == 2 and all(one is not None for one in records)
     assert "no number" in str(first.surveys[3].error)
 
@@ -70,17 +69,20 @@ def test_records_beyond_the_bound_are_not_kept(campaign, monkeypatch):
     assert list(survey_campaign(campaign).kept) == ["T01"]
 
 
-def test_a_record_on_disk_stays_where_it_was_read(campaign, monkeypatch):
-    monkeypatch.setattr(firstpass, "is_on_disk", lambda array: True)
-    executor = Serial()
-    assert survey_campaign(campaign, executor=executor).kept["T01"].result()[0].located is not None
-    executor.is_elsewhere = True
-    assert survey_campaign(campaign, executor=executor).kept["T01"].result()[0].located is None
+def test_records_that_were_read_by_workers_are_read_again(campaign):
+    with local_workers(2) as workers:
+        first = survey_campaign(campaign, workers=workers)
+    assert first.kept == {} and all(one.located is None for one in first.surveys)
+    here = survey_campaign(campaign)
+    assert [(one.plan.id, one.n_rows, one.n_cycles, one.sources) for one in first.surveys] == [
+        (one.plan.id, one.n_rows, one.n_cycles, one.sources) for one in here.surveys
+    ]
+    assert [str(one.error) for one in first.surveys] == [str(one.error) for one in here.surveys]
 
 
 def test_a_record_of_another_file_is_not_taken(campaign):
     first = survey_campaign(campaign)
-    survey, kept = first.surveys[0], first.kept["T01"].result()
+    survey, kept = first.surveys[0], first.kept["T01"]
     assert with_record(survey, kept).located is kept[0].located
     assert with_record(survey, None) is survey
     changed = replace(survey, sources=(replace(survey.sources[0], sha256="0" * 64),))
@@ -88,48 +90,50 @@ def test_a_record_of_another_file_is_not_taken(campaign):
 
 
 def test_progress_hears_of_each_log_as_it_begins_and_ends(campaign):
-    progress, executor = Told(), Serial()
-    executor.begun = progress.begun
-    survey_campaign(campaign, executor=executor, progress=progress)
+    progress = Told()
+    survey_campaign(campaign, progress=progress)
     assert progress.words[:3] == [("survey", 4), ("begun", "T01"), ("ended", "T01", None)]
     assert progress.words[-1] == ("ended", "T04", None)
 
 
-def test_a_test_that_is_lost_in_the_first_pass_has_an_error(campaign):
-    first = survey_campaign(campaign, executor=Lossy("T01"))
+def test_a_test_that_is_lost_in_the_first_pass_has_an_error(campaign, monkeypatch):
+    monkeypatch.setattr(firstpass, "work_on", lossy("T01"))
+    first = survey_campaign(campaign)
     assert str(first.surveys[0].error) == "lost with all hands"
     assert first.surveys[1].error is None
 
 
-def test_a_slow_pull_that_is_lost_is_an_error_of_its_test(campaign):
+def test_a_slow_pull_that_is_lost_is_an_error_of_its_test(campaign, monkeypatch):
     plan = type("Plan", (), {"quasi_static": {"one": "T01"}})
     asking = replace(campaign, experiments={"e": plan})
     first = survey_campaign(campaign)
     models, _ = fit_strain_models(campaign, first.surveys)
-    pulls, errors = fit_pulls(asking, first, models, executor=Lossy("T01"), progress=Silent())
+    monkeypatch.setattr(pulls_module, "work_on", lossy("T01"))
+    pulls, errors = fit_pulls(asking, first, models, progress=Silent())
     assert pulls == {} and str(errors["T01"]) == "lost with all hands"
 
 
-def reduced(campaign, folder, *, executor, lock, progress=None, basis=None, errors=None):
+def reduced(campaign, folder, *, lock, progress=None, basis=None, errors=None):
     first = FirstPass(survey_campaign(campaign).surveys)
     return reduce_campaign(
-        campaign, first, first.surveys, errors=errors or {}, folder=folder, executor=executor,
-        basis=basis or (lambda survey: Basis(None, (), None, (), "{}", (), ())),
+        campaign, first, first.surveys, errors=errors or {}, folder=folder, workers=None,
+        basis=basis or (lambda survey: Basis(None, (), None, (), "{}", ())),
         lock=lock, progress=progress or Silent(), clock=lambda: 7.0, force=True, command="",
     )  # fmt: skip
 
 
 def test_a_test_that_is_lost_in_the_second_pass_is_a_failed_row(campaign, tmp_path, monkeypatch):
     monkeypatch.setattr(secondpass, "bring_up_to_date", lambda *a, **b: ("reduced", "well"))
+    monkeypatch.setattr(secondpass, "work_on", lossy("T02.b"))
     progress = Told()
-    with run_lock(tmp_path, remark=pytest.fail) as lock:
-        rows = reduced(campaign, tmp_path, executor=Lossy("T02.b"), lock=lock, progress=progress)
+    with run_lock(tmp_path) as lock:
+        rows = reduced(campaign, tmp_path, lock=lock, progress=progress)
     assert [(row.test, row.status, row.worker) for row in rows] == [
-        ("T01", "reduced", "tcp://w:1"),
-        ("T02.a", "reduced", "tcp://w:1"),
+        ("T01", "reduced", "w:1"),
+        ("T02.a", "reduced", "w:1"),
         ("T02.b", "failed", ""),
         ("T03", "failed", ""),
-        ("T04", "reduced", "tcp://w:1"),
+        ("T04", "reduced", "w:1"),
     ]
     assert rows[2].message.endswith("lost with all hands") and rows[2].exit_status == 1
     assert progress.words[0] == ("reduce", 5)
@@ -142,10 +146,10 @@ def test_a_defect_in_what_one_test_rests_on_fails_that_test_alone(campaign, tmp_
     def basis(survey):
         if survey.plan.id == "T04":
             raise KeyError("no such thing")
-        return Basis(None, (), None, (), "{}", (), ())
+        return Basis(None, (), None, (), "{}", ())
 
-    with run_lock(tmp_path, remark=pytest.fail) as lock:
-        rows = reduced(campaign, tmp_path, executor=Serial(), lock=lock, basis=basis)
+    with run_lock(tmp_path) as lock:
+        rows = reduced(campaign, tmp_path, lock=lock, basis=basis)
     assert [row.status for row in rows] == ["reduced"] * 3 + ["failed"] * 2
     assert "internal error, a defect of this program: KeyError" in rows[-1].message
 
@@ -155,7 +159,7 @@ def test_nothing_is_begun_without_the_lock(campaign, tmp_path):
     with pytest.raises(ArchiveError, match="is not the lock of this run any more"):
         survey_campaign(campaign, lock=lost)
     with pytest.raises(ArchiveError, match="is not the lock of this run any more"):
-        reduced(campaign, tmp_path, executor=Serial(), lock=lost)
+        reduced(campaign, tmp_path, lock=lost)
 
 
 def test_nothing_is_written_where_the_lock_went_while_a_test_was_reduced(
@@ -174,8 +178,8 @@ def test_nothing_is_written_where_the_lock_went_while_a_test_was_reduced(
     first = survey_campaign(campaign)
     models, _ = fit_strain_models(campaign, first.surveys)
     rows = reduce_campaign(
-        campaign, first, first.surveys[:1], errors={}, folder=tmp_path, executor=Serial(),
-        basis=lambda survey: Basis(None, (models["T01", "one"],), None, (), "{}", (), ()),
+        campaign, first, first.surveys[:1], errors={}, folder=tmp_path, workers=None,
+        basis=lambda survey: Basis(None, (models["T01", "one"],), None, (), "{}", ()),
         lock=lock, progress=Silent(), clock=lambda: 7.0, force=True, command="",
     )  # fmt: skip
     assert "is not the lock of this run any more" in rows[0].message

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from reduction.archive.laboratory import Instrument, Item
 from reduction.campaign.reportspec import ReportSection, report_details
 from reduction.errors import SettingsError
-from reduction.laboratory import Instrument, Item
 
 PATH = Path("campaign.toml")
 PSI = 6894.757293168361
@@ -38,8 +38,8 @@ def test_a_campaign_without_a_report_states_nothing():
 
 def test_an_empty_report_is_one_in_which_nothing_is_stated():
     found = details()
-    assert found.number == found.laboratory.name == found.authorised_by == ""
-    assert found.limits == found.items == () and found.decision_rule is None
+    assert found.number == found.laboratory.name == found.authorised.by == ""
+    assert found.limits == () and found.items == {} and found.decision_rule is None
 
 
 def test_everything_arrives_at_its_place():
@@ -52,9 +52,9 @@ def test_everything_arrives_at_its_place():
     assert (found.number, found.revision, found.amendment) == ("17", 2, "why")
     assert (found.laboratory.name, found.laboratory.location) == ("L", "there")
     assert (found.client.name, found.client.order) == ("C", "4711")
-    assert (found.authorised_by, found.authorised_function) == ("P", "head")
-    assert found.items == (Item("new", identification="tag", condition="dry"),)
-    assert found.instruments == (Instrument("cell", traceable_to="standard"),)
+    assert (found.authorised.by, found.authorised.function) == ("P", "head")
+    assert found.items == {"new": Item(identification="tag", condition="dry")}
+    assert found.instruments == (Instrument(name="cell", traceable_to="standard"),)
     assert found.paper == "Letter"
 
 

@@ -1,4 +1,4 @@
-"""The catalogue says what the archives say, and notices when they change."""
+"""The catalogue says what the archives say, and names those that it lacks."""
 
 import os
 import shutil
@@ -6,6 +6,7 @@ import tracemalloc
 
 import netCDF4
 import numpy as np
+import pandas as pd
 import pyarrow.csv
 import pyarrow.parquet
 import pytest
@@ -14,34 +15,21 @@ import xarray as xr
 from reduction.archive.open import open_archive
 from reduction.archive.schema import SCHEMA, schema_of
 from reduction.archive.version import SCHEMA_VERSION
-from reduction.catalogue import files
-from reduction.catalogue.changes import changes_since
+from reduction.catalogue import file
 from reduction.catalogue.columns import CONDITIONS, LEFT_OUT
 from reduction.catalogue.condition import condition_of
-from reduction.catalogue.files import archives_below, shown_path
-from reduction.catalogue.index import INDEX_NAME, Index, load_index, save_index
+from reduction.catalogue.file import FILE_NAME, campaigns_below, load_catalogue, shown_path
 from reduction.catalogue.query import Query, answer, needed_quantities, quantities_there
-from reduction.catalogue.read import kept_cycles, read_entry
-from reduction.catalogue.refresh import refresh
+from reduction.catalogue.read import entry_of, kept_cycles, rebuild, write_catalogue
 from reduction.catalogue.write import meaning_of, unit_of, write_answer
 from reduction.errors import ArchiveError, SettingsError
 from reduction.vocabulary import QUANTITIES
 
 
-def brought_up_to_date(folder, jobs=1):
-    """What the command does before it answers; how many archives it read."""
-    path = folder / INDEX_NAME
-    known = load_index(path)
-    changes = changes_since(known, folder)
-    if known is not None and changes.is_none:
-        return known, 0
-    done = refresh(known, changes, path, jobs=jobs)
-    return done.index, done.n_read
-
-
-def same_values(one, other):
-    pairs = zip(one.values, other.values, strict=True)
-    return all(left.select(right.column_names).equals(right) for left, right in pairs)
+def made(folder):
+    """The catalogues of a folder, made of the archives that are there."""
+    assert rebuild(folder) == {}
+    return load_catalogue(folder)
 
 
 def asked(index, **options):
@@ -65,7 +53,7 @@ def index(archives, tmp_path_factory):
     (processed / "one").mkdir()
     for path in archives:
         shutil.copyfile(path, processed / "one" / path.name)
-    return brought_up_to_date(processed)[0]
+    return made(processed)
 
 
 def rename(path, **attributes):
@@ -107,7 +95,7 @@ def test_every_number_of_an_archive_that_stands_on_its_specimens_is_there(index,
             if archive[name].dims == ("specimen",) and archive[name].dtype.kind == "f"
         ]
         wanted = {
-            name: archive[name].values[np.isfinite(archive[name].values)].tolist()
+            name: archive[name].to_numpy()[np.isfinite(archive[name].to_numpy())].tolist()
             for name in names
             if name in QUANTITIES
         }
@@ -123,7 +111,7 @@ def test_a_number_comes_with_its_place_and_its_uncertainty(index, rich_test, arc
     modulus = rich_test.segments.segment_modulus
     assert len(rows) == np.isfinite(modulus).sum()
     with open_archive(archives[-1]) as archive:
-        spread = archive["segment_modulus_standard_uncertainty"].values
+        spread = archive["segment_modulus_standard_uncertainty"].to_numpy()
     for row in rows:
         at = (
             ["new", "used"].index(row["specimen"]),
@@ -281,95 +269,73 @@ def test_a_name_that_the_vocabulary_lacks_is_refused(option):
         needed_quantities(Query(**{option: ("stiffnes",)}))
 
 
-def test_an_index_that_fits_is_not_read_again(folder):
-    assert brought_up_to_date(folder)[1] == 5
-    assert brought_up_to_date(folder)[1] == 0
-
-
-def test_a_changed_archive_is_read_again_and_the_others_are_not(folder):
-    brought_up_to_date(folder)
+def test_what_is_known_of_a_campaign_is_what_its_archives_were_when_it_was_made(folder):
+    made(folder)
     with netCDF4.Dataset(folder / "two" / "T-1.nc", "a") as archive:
         archive["test_frequency"][:] = [0.25, 0.5]
-    found, n_read = brought_up_to_date(folder)
-    assert n_read == 1
+    found = made(folder)
     rows = asked(found, names={"test": ("T-1",)})
     assert [row["test_frequency"] for row in rows if row["archive"] == "two/T-1.nc"] == [0.25, 0.5]
     others = [row["test_frequency"] for row in rows if row["archive"] == "one/T-1.nc"]
     assert others and not {0.25, 0.5} & set(others)
 
 
-def test_an_archive_put_in_place_with_the_old_size_and_time_is_told_by_what_it_says(folder):
-    path = folder / "two" / "T-1.nc"
-    rename(path, id="tmt/T-1", raw_file_sha256="ab" * 32)
-    brought_up_to_date(folder)
-    before = path.stat()
-    other = folder.parent / "other.nc"
-    shutil.copyfile(path, other)
-    rename(other, raw_file_sha256="cd" * 32)
-    with netCDF4.Dataset(other, "a") as archive:
-        archive["test_frequency"][:] = [0.25, 0.5]
-    assert other.stat().st_size == before.st_size
-    os.utime(other, ns=(before.st_atime_ns, before.st_mtime_ns))
-    other.replace(path)
-    found, n_read = brought_up_to_date(folder)
-    assert n_read == 1
-    rows = asked(found, where=(condition_of("frequency = 0.25 Hz"),))
-    assert [row["archive"] for row in rows] == ["two/T-1.nc"]
+def test_numbers_of_several_campaigns_stay_with_their_own(folder):
+    found = made(folder)
+    rows = asked(found, quantity=("segment_modulus",))
+    one, two = (
+        [row for row in rows if row["archive"] == f"{name}/T-1.nc"] for name in ("one", "two")
+    )
+    assert one and [row | {"archive": ""} for row in one] == [row | {"archive": ""} for row in two]
+    assert [row["archive"] for row in rows] == sorted(row["archive"] for row in rows)
 
 
-def test_a_copy_of_the_same_archive_is_not_read_again(folder):
-    first, _ = brought_up_to_date(folder)
-    path = folder / "two" / "T-1.nc"
-    shutil.copy2(path, folder.parent / "copy.nc")
-    (folder.parent / "copy.nc").replace(path)
-    second, n_read = brought_up_to_date(folder)
-    assert n_read == 0
-    assert asked(second) == asked(first)
-    assert changes_since(load_index(folder / INDEX_NAME), folder).is_none
+def test_an_archive_that_is_gone_is_not_answered_from(folder):
+    made(folder)
+    (folder / "one" / "hold.nc").unlink()
+    found = load_catalogue(folder)
+    assert "hold" not in {row["test"] for row in asked(found)} and not found.unreadable
+    assert "hold" not in {row["test"] for row in asked(found, quantity=("relaxation_drop",))}
+    (folder / "two" / "T-1.nc").unlink()
+    assert {row["archive"].split("/")[0] for row in asked(load_catalogue(folder))} == {"one"}
 
 
-def test_an_archive_that_is_gone_is_gone_from_the_index(folder):
-    brought_up_to_date(folder)
-    shutil.rmtree(folder / "two")
-    found, n_read = brought_up_to_date(folder)
-    assert n_read == 0
+def test_an_archive_that_the_catalogue_lacks_is_named(folder):
+    made(folder)
+    shutil.copyfile(folder / "one" / "hold.nc", folder / "two" / "hold.nc")
+    found = load_catalogue(folder)
+    assert list(found.unreadable) == ["two/hold.nc"]
+    assert found.unreadable["two/hold.nc"] == (
+        "two/hold.nc is not in catalogue.parquet. Run the campaign again, or use --rebuild."
+    )
+    assert len(asked(found)) == 7
+    assert len(asked(made(folder))) == 8
+
+
+def test_a_campaign_without_a_catalogue_is_named_and_hides_no_other(folder):
+    made(folder)
+    (folder / "two" / FILE_NAME).unlink()
+    found = load_catalogue(folder)
+    assert found.unreadable == {
+        "two": "two: catalogue.parquet cannot be read; found No such file or directory. Run the "
+        "campaign again, or use --rebuild."
+    }
     assert {row["archive"].split("/")[0] for row in asked(found)} == {"one"}
-    assert set(found.states()) == {f"one/{name}.nc" for name in ("T-1", "bare", "hold", "static")}
-
-
-def test_a_part_of_the_index_read_again_is_the_index_made_at_once(folder):
-    brought_up_to_date(folder)
-    (folder / "one" / "T-1.nc").touch()
-    (folder / "three").mkdir()
-    shutil.copyfile(folder / "one" / "hold.nc", folder / "three" / "hold.nc")
-    found, _ = brought_up_to_date(folder)
-    (folder / INDEX_NAME).unlink()
-    anew, _ = brought_up_to_date(folder)
-    assert found.tests.equals(anew.tests)
-    assert quantities_there(found) == quantities_there(anew)
-    for name in quantities_there(anew):
-        query = Query(quantity=(name,), by_cycle=True)
-        assert answer(found, query).equals(answer(anew, query)), name
-
-
-def test_two_processes_read_what_one_reads(folder):
-    alone, _ = brought_up_to_date(folder)
-    (folder / INDEX_NAME).unlink()
-    together, _ = brought_up_to_date(folder, jobs=2)
-    assert together.tests.equals(alone.tests) and same_values(together, alone)
 
 
 @pytest.mark.parametrize("left", [b"", b"PAR1 is not all of it PAR1"])
-def test_an_index_that_is_damaged_is_made_again(folder, left):
-    brought_up_to_date(folder)
-    (folder / INDEX_NAME).write_bytes(left)
-    assert load_index(folder / INDEX_NAME) is None
-    assert brought_up_to_date(folder)[1] == 5
+def test_a_catalogue_that_is_damaged_is_named_and_made_again(folder, left):
+    made(folder)
+    (folder / "two" / FILE_NAME).write_bytes(left)
+    assert list(load_catalogue(folder).unreadable) == ["two"]
+    assert len(asked(made(folder))) == 7
 
 
-def test_an_index_of_another_program_is_made_again(folder):
-    pyarrow.parquet.write_table(pyarrow.table({"archive": ["x"]}), folder / INDEX_NAME)
-    assert brought_up_to_date(folder)[1] == 5
+def test_a_catalogue_of_another_program_is_named_and_made_again(folder):
+    made(folder)
+    pyarrow.parquet.write_table(pyarrow.table({"archive": ["x"]}), folder / "two" / FILE_NAME)
+    assert "another version, or of another program" in load_catalogue(folder).unreadable["two"]
+    assert len(asked(made(folder))) == 7
 
 
 @pytest.mark.parametrize(
@@ -381,16 +347,19 @@ def test_an_index_of_another_program_is_made_again(folder):
     ],
 )  # fmt: skip
 def test_a_broken_archive_is_named_and_hides_no_other(folder, damage, words):
-    damage(folder / "two" / "T-1.nc")
-    found, _ = brought_up_to_date(folder)
-    assert list(found.unreadable()) == ["two/T-1.nc"]
-    assert words in found.unreadable()["two/T-1.nc"]
-    assert {row["archive"].split("/")[0] for row in asked(found)} == {"one"}
-    # it is not opened again at each question, and comes back when it is mended
-    assert brought_up_to_date(folder)[1] == 0
-    shutil.copyfile(folder / "one" / "T-1.nc", folder / "two" / "T-1.nc")
-    mended, n_read = brought_up_to_date(folder)
-    assert n_read == 1 and not mended.unreadable()
+    damage(folder / "one" / "T-1.nc")
+    left_out = rebuild(folder)
+    assert list(left_out) == ["one/T-1.nc"] and words in left_out["one/T-1.nc"]
+    found = load_catalogue(folder)
+    assert {row["archive"] for row in asked(found)} == {
+        "one/bare.nc", "one/hold.nc", "one/static.nc", "two/T-1.nc",
+    }  # fmt: skip
+    assert list(found.unreadable) == ["one/T-1.nc"]
+    shutil.copyfile(folder / "two" / "T-1.nc", folder / "one" / "T-1.nc")
+    assert not made(folder).unreadable
+    damage(folder / "one" / "T-1.nc")
+    with pytest.raises(ArchiveError, match=words):
+        write_catalogue([folder / "one" / "T-1.nc"], folder / "one" / FILE_NAME)
 
 
 def test_a_netcdf_file_whose_parts_are_not_those_of_an_archive_is_named(tmp_path):
@@ -401,8 +370,8 @@ def test_a_netcdf_file_whose_parts_are_not_those_of_an_archive_is_named(tmp_path
             odd.createDimension(name, size)
         odd.createVariable("mean_strain", "f8", ("specimen", "cycle"))[:] = 1.0
         odd.createVariable("strain_amplitude", "f8", ("specimen", "reading"))[:] = 1.0
-    entry = read_entry(path, "one/odd.nc")
-    assert "odd.nc is not made as an archive is; found " in entry.fault
+    with pytest.raises(ArchiveError, match="odd.nc is not made as an archive is; found "):
+        entry_of(path)
 
 
 @pytest.mark.parametrize(
@@ -411,24 +380,22 @@ def test_a_netcdf_file_whose_parts_are_not_those_of_an_archive_is_named(tmp_path
 def test_a_campaign_of_any_name_is_found(archives, tmp_path, name):
     (tmp_path / name).mkdir()
     shutil.copyfile(archives[1], tmp_path / name / "hold.nc")
-    found, _ = brought_up_to_date(tmp_path)
-    assert [row["archive"] for row in asked(found)] == [f"{name}/hold.nc"]
-    assert brought_up_to_date(tmp_path)[1] == 0
+    assert [row["archive"] for row in asked(made(tmp_path))] == [f"{name}/hold.nc"]
 
 
 def test_a_name_that_is_no_text_is_shown_by_its_bytes():
     assert shown_path(os.fsdecode(b"one/\xff.nc")) == "one/\\xff.nc"
 
 
-def test_a_name_that_is_no_text_is_kept_in_the_index(archives, tmp_path):
+def test_a_name_that_is_no_text_is_kept(archives, tmp_path):
     folder = os.fsdecode(os.fsencode(tmp_path) + b"/camp\xff")
     try:
         os.mkdir(folder)
     except OSError:
         pytest.skip("this file system takes texts alone")
     shutil.copyfile(archives[1], os.path.join(folder, "hold.nc"))
-    found, _ = brought_up_to_date(tmp_path)
-    known = [row["archive"] for row in asked(found)] + list(found.unreadable())
+    left_out = rebuild(tmp_path)
+    known = [row["archive"] for row in asked(load_catalogue(tmp_path))] + list(left_out)
     assert known == ["camp\\xff/hold.nc"]
 
 
@@ -438,55 +405,58 @@ def test_parts_of_files_and_other_files_are_left_alone(folder):
     (folder / "one" / "status.csv").write_text("")
     (folder / "notes.txt").write_text("")
     (folder / ".git").mkdir()
-    assert len(archives_below(folder)) == 5
-
-
-def test_a_link_to_nothing_is_no_archive(folder):
-    (folder / "one" / "gone.nc").symlink_to(folder / "nothing.nc")
-    assert len(changes_since(None, folder).states) == 5
+    (folder / "empty").mkdir()
+    assert len(asked(made(folder))) == 7
+    assert not (folder / "empty" / FILE_NAME).exists()
 
 
 def test_a_folder_that_is_none_is_refused(tmp_path):
     with pytest.raises(SettingsError, match="there is no folder .*nowhere"):
-        archives_below(tmp_path / "nowhere")
+        campaigns_below(tmp_path / "nowhere")
 
 
 def test_the_folder_of_one_campaign_is_refused(folder):
     with pytest.raises(SettingsError, match="is the folder of one campaign"):
-        archives_below(folder / "one")
+        campaigns_below(folder / "one")
 
 
 def test_an_empty_folder_has_an_empty_catalogue(tmp_path):
-    found, n_read = brought_up_to_date(tmp_path)
-    assert n_read == 0 and asked(found) == []
+    found = made(tmp_path)
+    assert asked(found) == [] and quantities_there(found) == {}
     assert asked(found, quantity=("loss_factor",), where=(condition_of("frequency > 0 Hz"),)) == []
-    assert brought_up_to_date(tmp_path)[1] == 0
 
 
-def test_an_index_that_cannot_be_written_answers_all_the_same(folder):
-    (folder / INDEX_NAME).mkdir()
-    done = refresh(None, changes_since(None, folder), folder / INDEX_NAME)
-    assert INDEX_NAME in done.not_kept
-    assert len(asked(done.index)) == 7
-    assert not [one for one in folder.iterdir() if one.name.endswith(".part")]
+def test_a_folder_that_takes_no_file_is_named(folder):
+    (folder / "two" / FILE_NAME).mkdir()
+    left_out = rebuild(folder)
+    assert list(left_out) == ["two"] and "catalogue.parquet cannot be written" in left_out["two"]
+    assert not [one for one in (folder / "two").iterdir() if one.name.endswith(".part")]
 
 
-def test_the_index_is_the_same_bytes_when_it_is_made_again(folder):
-    brought_up_to_date(folder)
-    first = (folder / INDEX_NAME).read_bytes()
-    (folder / INDEX_NAME).unlink()
-    brought_up_to_date(folder)
-    assert (folder / INDEX_NAME).read_bytes() == first
+def test_a_catalogue_is_the_same_bytes_when_it_is_made_again_in_any_order(folder):
+    made(folder)
+    path = folder / "one" / FILE_NAME
+    first = path.read_bytes()
+    path.unlink()
+    write_catalogue(sorted((folder / "one").glob("*.nc"), reverse=True), path)
+    assert path.read_bytes() == first
 
 
-def test_what_is_read_of_an_index_is_what_was_written(index, tmp_path):
-    save_index(index, tmp_path / INDEX_NAME)
-    back = load_index(tmp_path / INDEX_NAME)
-    assert back.tests.equals(index.tests) and same_values(back, index)
-    some = load_index(tmp_path / INDEX_NAME, ["segment_modulus"])
+def test_a_question_gets_the_same_answer_from_the_numbers_that_it_needs(folder):
+    whole = made(folder)
+    some = load_catalogue(folder, ["segment_modulus"])
     query = Query(quantity=("segment_modulus",))
-    assert answer(some, query).to_pylist() == answer(index, query).to_pylist()
+    assert answer(some, query).equals(answer(whole, query))
     assert quantities_there(some).keys() == {"segment_modulus"}
+
+
+def test_the_file_of_a_campaign_can_be_read_by_itself(folder, rich_test):
+    made(folder)
+    rows = pd.read_parquet(folder / "two" / FILE_NAME)
+    own = rows[(rows["quantity"] == "test_loss_factor") & (rows["specimen"] == "used")]
+    assert own["value"].tolist() == [rich_test.amplitude.loss_factor[1]]
+    assert own["test_frequency"].tolist() == [rich_test.amplitude.frequency[1]]
+    assert own["archive"].tolist() == ["T-1.nc"]
 
 
 def test_cycles_that_are_kept_end_with_the_last():
@@ -521,7 +491,7 @@ def test_a_disk_that_refuses_is_an_error_of_the_archive(index, tmp_path):
 
 
 def test_every_column_has_a_row_in_the_vocabulary(index):
-    of_values = {name for part in index.values for name in part.column_names}
+    of_values = set(index.numbers.columns)
     own = {"quantity", "row", "value", "standard_uncertainty"}
     for name in (*CONDITIONS, *sorted(of_values - own)):
         assert name in QUANTITIES, name
@@ -530,10 +500,6 @@ def test_every_column_has_a_row_in_the_vocabulary(index):
     dims = {dim for row in (SCHEMA | schema_of(is_stepwise=True)).values() for dim in row.dims}
     for dim in dims - LEFT_OUT - {"specimen"}:
         assert dim in QUANTITIES or dim.endswith("_other"), dim
-
-
-def test_an_index_of_nothing_has_no_quantity():
-    assert quantities_there(Index.empty()) == {}
 
 
 def test_of_many_cycles_those_that_are_not_kept_are_not_read(tmp_path):
@@ -546,53 +512,51 @@ def test_of_many_cycles_those_that_are_not_kept_are_not_read(tmp_path):
     )
     path = tmp_path / "long.nc"
     data.to_netcdf(path, engine="netcdf4")
-    read_entry(path, "one/long.nc")  # what stays is made before it is measured
+    entry_of(path)  # what stays is made before it is measured
     tracemalloc.start()
-    entry = read_entry(path, "one/long.nc")
+    entry = entry_of(path)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < len(names) * numbers.nbytes
-    (block,) = entry.blocks
-    last = block.value[(block.specimen == 1) & (block.place["cycle"] == n_cycles)]
+    (block,) = (one.to_pandas() for one in entry.numbers)
+    last = block[(block["row"] == 2) & (block["cycle"] == n_cycles)]["value"]
     assert last.tolist() == [2 * n_cycles - 1, 2 * n_cycles, 2 * n_cycles + 1]
 
 
 def test_a_folder_that_is_closed_is_named_and_hides_no_other(folder, monkeypatch):
-    whole = files.os.scandir
+    made(folder)
+    whole = file.archives_in
 
     def closed(path):
-        if os.fspath(path).endswith("two"):
-            raise PermissionError(13, "Permission denied", os.fspath(path))
+        if path.name == "two":
+            raise PermissionError(13, "Permission denied", str(path))
         return whole(path)
 
-    monkeypatch.setattr(files.os, "scandir", closed)
-    index, _ = brought_up_to_date(folder)
-    assert {row["archive"].partition("/")[0] for row in asked(index)} == {"one"}
-    assert list(index.unreadable()) == ["two"]
-    assert "one that this user may not look into" in index.unreadable()["two"]
-    monkeypatch.undo()
-    index, _ = brought_up_to_date(folder)
-    assert not index.unreadable()
-    assert {row["archive"].partition("/")[0] for row in asked(index)} == {"one", "two"}
+    monkeypatch.setattr(file, "archives_in", closed)
+    found = load_catalogue(folder)
+    assert {row["archive"].partition("/")[0] for row in asked(found)} == {"one"}
+    assert list(found.unreadable) == ["two"] and "Permission denied" in found.unreadable["two"]
+    assert list(rebuild(folder)) == ["two"]
 
 
 def test_a_folder_of_campaigns_that_is_closed_is_refused(folder, monkeypatch):
     def closed(path):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(files.os, "scandir", closed)
+    monkeypatch.setattr(file.os, "scandir", closed)
     with pytest.raises(SettingsError, match="processed cannot be read; found Permission denied"):
-        archives_below(folder)
+        campaigns_below(folder)
 
 
 def test_a_link_to_itself_is_no_campaign(folder):
-    before = archives_below(folder)
+    before = campaigns_below(folder)
     (folder / "round").symlink_to("round")
     (folder / "round.nc").symlink_to("round.nc")
-    assert archives_below(folder) == before
+    assert campaigns_below(folder) == before
 
 
-def test_a_folder_with_the_name_of_an_archive_is_called_a_folder(folder):
+def test_a_folder_or_a_link_with_the_name_of_an_archive_is_named(folder):
     (folder / "one" / "odd.nc").mkdir()
-    index, _ = brought_up_to_date(folder)
-    assert "one/odd.nc is a folder that is no archive" in index.unreadable()["one/odd.nc"]
+    (folder / "one" / "gone.nc").symlink_to(folder / "nothing.nc")
+    assert set(rebuild(folder)) == {"one/odd.nc", "one/gone.nc"}
+    assert len(asked(load_catalogue(folder))) == 7

@@ -1,3 +1,5 @@
+from itertools import product
+
 import numpy as np
 import pytest
 from measured_hoses import CORD_LOAD, CORD_STRAIN, Truth
@@ -69,8 +71,17 @@ def test_modulus_and_angle_of_a_good_curve_are_told_apart_without_a_warning():
     assert found.low[1] < TRUTH.rubber_modulus < found.high[1]
 
 
-@pytest.mark.parametrize("angle", [62.0, 64.0, 68.0])
-@pytest.mark.parametrize("cord_strain", [0.05, 0.09, 0.14])
+@pytest.mark.parametrize(
+    ("cord_strain", "angle"),
+    [
+        *((0.05, 62.0), (0.14, 68.0)),
+        *(
+            pytest.param(*one, marks=pytest.mark.nightly)
+            for one in product((0.05, 0.09, 0.14), (62.0, 64.0, 68.0))
+            if one not in ((0.05, 62.0), (0.14, 68.0))
+        ),
+    ],
+)
 def test_modulus_and_angle_are_told_apart_and_angle_scale_and_dead_length_are_not(
     angle, cord_strain
 ):
@@ -119,9 +130,12 @@ def test_a_scale_of_cords_that_were_never_taut_is_not_shown():
 @pytest.mark.parametrize(
     ("names", "options", "n_draws"),
     [
-        (("wrap_angle", "rubber_modulus"), {}, 200),
-        (("dead_length_share",), {"scatter": 0.0}, 100),
-        (("wrap_angle", "rubber_modulus"), {"load_cell": 0.005}, 100),
+        (("wrap_angle", "rubber_modulus"), {}, 20),
+        pytest.param(("wrap_angle", "rubber_modulus"), {}, 200, marks=pytest.mark.nightly),
+        pytest.param(("dead_length_share",), {"scatter": 0.0}, 100, marks=pytest.mark.nightly),
+        pytest.param(
+            ("wrap_angle", "rubber_modulus"), {"load_cell": 0.005}, 100, marks=pytest.mark.nightly
+        ),
     ],
 )
 def test_intervals_hold_the_truth_in_19_of_20_draws(names, options, n_draws):
@@ -132,7 +146,9 @@ def test_intervals_hold_the_truth_in_19_of_20_draws(names, options, n_draws):
         found = calibrate_hose(TRUTH.design(), cyclic(TRUTH, rng, **options), names)
         hits.append((found.low <= truth) & (truth <= found.high))
     share = np.mean(hits, axis=0)
-    assert np.all(share >= 0.90) and np.all(share <= 1 - 0.5 / n_draws * (n_draws > 100))
+    # of 20 draws fewer hold it in one of a thousand seeds
+    least = 0.90 if n_draws >= 100 else binom.ppf(1e-3, n_draws, 0.95) / n_draws
+    assert np.all(share >= least) and np.all(share <= 1 - 0.5 / n_draws * (n_draws > 100))
 
 
 def offset_record(rng, *, pulled, noise, strain_offset, tension_offset):
@@ -150,6 +166,7 @@ def offset_record(rng, *, pulled, noise, strain_offset, tension_offset):
     )  # fmt: skip
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("pulled", "noise"), [(False, 20.0), (True, 5.0)])
 def test_intervals_hold_the_truth_where_load_and_strain_are_both_off(pulled, noise):
     rng, names, n_draws = np.random.default_rng(21), ("wrap_angle", "rubber_modulus"), 50
@@ -331,6 +348,7 @@ def test_a_curve_goes_on_along_its_tangent_where_cords_are_broken():
     assert np.ptp(steps[first:]) < 1e-6
 
 
+@pytest.mark.nightly
 def test_fitted_modulus_and_scale_trade_as_their_correlation_says():
     rng = np.random.default_rng(16)
     names = ("rubber_modulus", "cord_load_scale")
@@ -430,6 +448,6 @@ def test_bad_input_is_refused(monkeypatch):
     class Unfinished:
         success, nfev = False, 100
 
-    monkeypatch.setattr(fitproblem, "least_squares", lambda *_, **__: Unfinished)
+    monkeypatch.setattr(fitproblem.scipy.optimize, "least_squares", lambda *_, **__: Unfinished)
     with pytest.raises(FitError, match="the calibration did not come to an end; found 100 trials"):
         calibrate_hose(design, test, ["wrap_angle"])

@@ -19,10 +19,6 @@ from reduction.cli.commandoutput import CommandOutput
 from reduction.cli.designvalues import refresh_design_page
 from reduction.designpage import campaigns as read
 from reduction.designpage import page as made
-from reduction.designpage.exportdata import (
-    curves_of_published,
-    refusal_of_surfaces,
-)
 from reduction.designpage.linedata import json_text, line_data
 from reduction.errors import ArchiveError
 from reduction.published.linesource import published_sources
@@ -123,7 +119,7 @@ def test_an_archive_that_cannot_be_read_is_named_and_the_others_stand(processed,
     found = data_of(made.write_design_page(processed, tmp_path))
     ((campaign, name, text),) = found["faults"]
     assert (campaign, name) == ("many", "T01.nc")
-    assert text.startswith("T01.nc is not a netCDF file")
+    assert text.startswith("T01.nc cannot be read as a netCDF file")
     assert found["campaigns"][0]["names"] == ["T02.a one", "T02.b one"]
 
 
@@ -184,17 +180,6 @@ def test_every_script_is_on_the_page_once():
 
 def test_a_full_page_is_below_three_megabytes():
     assert len(made.render_design_page().encode()) + made.MOST_BYTES < 3_000_000
-
-
-def test_a_line_that_cannot_be_exported_says_why():
-    lines = published_sources()
-    every = tuple(lines.values())
-    refused = curves_of_published(lines["nylon-8-strand-plaited-0.5in-4-years"], every)
-    assert "has no curve of tension and strain: not printed for this line" in refused[""]["refused"]
-    assert "refused" in refusal_of_surfaces(lines["nylon-8-strand-plaited-0.5in-4-years"])[""]
-    tether = curves_of_published(lines["rubber-tether-new-T-1"], every)[""]
-    assert tether["identifier"] == "rubber-tether-new-T-1"
-    assert tether["strain"][0] == 0.775
 
 
 def test_no_page_is_made_of_copies(processed, tmp_path):

@@ -4,6 +4,7 @@ import os
 import re
 import shutil
 from dataclasses import fields
+from html import unescape
 from pathlib import Path
 
 import numpy as np
@@ -15,15 +16,10 @@ from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive
 from reduction.campaign.find import find_campaign
 from reduction.errors import ArchiveError, SettingsError
-from reduction.explore import records
-from reduction.explore.answers import answer_table
-from reduction.explore.document import campaign_document, change_document
-from reduction.explore.figures import draw_change
+from reduction.explore.document import campaign_document, change_document, save_document
 from reduction.explore.file import CampaignText
 from reduction.explore.keys import SETTINGS, setting_of, settings_of_kind
 from reduction.explore.session import Session
-from reduction.record import Quality
-from reduction.report.view import TestView
 from reduction.settings import ReductionSettings
 
 
@@ -45,10 +41,6 @@ def place(campaign, tmp_path):
 
 def session_of(place):
     return Session(place / "raw" / "campaign.toml", place / "processed" / "two-tethers")
-
-
-def view(made):
-    return TestView("test", made.dataset)
 
 
 def modulus(made):
@@ -105,27 +97,6 @@ def test_raw_files_and_archives_are_never_written(place):
     assert stamps() == before
 
 
-def test_a_log_is_read_once_however_often_a_setting_moves(place, monkeypatch):
-    read = []
-    whole = records.read_record
-
-    def counted(files, **how):
-        read.append(how["test_id"])
-        return whole(files, **how)
-
-    monkeypatch.setattr(records, "read_record", counted)
-    session = session_of(place)
-    for value in ("0.9", "0.92"):
-        session.made("T-1", session.changed("T-1", {"cycles.trim_threshold": value}))
-    assert read == ["T-1"]
-    log = place / "raw" / "T-1.csv"
-    os.utime(log, ns=(1, 1))
-    session.made("T-1", session.changed("T-1", {"cycles.trim_threshold": "0.96"}))
-    assert read == ["T-1", "T-1"], "a log that changed is read again"
-    session.made("T-1", session.changed("T-1", {"quality.gap_factor": "5"}))
-    assert len(read) == 3, "flags are set while a log is read"
-
-
 def test_tests_that_share_what_a_change_moves_are_named(session):
     moved = session.changed("T-1", {"phases.minimum_duration": "100 s"})
     assert session.made("T-1", moved).also == ("T-2",), "a mark has lost its hold"
@@ -134,11 +105,12 @@ def test_tests_that_share_what_a_change_moves_are_named(session):
 
 
 def test_a_test_that_cannot_be_reduced_says_why(session):
-    made = session.made("T-1", session.changed("T-1", {"cycles.band": "300 ft"}))
+    changes = {"cycles.band": "300 ft"}
+    made = session.made("T-1", session.changed("T-1", changes))
     assert made.dataset is None and "band" in made.error
-    before = session.made("T-1", session.text)
-    found = change_document(session, "T-1", session.text, before, made, "si")
-    assert found["error"] == made.error
+    found = change_document(session, "si", test="T-1", changes=changes)
+    assert found["error"] == made.error and found["section"] == ""
+    assert "+reduction.cycles.band" in found["diff"]
 
 
 @pytest.mark.parametrize(
@@ -316,47 +288,45 @@ def test_every_number_of_a_reduction_is_offered_but_those_of_the_archive():
     assert "cycles.band" not in {one.key for one in settings_of_kind("relaxation")}
 
 
-def test_answers_stand_side_by_side_with_their_difference(session):
-    before = session.made("T-1", session.text)
-    after = session.made("T-1", session.changed("T-1", {"cycles.break_in_cycles": "1"}))
-    table = answer_table(view(before), view(after))
-    rows = {row[0].text: row for row in table.rows}
-    row = rows["apparent spring constant, new"]
-    old, new = (float(one.dataset["test_apparent_spring_constant"][0]) for one in (before, after))
-    assert float(row[1].value) == old and float(row[2].value) == new
-    assert float(row[4].value) == pytest.approx(new - old, rel=1e-12)
-    assert float(row[5].value) == pytest.approx(100 * (new / old - 1), rel=1e-9)
-    assert float(row[6].value) == pytest.approx(
-        abs(new - old) / float(re.search(r"± ([\d.]+)", row[1].text)[1]), rel=0.1
-    )
+def sections(text):
+    """Headings, tables and figures of the section of a test as a report has it."""
+    tables = [
+        [
+            [unescape(cell) for cell in re.findall(r"<t[dh][^>]*>([^<]*)</t[dh]>", row)]
+            for row in table.split("<tr>")[1:]
+        ]
+        for table in text.split("<table>")[1:]
+    ]
+    return re.findall(r"<h3>([^<]*)</h3>", text), tables, re.findall(r'<figure id="([^"]+)"', text)
 
 
-def test_a_segment_over_another_range_has_no_difference(session):
-    before = session.made("T-1", session.text)
-    after = session.made("T-1", session.changed("T-1", {"modulus.maximum_segments": "1"}))
-    segments = [
-        row for row in answer_table(view(before), view(after)).rows
-        if row[0].text.startswith("segment 1")
-    ]  # fmt: skip
-    counted = before.dataset.sizes["segment"]
-    assert counted == 1 or any(row[4].text == "another range" for row in segments)
+def first_modulus(section):
+    """Heading and number of the first segment modulus."""
+    for rows in sections(section)[1]:
+        for place, head in enumerate(rows[0]):
+            if head.startswith("segment modulus"):
+                return head, float(rows[1][place].split()[0])
+    raise AssertionError("there is no table of segments")
 
 
-def test_the_page_is_sent_settings_figures_answers_and_the_diff(session):
-    text = session.changed("T-1", {"cycles.trim_threshold": "0.8"})
-    before, after = session.made("T-1", session.text), session.made("T-1", text)
-    found = change_document(session, "T-1", text, before, after, "us")
-    assert [one["key"] for one in found["figures"]][:2] == ["modulus-0", "modulus-1"]
-    assert {"record", "loops-0", "difference-1"} <= {one["key"] for one in found["figures"]}
+def test_the_page_is_sent_settings_the_section_of_the_report_and_the_diff(session):
+    changes = {"cycles.trim_threshold": "0.8"}
+    before = change_document(session, "us", test="T-1", changes={})
+    found = change_document(session, "us", test="T-1", changes=changes)
+    assert before["diff"] == "" and before["is_standing"] and before["also"] == []
     assert "+reduction.cycles.trim_threshold = 0.8" in found["diff"].splitlines()
-    cut = []
-    for one in (before, after):
-        is_cut = one.dataset["crosshead_position_quality_flag"].values & Quality.NOT_CONSTANT_RATE
-        cut.append(100 * np.mean(is_cut[one.dataset["branch"].values > 0] > 0))
-    (cycle,) = (one for one in found["figures"] if one["key"] == "cycle")
-    assert cut[0] > cut[1] > 0
-    said = re.findall(r"([\d.]+) % (?:as it is|changed)", cycle["caption"])
-    assert [float(one) for one in said] == pytest.approx(cut, abs=0.051)
+    assert not found["is_standing"]
+    headings, _, figures = sections(found["section"])
+    assert headings == sections(before["section"])[0]
+    assert {"Modulus against strain", "Record", "Loops", "Strain and splices"} <= set(headings)
+    # both stand on one page: no name of a part of one is that of a part of the other
+    assert figures and not set(figures) & set(sections(before["section"])[2])
+    made = session.made("T-1", session.changed("T-1", changes))
+    in_psi = made.dataset["segment_modulus"].values[0, 0, 0] / 6894.757293168361
+    head, value = first_modulus(found["section"])
+    assert "psi" in head
+    assert value == pytest.approx(in_psi, rel=5e-3)
+    assert value != first_modulus(before["section"])[1]
     settings = {one["key"]: one for one in found["settings"]}
     assert settings["cycles.trim_threshold"]["value"] == "0.8"
     assert settings["cycles.trim_threshold"]["place"] == "test"
@@ -365,7 +335,28 @@ def test_the_page_is_sent_settings_figures_answers_and_the_diff(session):
     assert settings["cycles.band"]["place"] == "found"
     assert settings["cycles.band"]["shown"].endswith(" ft")
     assert settings["cycles.break_in_cycles"]["place"] == "default"
-    assert any("psi" in cell["text"] for row in found["answers"]["rows"] for cell in row)
+
+
+def test_what_is_shown_of_the_file_is_the_section_of_the_report_of_its_run(session, campaign):
+    found = change_document(session, "si", test="T-1", changes={})
+    (page,) = campaign.parent.parent.glob("**/two-tethers/index.html")
+    text = page.read_text("utf-8").partition('data-title="T-1"')[2].partition("</section>")[0]
+    ours, theirs = sections(found["section"]), sections(text)
+    assert ours[:2] == theirs[:2] and len(ours[2]) == len(theirs[2]) > 3
+
+
+def test_what_was_shown_is_what_is_saved(place):
+    session = session_of(place)
+    changes = {"cycles.trim_threshold": "0.9"}
+    before, after = session.text.digest, session.changed("T-1", changes).digest
+    text = session.path.read_text("utf-8")
+    for digests in ({"before": before, "after": "other"}, {"before": "other", "after": after}):
+        with pytest.raises(SettingsError, match=r"not of this file any more. Nothing was written"):
+            save_document(session, test="T-1", changes=changes, **digests)
+    assert session.path.read_text("utf-8") == text
+    saved = save_document(session, test="T-1", changes=changes, before=before, after=after)
+    assert saved == {"saved": str(session.path)}
+    assert "reduction.cycles.trim_threshold = 0.9" in session.path.read_text("utf-8")
 
 
 def test_the_page_is_told_of_every_test(session):
@@ -380,21 +371,6 @@ def test_a_campaign_beside_its_products_is_found(place):
     there = place / "two-tethers" / "campaign.toml"
     shutil.copy(place / "raw" / "campaign.toml", there)
     assert find_campaign(processed) == there
-
-
-def test_a_cycle_is_drawn_with_what_its_trim_keeps_also_where_nothing_is_changed(session):
-    standing = view(session.made("T-1", session.text))
-    (one,) = [figure for figure in draw_change(standing, standing, left_out=(0, 0))
-              if figure.key == "cycle"]  # fmt: skip
-    assert {trace["name"] for trace in one.data} == {"cycle", "in the means"}
-    assert "cut off at the ends: " in one.caption and "changed" not in one.caption
-
-
-def test_a_note_on_the_page_says_of_what_it_speaks(session):
-    made = session.made("T-1", session.text)
-    document = change_document(session, "T-1", session.text, made, made, "si")
-    assert len(document["notes"]) == made.dataset.sizes["note"]
-    assert any(one.startswith("mooney-rivlin ") for one in document["notes"])
 
 
 def test_a_campaign_is_found_where_it_lies_by_habit(place, monkeypatch):
@@ -458,14 +434,11 @@ def test_a_step_of_a_log_is_moved_by_itself(tmp_path):
     assert 'to = "380 s"  # of the drive' in text.text
     after = session.made("T-1.cycles", text)
     assert 0 < after.dataset.sizes["cycle"] < before.dataset.sizes["cycle"]
-    found = change_document(session, "T-1.cycles", text, before, after, "si")
+    found = change_document(session, "si", test="T-1.cycles", changes={"steps.0.to": "380 s"})
     steps = {one["key"]: one["value"] for one in found["settings"] if one["group"] == "Steps"}
     assert steps == {"steps.0.from": "340 s", "steps.0.to": "380 s"}
-    hold = session.made("T-1.hold", session.text)
-    assert {"cycles.band", "waveform"}.isdisjoint(
-        one["key"]
-        for one in change_document(session, "T-1.hold", session.text, hold, hold, "si")["settings"]
-    )
+    of_hold = change_document(session, "si", test="T-1.hold", changes={})["settings"]
+    assert {"cycles.band", "waveform"}.isdisjoint(one["key"] for one in of_hold)
 
 
 def test_marks_that_changed_meanwhile_are_told_and_no_answer_is_of_both(place):
@@ -478,12 +451,12 @@ def test_marks_that_changed_meanwhile_are_told_and_no_answer_is_of_both(place):
         row[toe] = f"{float(row[toe]) + 0.2:.3f}"
     marks.write_text("\n".join(map(",".join, rows)) + "\n", encoding="utf-8")
     assert session.is_changed_on_disk
-    now = modulus(session.made("T-1", session.text))
-    assert not np.array_equal(now, as_it_was, equal_nan=True)
-    # what is not changed is the same in both columns, whichever was made first
+    with pytest.raises(SettingsError, match="a file that it names, changed on the disk since it"):
+        session.made("T-1", session.text)
     session.read_again()
     assert not session.is_changed_on_disk
-    np.testing.assert_array_equal(modulus(session.made("T-1", session.text)), now)
+    now = modulus(session.made("T-1", session.text))
+    assert not np.array_equal(now, as_it_was, equal_nan=True)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="modes of POSIX")

@@ -59,7 +59,7 @@ def test_a_campaign_without_limits_has_the_defaults(tmp_path):
     (tmp_path / "campaign.toml").write_text(_TOML)
     assert load_campaign(tmp_path / "campaign.toml").limits == Limits(
         file_size=100_000_000_000,
-        unpacked_size=4_000_000_000,
+        unpacked_size=2_500_000_000,
         line_length=1_000_000,
         columns=10_000,
         time=3600.0,

@@ -4,10 +4,11 @@ import h5py
 import numpy as np
 import pytest
 import scipy.io
+from hostile_matlab import opaque_object
 
 from reduction.errors import LogError
 from reduction.ingest.layout import Layout
-from reduction.ingest.matlab import read_matlab
+from reduction.ingest.matlab import open_matlab, read_matlab
 
 TIME, LOAD = [0.0, 0.5, 1.0], [1.0, 2.0, 3.0]
 HEADER = b"MATLAB 7.3 MAT-file, Platform: GLNXA64"
@@ -227,6 +228,27 @@ def test_an_old_file_in_a_byte_order_of_its_own_day_is_refused(tmp_path):
     # the thousands of the first number say how numbers are written: 4 is a Cray
     path.write_bytes((4000).to_bytes(4, "little") + data[4:])
     with pytest.raises(
-        LogError, match="not a MATLAB file that can be read; .*numbers in a byte order of its day"
+        LogError,
+        match="not a MATLAB file that can be read; .*We do not support byte ordering 'Cray'",
     ):
         read_matlab(path, layout(), name="log.mat")
+
+
+def test_an_object_of_one_of_matlabs_own_classes_hides_no_variable_beside_it(tmp_path):
+    path = tmp_path / "log.mat"
+    opaque_object(path)
+    channels = {
+        "time": {"column": "t", "unit": "s"},
+        "crosshead_position": {"column": "x", "unit": "m", "datum": "pin-to-pin"},
+    }
+    found = read_matlab(path, Layout(format="matlab", channels=channels), name="log.mat")
+    np.testing.assert_array_equal(found.columns["time"], 0.1 * np.arange(30))
+
+
+def test_a_variable_is_found_among_many(tmp_path):
+    path = tmp_path / "log.mat"
+    held = {f"v{place}": np.full((5, 1), float(place)) for place in range(40)}
+    scipy.io.savemat(path, held, do_compression=True)
+    with open_matlab(path) as scope:
+        assert list(scope) == list(held)
+        np.testing.assert_array_equal(scope["v27"], held["v27"])

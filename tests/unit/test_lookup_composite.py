@@ -2,11 +2,9 @@ import numpy as np
 import pytest
 
 from reduction.errors import DataError, SettingsError
-from reduction.lookup.composite import composite_curve, composite_line_curve
+from reduction.lookup.composite import composite_curve
 from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.line import look_up
 from reduction.lookup.pieces import CurvePiece
-from reduction.lookup.product import LineSource
 
 
 def law(strain):
@@ -147,18 +145,6 @@ def test_the_curve_is_nowhere_softer_than_the_share_of_the_softest_piece():
         at = (curve.strain[1:] + curve.strain[:-1]) / 2
         softest = 0.7 * (600 - 300 * at + 135 * at**2)
         assert (slope[~curve.is_gap] >= 0.99 * share * softest[~curve.is_gap]).all()
-
-
-def test_it_is_looked_up_like_any_curve():
-    curve = composite_curve([piece(0.4, 2.0)])
-    line = LineSource("T", "t", "rubber", "", "", 0.025, 3560.0,
-                      curves=(composite_line_curve(curve),))  # fmt: skip
-    found = look_up(line, "tension", strain=[0.4, 1.0])
-    assert found.value == pytest.approx(law(np.array([0.4, 1.0])), rel=1e-6)
-    with pytest.raises(DataError, match="outside what was tested"):
-        look_up(line, "tension", strain=0.3)
-    below = look_up(line, "tension", strain=0.2, extrapolate="flag")
-    assert below.value == pytest.approx(law(0.4) / 2)
 
 
 def test_rules_and_pieces_that_make_no_sense_are_refused():

@@ -7,10 +7,8 @@ import pytest
 from assemblies import DRIVEN
 
 from reduction.lookup.assembly import assemble
-from reduction.lookup.composite import composite_curve, composite_line_curve
-from reduction.lookup.line import look_up
+from reduction.lookup.composite import composite_curve
 from reduction.lookup.pieces import CurvePiece
-from reduction.lookup.product import LineSource
 from reduction.lookup.tethers import SeriesPart, Tether, equal_tethers
 from reduction.strain.model import StrainModel
 from reduction.uncertainty.product import Component
@@ -103,14 +101,6 @@ def test_over_a_gap_what_both_ends_share_stays_whole():
     middle = np.flatnonzero(found.is_gap[:-1] & found.is_gap[1:]) + 1
     assert found.contribution[0, middle] == pytest.approx(0.1 * found.tension[middle])
     assert found.contribution[0, 0] == 0
-
-
-def test_it_is_looked_up_with_what_it_shares():
-    curve = composite_line_curve(composite_curve([piece(100, 0.5, 2.0, a=0.1)]))
-    assert curve.component == (CELL,)
-    line = LineSource("T", "t", "rubber", "", "", 0.025, 3560.0, curves=(curve,))
-    found = look_up(line, "tension", strain=1.0)
-    assert found.surface_high - found.value == pytest.approx(1.96 * np.hypot(10.0, 0.5), rel=1e-3)
 
 
 def test_tethers_of_one_curve_share_all_of_it_and_of_two_curves_what_their_tests_do():

@@ -6,9 +6,8 @@ import pytest
 
 from reduction.errors import DataError, SettingsError
 from reduction.lookup.composite import composite_curve
-from reduction.lookup.pieces import CurvePiece, pieces_of_branches, pieces_of_curves
+from reduction.lookup.pieces import CurvePiece, pieces_of_branches
 from reduction.lookup.staticpiece import piece_of_steps
-from reduction.moduli.product import ModulusCurves
 from reduction.moduli.stepwise import reduce_stepwise
 from reduction.record import StepReadings
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
@@ -18,13 +17,10 @@ TABLE_4 = Path(__file__).parents[1] / "golden" / "whoi_2005_10_table_4.csv"
 INCH, LBF = 0.0254, 4.4482216152605
 
 
-def curves(ascending, descending, spread=1.0):
-    load = np.array([[ascending, descending]], dtype=float)
-    none, zeros = np.empty(0), np.zeros_like(load)
-    bins = 0.1 * (1 + np.arange(load.shape[2]))
-    return ModulusCurves(
-        bins, none, 0.1, *5 * (zeros,), zeros, zeros, zeros, load, zeros + spread, none, none, none
-    )
+def pieces(ascending, descending, **asked):
+    load = np.array([ascending, descending], dtype=float)
+    strain = 0.1 * (1 + np.arange(load.shape[1]))
+    return pieces_of_branches(strain, load, np.ones_like(load), name="T", **asked)
 
 
 def table_4():
@@ -60,22 +56,20 @@ def test_the_static_test_alone_gives_85_pounds_at_a_stretch_of_100_percent_withi
 
 
 def test_a_gap_parts_a_branch_into_pieces_and_slack_is_left_out():
-    found = pieces_of_curves(
-        curves([-1, 2, 3, np.nan, 5, 6, np.nan, 8], 8 * [1.0]), 0, name="T", branch="ascending"
-    )
+    found = pieces([-1, 2, 3, np.nan, 5, 6, np.nan, 8], 8 * [1.0], branch="ascending")
     assert [one.tension.tolist() for one in found] == [[2, 3], [5, 6]]
     assert found[0].strain == pytest.approx([0.2, 0.3])
 
 
 def test_the_mean_of_both_branches_stands_where_both_do():
-    (found,) = pieces_of_curves(curves([10, 20, 30], [np.nan, 16, 28]), 0, name="T")
+    (found,) = pieces([10, 20, 30], [np.nan, 16, 28])
     assert found.tension.tolist() == [18, 29]
     assert found.random_standard_uncertainty == pytest.approx(np.sqrt(2) / 2)
 
 
 def test_a_first_rise_has_one_branch():
     with pytest.raises(SettingsError, match="a first rise only rises"):
-        pieces_of_curves(curves([1, 2], [1, 2]), 0, name="T", kind="first-loading")
+        pieces([1, 2], [1, 2], kind="first-loading")
 
 
 @pytest.mark.parametrize(

@@ -52,6 +52,20 @@ def test_a_scaled_stress_scales_the_moduli_and_not_the_exponents():
         assert ten.parameters[name] == pytest.approx(factor * value, rel=1e-5)
 
 
+@pytest.mark.parametrize("exponents", [(-3.0, 5.0), (5.0, -3.0), (1.3, 20.0)])
+def test_ogden_terms_stand_in_the_order_of_their_exponents(exponents):
+    modulus = {5.0: 2e3, -3.0: -4e4, 1.3: 4e5, 20.0: 1e-6}
+    law = {"modulus_1": modulus[exponents[0]], "modulus_2": modulus[exponents[1]]}
+    law |= {"exponent_1": exponents[0], "exponent_2": exponents[1]}
+    stress = hyperelastic_stress(STRAIN, law="ogden-2", parameters=law)
+    noise = 300 * np.random.default_rng(6).standard_normal(STRAIN.size)
+    found = fit_elastomers(STRAIN, stress + noise, specimen="a")[3]
+    for place, exponent in enumerate(sorted(exponents), start=1):
+        for name, value in {"exponent": exponent, "modulus": modulus[exponent]}.items():
+            off = abs(found.parameters[f"{name}_{place}"] - value)
+            assert off < 4 * found.standard_uncertainty[f"{name}_{place}"]
+
+
 def test_an_unstable_fit_says_so():
     parameters = {"c10": 3e5, "c01": -1e5}
     stress = hyperelastic_stress(STRAIN, law="mooney-rivlin", parameters=parameters)

@@ -4,6 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -55,7 +56,7 @@ def brute_force(x, y, weight, n_segments):
     return best
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n_segments=st.integers(1, 3))
 def test_search_finds_the_best_of_all_lines(seed, n_segments):
     rng = np.random.default_rng(seed)

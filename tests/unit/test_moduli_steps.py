@@ -33,7 +33,14 @@ def correlated(rng, n_samples):
     return lfilter([1], [1, -0.5], rng.standard_normal(n_samples))
 
 
-@pytest.mark.parametrize("noise", [white, heavy_tailed, correlated])
+@pytest.mark.parametrize(
+    "noise",
+    [
+        white,
+        pytest.param(heavy_tailed, marks=pytest.mark.nightly),
+        pytest.param(correlated, marks=pytest.mark.nightly),
+    ],
+)
 def test_a_series_without_steps_shows_none_more_often_than_stated(noise):
     rng = np.random.default_rng(11)
     alarms = sum(
@@ -88,6 +95,7 @@ def test_a_step_is_dated_and_sized(extent, size):
         assert steps[0].end <= steps[0].end_high
 
 
+@pytest.mark.nightly
 def test_the_stated_range_of_an_onset_holds_it_nineteen_times_of_twenty():
     rng = np.random.default_rng(15)
     step = -0.7 * ramp_of(300, onset=150, extent=1)

@@ -44,6 +44,7 @@ def looks(figure):
 
 
 @pytest.mark.parametrize("draw", [draw_all_moduli, draw_ratios, draw_static_dynamic])
+@pytest.mark.slow
 def test_forty_tests_have_forty_looks_and_a_legend_entry_each(forty, draw):
     figures = draw(forty)
     assert figures

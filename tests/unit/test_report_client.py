@@ -6,9 +6,17 @@ from dataclasses import replace
 
 import pytest
 
-from reduction.archive.laboratory import keep_details
+from reduction.archive.laboratory import (
+    Authorised,
+    Client,
+    Instrument,
+    Item,
+    Laboratory,
+    Limit,
+    ReportDetails,
+    keep_details,
+)
 from reduction.archive.open import open_archive
-from reduction.laboratory import Instrument, Item, Limit, Party, ReportDetails
 from reduction.report import clientfigures
 from reduction.report.clientfields import NOT_STATED
 from reduction.report.conformitytable import RULES, conformity_table
@@ -59,11 +67,18 @@ def rows_of(page, caption):
     ]
 
 
+def filled(section, *values, **more):
+    """A section with values in the order of its keys."""
+    return section(**dict(zip(section.model_fields, values, strict=False)), **more)
+
+
 AT = {"specimen": "new", "branch": "ascending", "strain": "1.0"}
 
 
 def limit(value, at=AT, **more):
-    return Limit("tangent_modulus", "T-1", at, lower=value, **{"source": "order"} | more)
+    return Limit(
+        quantity="tangent_modulus", test="T-1", at=at, lower=value, **{"source": "order"} | more
+    )
 
 
 def test_a_campaign_that_states_nothing_has_no_such_report_and_loses_an_older_one(
@@ -95,11 +110,12 @@ def test_what_is_stated_stands_under_its_label(client, rich_test):
     details = ReportDetails(
         number="17", revision=2, amendment="table added", issued="today", received="May",
         tested="June", method="P-12", deviations="none", sampling="by the client",
-        environment="23 °C", opinions="it may serve on", authorised_by="A. Person",
-        authorised_function="head", authorised_on="5 June",
-        laboratory=Party("Lab", "1 Street", location="the quay"), client=Party("Buoy", order="4711"),
-        items=(Item("new", "tag 1", "a tether", "wet", "4 May"),),
-        instruments=(Instrument("cell", "s/n 1", "cert 2", "PTB", "2025", "2027"),),
+        environment="23 °C", opinions="it may serve on",
+        authorised=Authorised(by="A. Person", function="head", on="5 June"),
+        laboratory=Laboratory(name="Lab", address="1 Street", location="the quay"),
+        client=Client(name="Buoy", order="4711"),
+        items={"new": filled(Item, "tag 1", "a tether", "wet", "4 May")},
+        instruments=(filled(Instrument, "cell", "s/n 1", "cert 2", "PTB", "2025", "2027"),),
     )  # fmt: skip
     page = client(details, rich_test)
     found = shown(page)
@@ -141,11 +157,11 @@ def test_measured_data_are_not_called_synthetic(client, stepwise_test):
 
 
 def test_texts_of_the_laboratory_are_text_on_the_page_and_in_the_margins(client, rich_test):
-    party = Party(NASTY, NASTY, NASTY, NASTY, NASTY, NASTY)
-    details = ReportDetails(
-        *[NASTY, 1, *[NASTY] * 9], laboratory=party, client=party, authorised_by=NASTY,
-        items=(Item("new", NASTY, NASTY, NASTY, NASTY), Item(NASTY)),
-        instruments=(Instrument(NASTY),), decision_rule="guard band",
+    details = filled(
+        ReportDetails, NASTY, 1, *[NASTY] * 9, decision_rule="guard band",
+        laboratory=filled(Laboratory, *[NASTY] * 5), client=filled(Client, *[NASTY] * 4),
+        authorised=Authorised(by=NASTY), instruments=(Instrument(name=NASTY),),
+        items={"new": filled(Item, *[NASTY] * 4), NASTY: Item()},
         limits=(limit(1.0, source=NASTY),),
     )  # fmt: skip
     page = client(details, rich_test)
@@ -236,7 +252,7 @@ def test_limits_are_shown_as_they_were_agreed(judged, lower, upper, shown):
 def test_a_limit_of_a_number_that_is_not_there_gives_no_statement_and_says_why(
     judged, change, words
 ):
-    one = replace(limit(1.0), **change)
+    one = limit(1.0).model_copy(update=change)
     row, _ = judged(one)
     assert row[-1].startswith(words)
     assert row[5] == {"tangent_modulus": "MPa", "relaxation_time": "s"}[one.quantity]

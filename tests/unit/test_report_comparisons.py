@@ -24,14 +24,6 @@ from reduction.report.comparisonsection import (
     comparison_tiles,
     make_comparison_section,
 )
-from reduction.report.comparisontables import (
-    calibration_table,
-    correlation_table,
-    curve_table,
-    energy_table,
-    event_table,
-    verdict_table,
-)
 from reduction.report.comparisonview import view_comparisons
 from reduction.report.figures.comparisons import (
     draw_all_comparisons,
@@ -41,6 +33,14 @@ from reduction.report.figures.comparisons import (
 )
 from reduction.report.htmltable import NOT_GIVEN
 from reduction.report.page import write_report
+from reduction.report.predictiontables import (
+    calibration_table,
+    compared_curve_table,
+    compared_event_table,
+    correlation_table,
+    energy_table,
+    verdict_table,
+)
 
 NASTY = "</script><script>alert(1)</script> & <b>"
 POUND = 4.4482216152605
@@ -79,7 +79,7 @@ def all_figures(one):
 
 def all_tables(one):
     found = [
-        curve_table(one), event_table(one), energy_table(one), calibration_table(one),
+        compared_curve_table(one), compared_event_table(one), energy_table(one), calibration_table(one),
         correlation_table(one), verdict_table([one]),
     ]  # fmt: skip
     return [table for table in found if table is not None]
@@ -294,7 +294,7 @@ def test_one_test_with_one_hose_is_one_line_however_it_was_fitted():
 
 
 def test_curves_are_rows_and_the_calibrated_one_stands_below():
-    table = curve_table(view(agreeing()))
+    table = compared_curve_table(view(agreeing()))
     assert column(table, "curve") == [
         "ascending", "descending", "midline, judged", "midline, calibrated",
     ]  # fmt: skip
@@ -302,13 +302,13 @@ def test_curves_are_rows_and_the_calibrated_one_stands_below():
     assert bias[0] - bias[1] == pytest.approx(-LOOP)
     assert abs(bias[3]) < 0.1 * abs(bias[2])
     assert column(table, "greatest difference")[3] == NOT_GIVEN
-    one_branch = curve_table(view(differing()))
+    one_branch = compared_curve_table(view(differing()))
     assert column(one_branch, "curve") == ["ascending, judged"]
     assert "no other curve than its ascending branch" in one_branch.remarks[0]
 
 
 def test_events_have_both_differences_and_dashes_beyond_the_test():
-    table = event_table(view(differing()))
+    table = compared_event_table(view(differing()))
     assert column(table, "event") == ["cords pick up", "working load", "cords break"]
     assert float(values(table, "predicted strain")[0]) == pytest.approx(TRUTH.pick_up_strain())
     working = differing().comparison.events[1]
@@ -451,7 +451,7 @@ def test_us_units_reach_figures_and_tables():
         numbers(traces(draw_comparison(each)[0])["predicted"]["y"])[-1] for each in (si, us)
     )
     assert one / other == pytest.approx(POUND, rel=1e-4)
-    assert "bias [lbf]" in curve_table(us).columns
+    assert "bias [lbf]" in compared_curve_table(us).columns
 
 
 @pytest.mark.parametrize("named", [agreeing, differing, trading])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.designtables import design_tables
 from reduction.report.htmltable import NOT_GIVEN
+from reduction.report.testtables import design_tables
 from reduction.report.view import TestView
 
 

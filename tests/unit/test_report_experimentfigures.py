@@ -45,6 +45,7 @@ def lawful():
 
 @pytest.mark.parametrize("index", range(3))
 @pytest.mark.parametrize("units", ["si", "us"])
+@pytest.mark.slow
 def test_every_figure_is_one_that_plotly_takes_and_says_it_is_synthetic(index, units):
     view = view_of(*EVERYTHING, index=index, units=units)
     figures = list(figures_of(make_experiment_section(view, {}).parts))

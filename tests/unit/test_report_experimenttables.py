@@ -8,14 +8,16 @@ import pytest
 from experiment_views import law_experiment, view_of
 from experiments import HIGH, LOW, STRENGTH, screening_experiment, surface_experiment
 
-from reduction.report.experimenttables import caution_table, effect_table, run_table
-from reduction.report.htmltable import NOT_GIVEN, share_text
-from reduction.report.surfacetables import (
+from reduction.report.experimenttables import (
     anova_table,
     answer_table,
-    coefficient_table,
+    caution_table,
+    effect_table,
     quality_table,
+    run_table,
+    surface_coefficient_table,
 )
+from reduction.report.htmltable import NOT_GIVEN, share_text
 
 POUND = 4.4482216152605  # exactly, in newton
 
@@ -68,7 +70,7 @@ def test_cautions_name_their_runs():
 @pytest.mark.parametrize("units", ["si", "us"])
 def test_coefficients_in_units_give_the_surface_back(units):
     view = view_of(law_experiment({"apparent_spring_constant": law}, noise=1e-7), units=units)
-    table = coefficient_table(view, view.surfaces, 0)
+    table = surface_coefficient_table(view, view.surfaces, 0)
     force = 1.0 if units == "si" else 1 / POUND
     coded = np.array([0.5, -0.25, 0.75])
     levels = ((HIGH + LOW) / 2 + coded * (HIGH - LOW) / 2) * np.array([1.0, force, force])
@@ -90,9 +92,9 @@ def test_coefficients_in_units_give_the_surface_back(units):
 def test_coefficients_of_a_logarithm_say_of_which_number_whatever_the_page_shows():
     laws = {"hysteresis_energy": lambda f, m, a: np.exp(0.5 * a - 2 * m - f)}
     view = view_of(law_experiment(laws, transforms=[("hysteresis_energy", "log")]), units="us")
-    assert "as a number of J m⁻¹" in coefficient_table(view, view.surfaces, 1).remarks[0]
+    assert "as a number of J m⁻¹" in surface_coefficient_table(view, view.surfaces, 1).remarks[0]
     assert not any(
-        "as a number" in text for text in coefficient_table(view, view.surfaces, 0).remarks
+        "as a number" in text for text in surface_coefficient_table(view, view.surfaces, 0).remarks
     )
 
 

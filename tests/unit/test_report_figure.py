@@ -3,6 +3,7 @@
 import json
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -33,6 +34,41 @@ def test_a_long_name_ends_with_an_ellipsis():
 
 def test_what_is_not_finite_becomes_none():
     assert plain_numbers(np.array([1.0, np.nan, np.inf])) == [1.0, None, None]
+
+
+_EXTREME = [
+    0.0,
+    -0.0,
+    5e-324,
+    -2.2e-308,
+    1e-300,
+    1.5e-8,
+    1e-7,
+    1e21,
+    9.999996e21,
+    1e22,
+    1e300,
+    -1.7e308,
+]
+
+
+@pytest.mark.parametrize("digits", [4, 6, 9])
+def test_numbers_are_those_of_the_format_of_python(digits):
+    rng = np.random.default_rng(digits)
+    drawn = rng.standard_normal(4000) * 10.0 ** rng.integers(-12, 25, 4000)
+    round_ones = np.array([n * 10.0**p for n in (1, -3, 12.5) for p in range(-20, 25)])
+    beside = np.nextafter(10.0 ** np.arange(-9, 24), 0)
+    numbers = np.concatenate([drawn, round_ones, beside, _EXTREME])
+    found = plain_numbers(numbers, digits)
+    expected = [float(f"{number:.{digits}g}") for number in numbers.tolist()]
+    assert list(map(repr, found)) == list(map(repr, expected))
+
+
+def test_a_number_in_the_middle_is_one_of_its_neighbours():
+    middle = np.array([k + 0.5 for k in range(100000, 100400)]) * 1e-3
+    found = np.array(plain_numbers(middle))
+    assert np.all(np.abs(found - middle) < 0.5001e-3)
+    assert np.all(found == found.round(3))
 
 
 def test_a_band_is_broken_at_a_gap():

@@ -33,18 +33,18 @@ from reduction.report.figures.hoses import (
     draw_tension,
 )
 from reduction.report.hosesection import hose_findings, hose_tiles, make_hose_section
-from reduction.report.hosetables import (
-    answer_of_hoses,
-    cord_table,
-    curve_table,
-    design_table,
-    event_table,
-    layer_table,
-    plus_minus_of_hoses,
-)
 from reduction.report.hoseview import view_hoses
 from reduction.report.htmltable import NOT_GIVEN
 from reduction.report.page import write_report
+from reduction.report.predictiontables import (
+    answer_of_hoses,
+    cord_table,
+    hose_curve_table,
+    hose_design_table,
+    hose_event_table,
+    layer_table,
+    plus_minus_of_hoses,
+)
 
 NASTY = "</script><script>alert(1)</script> & <b>\u2028"
 SHORT_CORD = CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0]))
@@ -195,7 +195,7 @@ def test_events_beyond_the_last_strain_are_in_the_table_and_not_in_the_figure():
     assert "cords slackest" in traces(figure)
     assert not {"cords pick up", "working load", "safe working load"} & traces(figure).keys()
     assert figure.layout["shapes"][0]["x1"] == pytest.approx(60)
-    assert [cell.text for cell in cells(event_table(one), "event")][-1] == "cords break"
+    assert [cell.text for cell in cells(hose_event_table(one), "event")][-1] == "cords break"
     assert max(traces(draw_chart(one)[0])["64 deg"]["x"]) > 60
 
 
@@ -314,17 +314,17 @@ def test_the_answer_has_the_numbers_of_the_archive_and_their_uncertainty():
 
 
 def test_events_are_shown_in_the_units_asked_for_and_kept_in_si_beside():
-    si, us = (event_table(view(units=units)) for units in ("si", "us"))
+    si, us = (hose_event_table(view(units=units)) for units in ("si", "us"))
     newton = cells(si, "tension [N]")
     pound = cells(us, "tension [lbf]")
     assert [cell.value for cell in newton] == [cell.value for cell in pound]
     assert cells(us, "tension of a cord [lbf]")[-1].text == "30.00"
     assert "known better" in si.remarks[-1]
-    assert len(event_table(views(bare())[0]).remarks) == 1
+    assert len(hose_event_table(views(bare())[0]).remarks) == 1
 
 
 def test_construction_is_complete_with_ribbons_and_cords():
-    table = design_table(view(units="us", minimum_inner_diameter=0.0254))
+    table = hose_design_table(view(units="us", minimum_inner_diameter=0.0254))
     found = {row[0].text: row[1].text for row in table.rows}
     assert found["wrap angle from the axis [deg]"] == "68.00 ± 0.98"
     assert found["diameter of the inner layer [in]"] == "3.400"
@@ -335,7 +335,7 @@ def test_construction_is_complete_with_ribbons_and_cords():
     assert found["width of the ribbon of the inner layer [in]"] == f"{ribbon:.3f}"
     assert found["cords in the section, both layers [1]"] == "280.1"
     assert "No dead length is stated" in table.remarks[-1]
-    same = design_table(view(layer_diameter=(3.5 * INCH,) * 2, dead_length_share=0.04))
+    same = hose_design_table(view(layer_diameter=(3.5 * INCH,) * 2, dead_length_share=0.04))
     names = [row[0].text for row in same.rows]
     assert "diameter of both cord layers [mm]" in names and len(same.remarks) == 1
     assert not any("least bore that" in name for name in names)
@@ -377,13 +377,13 @@ def test_the_points_of_the_cord_stand_as_measured_and_factors_are_told():
 
 def test_the_curve_has_some_points_with_first_and_last():
     one = view()
-    table = curve_table(one)
+    table = hose_curve_table(one)
     strain = [float(cell.value) for cell in cells(table, "strain [%]")]
     assert strain[0] == 0 and strain[-1] == one.array("strain")[-1] and len(strain) <= 26
     tension = [float(cell.value) for cell in cells(table, "tension [N]")]
     kept = np.isin(one.array("strain"), strain)
     assert tension == one.array("tension")[kept].tolist()
-    broken = curve_table(view(greatest_strain=2.4))
+    broken = hose_curve_table(view(greatest_strain=2.4))
     assert cells(broken, "tension [N]")[-1].text == NOT_GIVEN
 
 

@@ -15,11 +15,12 @@ from reduction.report.outcometables import (
     exposure_table,
     fatigue_table,
     load_life_table,
+    snap_sentences,
+    snap_table,
     strength_table,
 )
 from reduction.report.outcomeview import OutcomeView, group_names, line_of
 from reduction.report.page import write_report
-from reduction.report.snaptables import snap_sentences, snap_table
 
 LBF = 4.4482216152605
 # 6500 lbf - 600 lbf a year, and 100 lbf about it

@@ -112,6 +112,7 @@ def test_nothing_is_fetched(report, rich_test):
     assert policy["content"].startswith("default-src 'none'")
 
 
+@pytest.mark.slow
 def test_every_figure_is_one_that_plotly_takes_and_has_data(report, rich_test, stepwise_test):
     figures = report(rich_test, stepwise_test).figures()
     assert len(figures) > 15

@@ -12,26 +12,24 @@ from reduction.campaign.armourspec import load_armour_case
 from reduction.campaign.wavespec import load_wave_case
 from reduction.pipeline.armour import predict_armour_case
 from reduction.pipeline.waveload import predict_wave_load
-from reduction.report.armourtables import (
-    cable_table,
-    design_table,
-    layers_table,
-    use_table,
-    wires_table,
-)
 from reduction.report.figures.armour import draw_errors, draw_wire
 from reduction.report.figures.waves import draw_section, draw_surface, draw_wave_load
 from reduction.report.htmltable import NOT_GIVEN
 from reduction.report.predictionpage import write_armour_page, write_wave_page
+from reduction.report.predictiontables import (
+    anchor_table,
+    armour_design_table,
+    cable_table,
+    extremes_table,
+    layers_table,
+    regime_table,
+    use_table,
+    wave_coefficient_table,
+    wave_table,
+    wires_table,
+)
 from reduction.report.render import about_page
 from reduction.report.style import Shown, with_prefix
-from reduction.report.wavetables import (
-    anchor_table,
-    coefficient_table,
-    extremes_table,
-    regime_table,
-    wave_table,
-)
 
 NASTY = "</script><script>alert(1)</script> & <b>"
 POUND, FOOT = 4.4482216152605, 0.3048
@@ -199,7 +197,7 @@ def test_the_anchor_force_is_sum_and_combination(wave):
 
 def test_published_coefficients_stand_beside_those_of_this_case(wave):
     """Zhang (2015), Table 2 and eq. (12)."""
-    table = coefficient_table(wave(drag_coefficient=0.9))
+    table = wave_coefficient_table(wave(drag_coefficient=0.9))
     printed = [
         ("Wiegel et al. (1957)", "1", 0.95), ("Agerschou and Edens (1965)", "1 to 1.4", 2.0),
         ("Keulegan and Carpenter (1958)", "1.34", 1.6),
@@ -320,7 +318,7 @@ def test_where_theories_hold_is_a_range_an_angle_or_nowhere(armour):
 
 
 def test_what_was_given_of_the_layers_comes_back(armour):
-    rows = [[cell.text for cell in row] for row in design_table(armour(), "si").rows]
+    rows = [[cell.text for cell in row] for row in armour_design_table(armour(), "si").rows]
     assert rows == [
         ["inner", "20.00", "2.500", "25.00", "210,000", "0.3000", "30", "right"],
         ["outer", "20.00", "2.500", "30.00", "210,000", "0.3000", "36", "left"],

@@ -12,13 +12,17 @@ from experiments import ABOUT, screening_experiment, surface_experiment
 from reduction.archive.open import open_archive
 from reduction.archive.surfaces import surfaces_to_dataset
 from reduction.archive.write import write_archive
+from reduction.report.experimenttables import form_quality_table, form_table, line_of_runs_table
 from reduction.report.figures.pull import draw_pull
-from reduction.report.formtables import form_quality_table, form_table
-from reduction.report.linetables import line_of_runs_table, line_table
 from reduction.report.page import write_report
-from reduction.report.pulltables import pull_share_table, pull_table
 from reduction.report.summary import Finding, find_faults, test_table
-from reduction.report.testtables import segment_table, summary_table
+from reduction.report.testtables import (
+    line_table,
+    pull_share_table,
+    pull_table,
+    segment_table,
+    summary_table,
+)
 from reduction.report.view import TestView
 
 test_table.__test__ = False

@@ -12,7 +12,7 @@ from reduction.pipeline.shared.weights import with_shared_steps
 from reduction.report.answers import answer_budgets, budget_table
 from reduction.report.figures.stepwise import draw_steps
 from reduction.report.instruments import NOTHING_STATED
-from reduction.report.stepwisetables import interval_table
+from reduction.report.testtables import interval_table
 from reduction.report.view import TestView
 from reduction.uncertainty.product import InstrumentErrors
 

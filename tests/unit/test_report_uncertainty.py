@@ -11,6 +11,7 @@ from experiment_views import law_experiment, view_of
 from scipy import stats
 
 from reduction.report.answers import answer_budgets, budget_sentences, budget_table
+from reduction.report.experimenttables import answer_table, surface_coefficient_table
 from reduction.report.figures.amplitude import draw_amplitude_pairs
 from reduction.report.figures.budgets import draw_budgets
 from reduction.report.figures.moduli import draw_moduli
@@ -20,18 +21,16 @@ from reduction.report.instruments import (
     instrument_sentences,
     instrument_table,
 )
-from reduction.report.linetables import line_table
 from reduction.report.section import make_section
 from reduction.report.sources import bar_look, in_order
 from reduction.report.style import Shown
-from reduction.report.surfacetables import answer_table, coefficient_table
 from reduction.report.surfaceuncertainty import (
     expanded_of_coefficients,
     expanded_of_runs,
     interval_of_surfaces,
     shared_by_runs,
 )
-from reduction.report.testtables import segment_table, summary_table
+from reduction.report.testtables import line_table, segment_table, summary_table
 from reduction.report.uncertainty import NORMAL, expand, plus_minus_of_tests, shared_sources
 from reduction.report.view import TestView
 
@@ -331,7 +330,7 @@ def test_a_coefficient_holds_what_the_runs_share_and_shows_it_beside():
     assert spread.shared[1:].max() == 0
     assert spread.all.half[1] == pytest.approx(stats.t.ppf(0.975, freedom) * random[1])
     assert shared_by_runs(view, surfaces) == ["tension_gain", "lag"]
-    table = coefficient_table(view, surfaces, 0)
+    table = surface_coefficient_table(view, surfaces, 0)
     assert table.columns[3] == "shared part of ±, coded [N]"
     assert any("tension gain, lag" in text for text in table.remarks)
     low, high = interval_of_surfaces(view, surfaces, np.zeros((1, 3)))
@@ -345,7 +344,7 @@ def test_a_coefficient_holds_what_the_runs_share_and_shows_it_beside():
 def test_surfaces_that_know_nothing_shared_have_no_such_column():
     view = view_of(law_experiment({"apparent_spring_constant": lambda f, m, a: 1000 + 50 * f}))
     bare = shared_view(view, {})
-    table = coefficient_table(bare, bare.surfaces, 0)
+    table = surface_coefficient_table(bare, bare.surfaces, 0)
     assert not any("shared" in name for name in table.columns)
     low, high = interval_of_surfaces(bare, bare.surfaces, np.zeros((1, 3)))
     k = stats.t.ppf(0.975, bare.surfaces.term_degrees_of_freedom[0].min())
@@ -385,17 +384,6 @@ def test_a_run_that_is_a_test_has_the_uncertainty_of_its_archive():
     elsewhere = SimpleNamespace(array=lambda _: np.array([1.0]), specimens=("another",))
     same = expanded_of_runs(view, "apparent_spring_constant", {names[0]: elsewhere})
     assert same.half[0] == pytest.approx(NORMAL * given[0], nan_ok=True)
-
-
-def test_a_test_of_scatter_alone_is_named_beside_one_with_what_it_shares():
-    old, new = make_view(None, is_old=True, test="T-0"), make_view()
-    said = plus_minus_of_tests([2.0], [old, new], ["segment_modulus"])
-    assert said.endswith(
-        f" Not of {old.id}: their archives do not keep what they share, and ± is their scatter"
-        " alone; reduce them again."
-    )
-    for views in ([new], [old], [new, make_view(test="T-2")]):
-        assert "reduce" not in plus_minus_of_tests([2.0], views, ["segment_modulus"])
 
 
 def test_words_of_a_bar_are_broken_and_the_figure_grows_with_their_lines():

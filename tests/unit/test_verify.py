@@ -1,22 +1,17 @@
 """What no longer belongs together is found, by its kind and under its name; nothing else is."""
 
-import json
 import os
 import shutil
-from pathlib import Path
 from typing import get_args
 
+import h5py
 import netCDF4
 import pytest
 from documentedcampaign import ROOT, copied, run
 
-from reduction.archive.seal import write_seal
 from reduction.batch.progress import Silent
 from reduction.campaign.load import load_campaign
-from reduction.verify.archives import Looked, look_at
-from reduction.verify.campaign import look_at_all, stated_campaign, verify_campaign
-from reduction.verify.finding import Finding, Kind
-from reduction.verify.sources import SourceCheck
+from reduction.verify import Finding, Kind, verify_campaign
 
 NAME = "two-tethers"
 
@@ -38,18 +33,13 @@ def place(made, tmp_path):
 @pytest.fixture
 def without_tables(monkeypatch):
     """Leave out what takes longest, where a test is not about tables and pages."""
-    monkeypatch.setattr("reduction.verify.campaign.check_tables", lambda *given: (0, []))
+    monkeypatch.setattr("reduction.verify._of_tables", lambda *given: (0, []))
     monkeypatch.setattr("reduction.batch.run.write_report", lambda *given, **more: None)
 
 
 def verified(place):
     campaign = load_campaign(place / "raw" / "campaign.toml")
-    return verify(place / "processed" / NAME, campaign)
-
-
-def verify(folder, campaign, **more):
-    archives = look_at_all(folder, progress=Silent())
-    return verify_campaign(folder, archives, campaign, progress=Silent(), **more)
+    return verify_campaign(campaign, place / "processed" / NAME, progress=Silent())
 
 
 def kinds(verification):
@@ -104,32 +94,26 @@ def test_a_bit_that_is_turned_over_in_a_raw_file_is_found(place, at, without_tab
     assert "take a copy of it that is as it was" in one.hint
 
 
-@pytest.mark.parametrize("at", [0.0, 0.01, 0.3, 0.6, 0.9, 0.999])
-def test_a_bit_that_is_turned_over_in_an_archive_is_found(place, at):
+@pytest.mark.parametrize("name", ["tension", "time", "segment_modulus", "note", "strain_bin"])
+def test_a_bit_that_is_turned_over_in_a_value_is_found(place, name, without_tables):
     path = place / "processed" / NAME / "T-1.nc"
-    assert look_at(path).findings == []
-    flip(path, at)
-    kinds = [one.kind for one in look_at(path).findings]
-    assert kinds in (["damaged"], ["changed"])  # the bytes, or the words of their sum
+    with h5py.File(path) as file:
+        chunk = file[name].id.get_chunk_info(0)
+    flip(path, (chunk.byte_offset + chunk.size // 2) / path.stat().st_size)
+    assert kinds(verified(place)) == [("T-1.nc", "damaged")]
 
 
 def test_what_rests_on_a_damaged_archive_is_not_said_to_be_sound(place):
-    flip(place / "processed" / NAME / "T-1.nc")
-    assert kinds(verified(place)) == [("T-1.nc", "damaged"), ("tables", "not_compared")]
+    path = place / "processed" / NAME / "T-1.nc"
+    path.write_bytes(path.read_bytes()[:-1000])
+    assert kinds(verified(place)) == [("T-1.nc", "damaged")]
 
 
-def test_two_archives_that_are_swapped_are_found(place, without_tables):
-    folder = place / "processed" / NAME
-    swap(folder / "T-1.nc", folder / "T-2.nc")
-    found = verified(place).findings
-    assert [one.product for one in found if one.kind == "misplaced"] == ["T-1.nc", "T-2.nc"]
-    assert "the archive 'two-tethers/T-2'; needed 'two-tethers/T-1'" in str(found[0])
-
-
-def test_swapped_archives_are_made_again_by_the_next_run(place, without_tables):
+def test_swapped_archives_are_found_and_made_again_by_the_next_run(place, without_tables):
     folder = place / "processed" / NAME
     before = {path.name: path.read_bytes() for path in folder.glob("*.nc")}
     swap(folder / "T-1.nc", folder / "T-2.nc")
+    assert kinds(verified(place)) == [("T-1.nc", "settings"), ("T-2.nc", "settings")]
     run(place / "raw" / "campaign.toml", place)
     assert {path.name: path.read_bytes() for path in folder.glob("*.nc")} == before
     assert verified(place).findings == ()
@@ -142,17 +126,13 @@ def test_two_tables_that_are_swapped_and_one_that_is_edited_are_found(place):
     lines[3] = lines[3].replace(b"1", b"2", 1)
     (tables / "moduli.csv").write_bytes(b"".join(lines))
     (tables / "specimens.csv").unlink()
-    (tables / "older.csv").write_text("a,b\n")
     found = verified(place)
     assert sorted(kinds(found)) == [
         ("tables/cycles.csv", "table"),
         ("tables/moduli.csv", "table"),
         ("tables/notes.csv", "table"),
-        ("tables/older.csv", "stray"),
         ("tables/specimens.csv", "missing"),
     ]
-    (line,) = [one.found for one in found.findings if one.product == "tables/moduli.csv"]
-    assert line == "another line 4"
 
 
 def test_another_setting_is_named_with_what_it_was(place, without_tables):
@@ -172,47 +152,26 @@ def test_other_marks_are_found_though_no_log_has_changed(place, without_tables):
     assert "strain" in found.findings[0].found
 
 
-def test_an_archive_that_another_program_changed_is_found(place, without_tables):
-    path = place / "processed" / NAME / "T-1.nc"
-    with netCDF4.Dataset(path, "a") as archive:
-        archive.comment = "seen"
-    assert ("T-1.nc", "changed") in kinds(verified(place))
-
-
-def test_an_archive_that_was_changed_and_sealed_again_breaks_the_rules_of_its_schema(place):
-    path = place / "processed" / NAME / "T-1.nc"
-    with netCDF4.Dataset(path, "a") as archive:
-        archive.createVariable("unheard_of", "f8")
-    write_seal(path)
-    (one,) = look_at(path).findings
-    assert one.kind == "damaged" and "unheard_of is not in the schema" in one.found
-
-
 @pytest.mark.parametrize(
     ("name", "value", "words"),
     [
         ("raw_file", "../../etc/passwd", "names a source outside of the folder"),
         ("raw_file", "/etc/passwd", "names a source outside of the folder"),
-        ("raw_file_bytes", "many", "does not say what it was made from"),
+        ("raw_file_bytes", "1\n2", "does not say what it was made from"),
     ],
 )
-def test_sources_that_are_none_are_told_and_not_read(place, name, value, words):
-    path = place / "processed" / NAME / "T-1.nc"
-    with netCDF4.Dataset(path, "a") as archive:
+def test_sources_that_are_none_are_told_and_not_read(place, name, value, words, without_tables):
+    with netCDF4.Dataset(place / "processed" / NAME / "T-1.nc", "a") as archive:
         archive.setncattr(name, value)
-    write_seal(path)
-    check = SourceCheck(path.parent, load_campaign(place / "raw" / "campaign.toml"))
-    (one,) = check.findings(look_at(path))
-    assert one.kind == "damaged" and words in one.problem and check.n_read == 0
+    (one,) = verified(place).findings
+    assert one.kind == "damaged" and words in one.problem
 
 
-def test_products_that_are_gone_and_such_as_nothing_asks_for_are_found(place, without_tables):
-    folder = place / "processed" / NAME
-    (folder / "T-2.nc").unlink()
+def test_products_that_are_gone_are_found(place, without_tables):
+    (place / "processed" / NAME / "T-2.nc").unlink()
     edit(place / "raw" / "tests.csv", "T-1,", "T-9,")
     edit(place / "raw" / "marks.csv", "T-1,", "T-9,")
-    found = kinds(verified(place))
-    assert {("T-2.nc", "missing"), ("T-9.nc", "missing"), ("T-1.nc", "stray")} <= set(found)
+    assert {("T-2.nc", "missing"), ("T-9.nc", "missing")} <= set(kinds(verified(place)))
 
 
 def test_a_raw_file_that_is_gone_is_found_and_not_taken_for_a_fault_of_the_settings(
@@ -220,63 +179,9 @@ def test_a_raw_file_that_is_gone_is_found_and_not_taken_for_a_fault_of_the_setti
 ):
     campaign = load_campaign(place / "raw" / "campaign.toml")
     (place / "raw" / "T-2.csv").unlink()
-    found = verify(place / "processed" / NAME, campaign)
+    found = verify_campaign(campaign, place / "processed" / NAME, progress=Silent())
     (one,) = [one for one in found.findings if one.product == "T-2.nc"]
     assert one.kind == "raw_file" and "No such file" in one.found
-
-
-def test_a_lock_and_a_file_that_was_begun_are_told_as_unfinished(place, without_tables):
-    folder = place / "processed" / NAME
-    (folder / "run.lock").write_text("{}")
-    (folder / "tables" / ".cycles.csv.1-a.part").write_text("half")
-    assert kinds(verified(place)) == [
-        ("run.lock", "unfinished"), ("tables/.cycles.csv.1-a.part", "unfinished"),
-    ]  # fmt: skip
-
-
-def test_rows_of_status_that_speak_of_other_logs_are_found(place, without_tables):
-    path = place / "processed" / NAME / "status.csv"
-    lines = path.read_text(encoding="utf-8").splitlines()
-    digest = lines[1].split(",")[-2]
-    path.write_text("\n".join([lines[0], lines[1].replace(digest, "0" * 64)]) + "\n")
-    assert kinds(verified(place)) == 2 * [("status.csv", "status")]
-    path.unlink()
-    assert kinds(verified(place)) == [("status.csv", "missing")]
-
-
-def test_a_test_that_failed_is_a_remark_and_its_older_archive_no_fault(place, without_tables):
-    path = place / "processed" / NAME / "status.csv"
-    rows = path.read_text(encoding="utf-8").replace("reduced_with_notes,0,", "failed,3,")
-    path.write_text(rows, encoding="utf-8")
-    found = verified(place)
-    assert found.findings == () and len(found.remarks) == 2
-    assert "T-1 failed in its last run" in found.remarks[0]
-
-
-def test_what_the_laboratory_states_now_is_compared_with_what_was_kept(place, without_tables):
-    path = place / "raw" / "campaign.toml"
-    text = path.read_text(encoding="utf-8")
-    path.write_text(text + '\n[report]\nclient.name = "Another"\n', encoding="utf-8")
-    assert ("report.json", "settings") in kinds(verified(place))
-    run(path, place)
-    assert verified(place).findings == ()
-    kept = place / "processed" / NAME / "report.json"
-    assert json.loads(kept.read_text(encoding="utf-8"))["client"]["name"] == "Another"
-    kept.write_text("{", encoding="utf-8")
-    assert ("report.json", "damaged") in kinds(verified(place))
-
-
-def test_without_a_campaign_the_products_are_compared_with_each_other_alone(place):
-    folder = place / "processed" / NAME
-    flip(place / "raw" / "T-1.csv")
-    found = verify(folder, None, unknown="it is lost")
-    assert kinds(found) == [("campaign.toml", "not_compared")]
-    assert found.findings[0].found == "it is lost" and found.n_tables > 5
-    swap(folder / "T-1.nc", folder / "T-2.nc")
-    found = verify(folder, None)
-    assert [one.product for one in found.findings if one.kind == "misplaced"] == [
-        "T-1.nc", "T-2.nc",
-    ]  # fmt: skip
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root reads every file")
@@ -290,17 +195,10 @@ def test_a_finding_is_one_line_in_the_form_of_errors():
     assert str(Finding("T-1.nc", "damaged", "it is cut", "a", "b", "Look.")) == (
         "T-1.nc: it is cut; found a; needed b. Look."
     )
-    assert str(Finding("T-1.nc", "damaged", "it is cut")) == "T-1.nc: it is cut"
-
-
-def test_the_campaign_is_that_of_most_archives_and_damaged_ones_say_nothing():
-    def looked(campaign):
-        attributes = None if campaign is None else {"campaign": campaign}
-        return Looked(Path("T-1.nc"), attributes)
-
-    of_two = [looked(name) for name in (None, "other", "own", None, "own")]
-    assert stated_campaign(of_two) == "own"
-    assert stated_campaign([looked(None)]) == stated_campaign([]) == ""
+    assert (
+        str(Finding("T-1.nc", "damaged", "it is cut"))
+        == "T-1.nc: it is cut. Run the campaign again."
+    )
 
 
 def test_every_kind_is_explained_on_the_page():

@@ -63,14 +63,15 @@ function show() {
     byId("answer-title").textContent = line ? line.name : "No line is so";
     said.append(element("p", line ? "Nothing of this line can be looked up." : "No line has all of these: take a filter or a word away."));
     if (line) showAbsent(line);
-    byId("type").hidden = true;
+    byId("decks").hidden = true;
     brief("");
     return;
   }
-  byId("type").hidden = false;
+  byId("decks").hidden = !isExported(line);
   byId("answer-title").textContent = `${titleOf(asked.quantity)}: ${line.name}`;
   keepLink(asked);
   byId("command").textContent = commandOf(line, asked);
+  byId("export").textContent = exportCommandsOf(line, asked).join("\n");
   if (asked.bad) {
     said.append(element("p", `${asked.bad.replaceAll("_", " ")} is no number`, { class: "refused-title" }));
     brief("Not a number");
@@ -92,7 +93,6 @@ function show() {
   }
   showCharts(line, asked, found);
   showNotes(line, asked, found);
-  showType(line, asked, found);
 }
 
 function showCharts(line, asked, found) {

@@ -10,6 +10,11 @@ function svg(name, attributes = {}, text = null) {
   return element;
 }
 
+function evenly(low, high, count) {
+  const step = (high - low) / (count - 1);
+  return Array.from({ length: count }, (_, place) => (place === count - 1 ? high : low + place * step));
+}
+
 // Round numbers between two ends, about as many as asked for.
 function ticksOf(low, high, count) {
   const raw = (high - low) / count, size = 10 ** Math.floor(Math.log10(raw));

@@ -18,11 +18,6 @@ function lineOf(line, key, group) {
     surfaces: Object.fromEntries(Object.entries(line.surfaces).map(([name, one]) => (
       [name, components({ ...decoded(one, [...ofSurface, "component"]), component: one.component })]))),
     curves: line.curves.map((one) => components({ ...decoded(one, [...ofCurve, "component"]), component: one.component })),
-    export: Object.fromEntries(Object.entries(line.export).map(([name, one]) => [name, "refused" in one ? one : {
-      ...one,
-      ...Object.fromEntries(["tested", "diameter", "linear_density", "wet_linear_density"]
-        .map((field) => [field, numbersOf(one[field])])),
-    }])),
     is_synthetic: line.notes.includes("synthetic data"),
   };
 }

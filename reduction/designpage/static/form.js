@@ -9,7 +9,7 @@ const FILTERS = [
   ["diameter", "Diameter", (line) => diameterOf(line)],
 ];
 // what the user has typed, by the name of a level; the rest follows the line
-const STATE = { levels: {}, stated: {}, statedOf: null };
+const STATE = { levels: {} };
 
 function element(name, text = null, attributes = {}) {
   const made = document.createElement(name);

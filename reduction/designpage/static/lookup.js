@@ -1,6 +1,6 @@
 // A design value of a line, as reduction.lookup.line.look_up gives it, at one point.
 
-const DASHPOT = "dashpot_coefficient";
+const DASHPOT = "dashpot_coefficient", SPRING = "dissipation_spring_constant", TIME = "relaxation_time";
 
 function distinct(values) {
   return [...new Set(values)];
@@ -145,8 +145,8 @@ function told(line, of, points, { loads, words, more, is_untested, freedom }) {
   const isCurve = "variable" in of;
   if (words[0] || words[1]) {
     notes.push(!isCurve && Number.isFinite(of.line_scatter)
-      ? `lines of this kind differ among each other by about ${fixed(100 * of.line_scatter, 0)} % `
-        + `(CG-D-39-80, sec. 4.4.1), taken with ${fixed(of.n_lines, 0)} lines and the degrees of `
+      ? `lines of this kind differ among each other by about ${(100 * of.line_scatter).toFixed(0)} % `
+        + `(CG-D-39-80, sec. 4.4.1), taken with ${of.n_lines.toFixed(0)} lines and the degrees of `
         + "freedom of the surface: in the intervals of the kind and of another line alone"
       : `the interval is of ${words[0] || words[1]}: how lines differ among each other is not in it`);
   } else if (isCurve) {
@@ -198,8 +198,7 @@ function isEven(found) {
 
 // N = K_1 tau: what both share by its sign, what is of each alone as independent.
 function dashpotOf(line, levels, flag) {
-  const [spring, time] = ["dissipation_spring_constant", "relaxation_time"]
-    .map((name) => lookUp(line, name, levels, { flag }));
+  const [spring, time] = [SPRING, TIME].map((name) => lookUp(line, name, levels, { flag }));
   const shared = new Map();
   [[spring, time.value], [time, spring.value]].forEach(([one, by]) => {
     one.component.forEach(([source, of, number, freedom], place) => {

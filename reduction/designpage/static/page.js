@@ -88,12 +88,12 @@ function start() {
   for (const one of document.querySelectorAll("input[name=units]")) {
     one.addEventListener("change", () => refill());
   }
-  byId("type").addEventListener("toggle", show);
   byId("ask").addEventListener("submit", (event) => event.preventDefault());
   byId("copy-link").addEventListener("click", () => {
     const asked = query();
     copy(location.href.split("#")[0] + (asked ? linkOf(asked) : ""), "link");
   });
+  byId("copy-export").addEventListener("click", () => copy(byId("export").textContent, "commands"));
   byId("print").addEventListener("click", () => window.print());
   for (const one of document.querySelectorAll('a[href="#answer"]')) {
     one.addEventListener("click", (event) => {

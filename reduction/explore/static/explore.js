@@ -8,20 +8,20 @@ const foldAgain = () => {};
 (() => {
   const token = new URLSearchParams(location.search).get("token") ?? "";
   const part = (id) => document.getElementById(id);
-  const OPEN = ["Trim and cycles", "Modulus windows", "Splice correction", "Steps"];
+  const OPEN = ["Trim and cycles", "Modulus windows", "Splice correction", "Steps"]; // groups of settings
   const FROM = {
     test: "stated for this test", defaults: "from [defaults]", table: "stands in the table of tests: change it there",
     default: "not stated: the default", found: "not stated: found in the record",
   };
-  const CURVES = /^(modulus|difference)-|^cycle$/;
   const PAUSE = 150; // a slider is at rest for so long before a change is asked for, in ms
   const wide = matchMedia("(min-width: 1100px)"); // settings stand beside the answers, and not above them
   const unsaved = new Map(); // changes by test, and in them texts by key
-  const figures = new Map();
   const fields = new Map();
   let base = new Map(); // what campaign.toml says of the test that is shown, by key
-  let shown = null;
-  let newest = 0;
+  let standing = null; // what it gives
+  let shown = null; // the same, or what the changes give
+  let isBusy = false;
+  let isWanted = false; // something newer, while the last is worked on
   let timer = 0;
 
   const make = (name, text = "", attributes = {}) => {
@@ -50,17 +50,6 @@ const foldAgain = () => {};
     } catch {
       return { error: `the explorer answered ${answer.status}` };
     }
-  };
-
-  // a long log is told of while it is worked on, and nothing hangs
-  const asked = async (path, document, number) => {
-    let found = await post(path, document);
-    while (found.state === "running") {
-      if (number !== undefined && number !== newest) return null;
-      say(`${found.stage} … ${found.seconds.toFixed(0)} s`);
-      found = await post("/api/job", { job: found.job });
-    }
-    return number === undefined || (number === newest && found.state !== "superseded") ? found : null;
   };
 
   const setTests = (campaign) => {
@@ -174,73 +163,89 @@ const foldAgain = () => {};
     settings.forEach(setField);
   };
 
-  const setAnswers = () => {
-    const table = shown?.answers;
-    if (!table) {
-      part("answers").replaceChildren(make("p", "There is no number to show."));
-      return;
+  // headings of the report's section with what stands below each, and its text by which a change is seen
+  const partsOf = (html) => {
+    const parts = new Map();
+    const holder = make("template");
+    holder.innerHTML = html; // of the report, where every name is escaped; the page runs no script out of it
+    let name = null;
+    for (const child of [...holder.content.querySelector("section")?.children ?? []]) {
+      if (child.matches(".notes, .provenance")) name = child.className;
+      if (child.matches("h3")) name = child.textContent;
+      if (name === null) continue;
+      const own = parts.get(name) ?? { nodes: [], text: "", heading: null };
+      parts.set(name, own);
+      if (child.matches("h3")) own.heading = child;
+      else own.nodes.push(child);
+      own.text += child.outerHTML.replaceAll(/\b(standing|changed)-/g, "");
     }
-    const isMoved = (cells) => Number(cells[4].value) !== 0 || !cells[4].value && cells[1].text !== cells[2].text;
-    const picked = shown.diff && part("moved").checked ? table.rows.filter(isMoved) : table.rows;
-    const box = make("div", "", { class: "table compact", role: "group", tabindex: "0", "aria-label": table.caption });
-    const grid = make("table");
-    const caption = make("caption");
-    const left = table.rows.length - picked.length;
-    caption.append(make("span", left ? `${table.caption} ${left} of ${table.rows.length} numbers do not move.` : table.caption));
-    const head = make("tr");
-    head.append(...table.columns.map((name, place) => make("th", name, { scope: "col", class: table.numbers[place] ? "number" : "" })));
-    const body = make("tbody");
-    for (const cells of picked) {
-      const row = make("tr");
-      row.append(...cells.map((cell, place) => place === 0
-        ? make("th", cell.text, { scope: "row" })
-        : make("td", cell.text, { class: table.numbers[place] ? "number" : "", "data-value": cell.value })));
-      if (isMoved(cells)) row.classList.add("moved");
-      body.append(row);
-    }
-    const top = make("thead");
-    top.append(head);
-    grid.append(caption, top, body);
-    box.append(grid);
-    part("answers").replaceChildren(box, ...table.remarks.map((text) => make("p", text, { class: "small under" })));
+    return parts;
   };
 
-  const makeSlot = (key) => {
-    const slot = {
-      figure: make("figure", "", { id: `figure-${key}` }),
-      plot: make("div", "", { class: "plot", role: "group", "data-figure": `${key}-data` }),
-      caption: make("figcaption"),
-      data: make("script", "", { type: "application/json", id: `${key}-data` }),
+  // rows are the same where their words are; numbers that another run of the report would print are marked
+  const markMoved = (before, after) => {
+    const rowsOf = (table) => {
+      const rows = new Map();
+      for (const row of table?.rows ?? []) {
+        const words = [...row.cells].filter((cell) => !cell.matches(".number")).map((cell) => cell.textContent).join("|");
+        rows.set(rows.has(words) ? `${words}|${rows.size}` : words, row);
+      }
+      return rows;
     };
-    slot.figure.append(slot.plot, slot.caption, slot.data);
-    figures.set(key, slot);
-    return slot;
+    const tables = [...before.querySelectorAll("table")];
+    [...after.querySelectorAll("table")].forEach((table, place) => {
+      const old = rowsOf(tables[place]);
+      for (const [words, row] of rowsOf(table)) {
+        [...row.cells].forEach((cell, column) => {
+          const was = old.get(words)?.cells[column];
+          cell.classList.toggle("moved", Boolean(was) && was.textContent !== cell.textContent);
+        });
+      }
+    });
   };
 
-  // a figure keeps its place and what a reader zoomed; only its lines change
-  const setFigures = (wanted) => {
-    const keys = new Set(wanted.map((one) => one.key));
-    figures.forEach((slot, key) => { slot.figure.hidden = !keys.has(key); });
-    for (const one of wanted) {
-      const slot = figures.get(one.key) ?? makeSlot(one.key);
-      slot.figure.classList.toggle("wide", one.wide);
-      slot.plot.setAttribute("aria-label", one.label);
-      slot.plot.dataset.height = one.height;
-      if (!drawn.has(slot.plot)) slot.plot.style.minHeight = `${one.height}px`;
-      slot.caption.textContent = one.caption;
-      slot.data.textContent = one.json;
+  const sideOf = (name, words, part) => {
+    const side = make("div", "", { class: name });
+    side.append(make("p", words, { class: "side" }), ...part?.nodes ?? [make("p", "There is no such part.", { class: "small" })]);
+    return side;
+  };
+
+  const blockOf = (name, old, now) => {
+    const block = make("div", "", { class: "part" });
+    const heading = (now ?? old).heading ?? old?.heading;
+    if (shown === standing) {
+      block.append(...heading ? [heading] : [], ...old.nodes);
+    } else if (old && now && old.text === now.text) {
+      const same = make("details", "", { class: "same" });
+      if (heading) same.append(make("summary", `${heading.textContent}: nothing moved`), ...old.nodes);
+      block.append(...heading ? [same] : old.nodes);
+    } else {
+      const pair = make("div", "", { class: "pair" });
+      pair.append(sideOf("old", "As it is", old), sideOf("new", "Changed", now));
+      block.append(...heading ? [heading] : [], pair);
+      markMoved(pair.firstChild, pair.lastChild);
     }
-    for (const [id, isOwn] of [["curves", true], ["figures", false]]) {
-      const own = wanted.filter((one) => CURVES.test(one.key) === isOwn).map((one) => figures.get(one.key).figure);
-      const there = [...part(id).children].filter((figure) => !figure.hidden);
-      if (own.some((figure, place) => figure !== there[place])) part(id).append(...own);
+    return block;
+  };
+
+  // what was drawn of the file on the disk keeps its place and what a reader zoomed
+  const setParts = () => {
+    const before = new Set(part("parts").querySelectorAll(".plot"));
+    const names = new Set([...shown.parts.keys(), ...standing.parts.keys()]);
+    const isOpen = new Set([...part("parts").querySelectorAll(".same[open] > summary")].map((one) => one.textContent));
+    const blocks = [...names].map((name) => blockOf(name, standing.parts.get(name), shown.parts.get(name)));
+    part("parts").replaceChildren(...blocks.length ? blocks : [make("p", "There is nothing to show.")]);
+    for (const one of part("parts").querySelectorAll(".same > summary")) one.parentElement.open = isOpen.has(one.textContent);
+    for (const plot of before) {
+      if (plot.isConnected) {
+        if (drawn.has(plot)) drawAgain(plot); // as wide as its column is now
+        continue;
+      }
+      near.unobserve(plot);
+      [inSight, stale].forEach((one) => one.delete(plot));
+      if (drawn.has(plot)) forget(plot);
     }
-    part("curves-section").hidden = !wanted.some((one) => CURVES.test(one.key));
-    for (const one of wanted) {
-      const { plot } = figures.get(one.key);
-      near.observe(plot);
-      if (drawn.has(plot)) drawAgain(plot);
-    }
+    for (const plot of part("parts").querySelectorAll(".plot")) near.observe(plot);
   };
 
   const mark = (error) => {
@@ -250,71 +255,74 @@ const foldAgain = () => {};
 
   const show = (found) => {
     shown = found;
-    if (!changes().size) base = new Map(found.settings.map((one) => [one.key, one.value]));
+    shown.parts ??= partsOf(found.section);
     setSettings(found.settings);
-    setAnswers();
-    setFigures(found.figures);
+    setParts();
     mark(found.error);
-    part("disk").hidden = !found.is_changed_on_disk;
-    fill("standing", found.is_standing ? "" : "The archive of this test is of other settings, another log or another version than campaign.toml now: reduction run brings it up to date. What is shown is reduced from the raw log.");
-    part("notes-section").hidden = !found.notes.length;
-    part("notes-summary").textContent = `Every note of this test as changed (${found.notes.length})`;
-    part("notes").replaceChildren(...found.notes.map((text) => make("li", text)));
-    const long = found.is_slow ? `; a log of ${found.rows.toLocaleString("en")} rows takes so long for each change` : "";
+    fill("standing", standing.is_standing ? "" : "The archive of this test is of other settings, another log or another version than campaign.toml now: reduction run brings it up to date. What is shown is reduced from the raw log.");
     const many = changes().size;
-    say(`${many ? `${many} ${many === 1 ? "setting" : "settings"} changed, not saved. ` : "As campaign.toml is. "}Reduced in ${found.seconds.toFixed(1)} s${long}.`);
+    say(`${many ? `${many} ${many === 1 ? "setting" : "settings"} changed, not saved. ` : "As campaign.toml is. "}Reduced in ${found.seconds.toFixed(1)} s.`);
+  };
+
+  const refuse = (error) => {
+    if (shown?.test !== test()) part("parts").replaceChildren();
+    shown = null;
+    mark(error);
+    say("This cannot be reduced; what is shown is of before.");
+    for (const [key, { row, from }] of fields) {
+      row.classList.toggle("changed", changes().has(key));
+      if (changes().has(key)) from.textContent = "changed here, not saved";
+    }
+  };
+
+  // what campaign.toml gives is asked for once, and what the changes give beside it
+  const asked = async () => {
+    const id = test();
+    if (standing?.test !== id) {
+      const found = await post("/api/change", { test: id, changes: {} });
+      if (!found.settings) return found;
+      standing = found;
+      standing.parts = partsOf(found.section);
+      base = new Map(found.settings.map((one) => [one.key, one.value]));
+    }
+    return changes().size ? post("/api/change", { test: id, changes: Object.fromEntries(changes()) }) : standing;
   };
 
   const change = async () => {
     clearTimeout(timer);
-    const number = ++newest;
+    isWanted = true;
+    if (isBusy) return;
+    isBusy = true;
     document.body.classList.add("busy");
-    say("at work …");
-    const found = await asked("/api/change", { test: test(), changes: Object.fromEntries(changes()) }, number);
-    if (!found) {
-      // what a page beside this one asked for was newer
-      if (number === newest) {
-        document.body.classList.remove("busy");
-        say("Another page of this explorer was quicker. Move a setting, or choose the test, again.");
-      }
-      return;
+    let found;
+    const begun = Date.now();
+    say("reducing …");
+    const clock = setInterval(() => say(`reducing … ${Math.round((Date.now() - begun) / 1000)} s`), 1000);
+    while (isWanted) {
+      isWanted = false;
+      found = await asked();
     }
+    clearInterval(clock);
+    isBusy = false;
     document.body.classList.remove("busy");
     if (found.settings) show(found);
-    else {
-      shown = null;
-      mark(found.error);
-      say("This cannot be reduced; the figures are those of before.");
-      for (const [key, { row, from }] of fields) {
-        row.classList.toggle("changed", changes().has(key));
-        if (changes().has(key)) from.textContent = "changed here, not saved";
-      }
-    }
+    else refuse(found.error);
+    part("disk").hidden = !found.error?.includes("changed on the disk");
     part("undo").disabled = changes().size === 0;
     part("review").disabled = !(shown && shown.diff);
   };
 
-  // the first change of a test is none: it says what campaign.toml has
-  const open = async () => {
-    const kept = changes();
-    unsaved.delete(test());
-    await change();
-    if (kept.size && shown) {
-      unsaved.set(test(), kept);
-      await change();
-    }
-  };
-
   const start = async (path) => {
-    const campaign = await asked(path, {});
+    const campaign = await post(path, {});
     if (!campaign.tests) {
       fill("error", campaign.error);
       say("The campaign cannot be shown.");
       return;
     }
     fill("error", "");
+    standing = null;
     setTests(campaign);
-    if (campaign.tests.length) await open();
+    if (campaign.tests.length) await change();
     else say("The campaign has no tests.");
   };
 
@@ -330,7 +338,7 @@ const foldAgain = () => {};
   const write = async () => {
     part("write").disabled = true;
     const { before, after } = shown;
-    const found = await asked("/api/save", { test: test(), changes: Object.fromEntries(changes()), before, after });
+    const found = await post("/api/save", { test: test(), changes: Object.fromEntries(changes()), before, after });
     part("write").disabled = false;
     part("save").close();
     if (found.error) {
@@ -339,14 +347,14 @@ const foldAgain = () => {};
       return;
     }
     unsaved.delete(test());
-    await open();
+    standing = null;
+    await change();
     say(`Written: ${found.saved}. Run the campaign to bring the archive up to date.`);
   };
 
-  part("test").addEventListener("change", open);
-  part("moved").addEventListener("change", setAnswers);
+  part("test").addEventListener("change", change);
   part("settings").addEventListener("submit", (sent) => sent.preventDefault());
-  part("undo").addEventListener("click", () => { unsaved.delete(test()); open(); });
+  part("undo").addEventListener("click", () => { unsaved.delete(test()); change(); });
   part("review").addEventListener("click", review);
   part("write").addEventListener("click", write);
   part("cancel").addEventListener("click", () => part("save").close());

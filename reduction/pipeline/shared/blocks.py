@@ -11,8 +11,6 @@ import numpy as np
 from reduction.cycles.product import Cycles
 from reduction.product import ReducedTest
 
-__all__ = ["blocks_of_cycles", "cycles_of_test"]
-
 # every component has a row of each quantity of each cycle
 _BLOCK = 1 << 14
 

@@ -28,8 +28,6 @@ from reduction.settings import CycleSettings
 from reduction.uncertainty.join import merged, renamed, stacked
 from reduction.uncertainty.product import Contributions, InstrumentErrors
 
-__all__ = ["contributions_of_test", "shared_uncertainty_of_cycles"]
-
 # an archive has them for each cycle, not for the means of a test
 _OF_CYCLES_ALONE = ("peak_tension", "valley_tension")
 

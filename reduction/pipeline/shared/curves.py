@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import median_filter
+import scipy
 
 from reduction.moduli.product import ModulusCurves, Segments
 from reduction.pipeline.shared.loops import speed_ratio
@@ -15,8 +15,6 @@ from reduction.uncertainty.curves import curve_contributions, strain_rate_of_wav
 from reduction.uncertainty.field import error_field
 from reduction.uncertainty.product import Contributions, InstrumentErrors
 from reduction.uncertainty.segments import segment_contributions
-
-__all__ = ["of_curves", "of_segments", "rise_rates", "strain_rates"]
 
 _SMOOTHED = 5  # bins: a slope of the modulus from bin to bin is mostly scatter
 
@@ -65,7 +63,7 @@ def rise_rates(test: ReducedTest, index: int) -> Floats:
         return np.stack([[still, still], [still, still]])
     reach, time = at[inside], test.record.time[place[inside]]
     with np.errstate(divide="ignore"):
-        found = median_filter(
+        found = scipy.ndimage.median_filter(
             np.gradient(reach) / np.gradient(time), size=_SMOOTHED, mode="nearest"
         )
     rate = np.interp(at, reach, np.where(np.isfinite(found), found, 0.0))

@@ -33,8 +33,6 @@ from reduction.uncertainty.points import (
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 from reduction.uncertainty.strength import over_strength
 
-__all__ = ["of_cycles", "of_ends", "of_slips"]
-
 _DYNAMIC = {
     "dynamic_stiffness": "apparent_spring_constant",
     "dynamic_mean_tension": "mean_tension",

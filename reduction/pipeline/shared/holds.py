@@ -20,8 +20,6 @@ from reduction.uncertainty.join import merged, stacked
 from reduction.uncertainty.product import Contributions, InstrumentErrors
 from reduction.uncertainty.strength import over_strength
 
-__all__ = ["of_holds", "of_pairs"]
-
 
 def of_holds(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
     """Every hold of a test, along one axis; an empty list where there is none."""

@@ -10,8 +10,6 @@ from reduction.cycles.product import Cycles
 from reduction.record import Floats, Record
 from reduction.uncertainty.lag import LagEstimate, lag_by_turns
 
-__all__ = ["lag_of_test"]
-
 _NOTED = 2.0  # standard uncertainties
 
 

@@ -20,8 +20,6 @@ from reduction.uncertainty.line import line_contributions
 from reduction.uncertainty.loops import loop_contributions
 from reduction.uncertainty.product import Contributions, InstrumentErrors
 
-__all__ = ["of_dynamic_modulus", "of_line", "of_loops", "speed_ratio"]
-
 Reading = Literal["amplitude", "fundamental"]
 _LOOP = (
     "frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",

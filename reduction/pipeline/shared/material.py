@@ -19,8 +19,6 @@ from reduction.uncertainty.join import merged, stacked
 from reduction.uncertainty.points import section_contributions, stress_contributions, with_diameter
 from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
 
-__all__ = ["of_elastomers", "of_material"]
-
 _LENGTHS = ("relaxed_free_length", "gauge_length")
 
 

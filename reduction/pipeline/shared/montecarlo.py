@@ -22,8 +22,6 @@ from reduction.uncertainty.combine import (
 from reduction.uncertainty.montecarlo import PARAMETERS, LineDraws, draw_line
 from reduction.uncertainty.product import LINE_METHODS, LineSpread
 
-__all__ = ["with_line_spread"]
-
 
 def with_line_spread(test: ReducedTest, cycles: CycleSettings) -> ReducedTest:
     """Put the uncertainty of its line, by the propagation that holds, to a test.

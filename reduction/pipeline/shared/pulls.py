@@ -18,8 +18,6 @@ from reduction.uncertainty.product import Contributions, InstrumentErrors
 from reduction.uncertainty.pullfit import fit_contributions
 from reduction.uncertainty.strength import over_strength
 
-__all__ = ["PullOrigin", "compliance_slope", "of_pull", "of_rest"]
-
 _STEP = 1e-3  # of the range of a pull, for the slope of its compliance
 
 

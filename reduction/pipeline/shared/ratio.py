@@ -11,8 +11,6 @@ from reduction.record import Floats
 from reduction.uncertainty.product import Contributions
 from reduction.uncertainty.ratio import ratio_contributions, with_shared_interval
 
-__all__ = ["of_ratios", "with_shared_ratios"]
-
 
 def of_ratios(test: ReducedTest, found: Contributions) -> list[Contributions]:
     """Every ratio, along one axis; ``found`` holds the contributions to the moduli.

@@ -7,12 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from reduction.experiment import ExperimentResult, SharedSurfaces
-from reduction.pipeline.runcheck import listed
 from reduction.record import Bools, Floats
 from reduction.surface.product import ResponseSurfaces
 from reduction.uncertainty.surface import coefficient_contributions
-
-__all__ = ["with_shared_surfaces"]
 
 _TRANSFORMED = ("log_", "box_cox_")
 
@@ -28,9 +25,7 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
     Returns
     -------
     result : ExperimentResult
-        With ``shared``; as it was where there are no surfaces or nothing is shared.  A surface with
-        a run of which it is not known what it shares has no such part, and so no uncertainty: that
-        run would count as exact.
+        With ``shared``; as it was where there are no surfaces or nothing is shared.
     """
     surfaces, shared = result.surfaces, result.runs.shared
     if surfaces is None or shared is None or not shared.component:
@@ -43,14 +38,10 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
             level[..., place] = shared.values[name] / half[place]
     blocks = result.runs.specimen if len(set(result.runs.specimen)) > 1 else None
     names = None if blocks is None else np.unique(blocks, return_inverse=True)[1]
-    without = np.zeros(n_runs, dtype=bool)
     rows = []
     for index, name in enumerate(surfaces.response_names):
         of = _measured(name)
         own = shared.values[of] * _slope_of_scale(result, surfaces, index, of)
-        unknown = np.isnan(shared.values[of]).any(axis=0) | np.isnan(level).any(axis=(0, 2))
-        unknown &= np.isfinite(result.runs.response[result.response_names.index(of)])
-        without |= unknown
         several = _of_several_runs(own, level)
         rows.append(
             coefficient_contributions(
@@ -58,16 +49,12 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
                 response=own * several[:, None], level=level * several[:, None, None],
                 blocks=names,
             )
-            if np.isfinite(surfaces.coefficient[index]).all() and not unknown.any()
+            if np.isfinite(surfaces.coefficient[index]).all()
             else np.full((n_components, surfaces.coefficient.shape[1]), np.nan)
         )  # fmt: skip
     coded = np.stack(rows, axis=1)
-    notes = _without_shared(
-        [one for one, is_one in zip(result.runs.names, without, strict=True) if is_one]
-    )
     return replace(
         result,
-        notes=(*result.notes, *notes),
         shared=SharedSurfaces(
             component=shared.component,
             coefficient=coded,
@@ -80,16 +67,6 @@ def _of_several_runs(response: Floats, level: Floats) -> Bools:
     """Errors of more than one run: that of one (its temperature) is in the scatter already."""
     moves = (np.nan_to_num(response) != 0) | (np.nan_to_num(level) != 0).any(axis=2)
     return np.asarray(moves.sum(axis=1) > 1)
-
-
-def _without_shared(runs: list[str]) -> tuple[str, ...]:
-    if not runs:
-        return ()
-    return (
-        "refused: uncertainty of the surfaces: what it shares with the other runs, as a load cell, "
-        f"is not kept in the archive of {listed(runs)}, which would count as exact: reduce it "
-        "again",
-    )
 
 
 def _measured(name: str) -> str:

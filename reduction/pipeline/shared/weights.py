@@ -13,8 +13,6 @@ from reduction.uncertainty.points import section_contributions
 from reduction.uncertainty.product import Contributions, InstrumentErrors
 from reduction.uncertainty.weights import stepwise_contributions
 
-__all__ = ["with_shared_steps"]
-
 _OF_READINGS = ("tension", "strain")
 _MODULI = ("interval_modulus", "secant_modulus")
 

@@ -12,8 +12,6 @@ from reduction.report.style import Kind, marker, plot_text, shown
 from reduction.report.uncertainty import expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView, all_specimens, any_synthetic
 
-__all__ = ["draw_amplitude_pairs"]
-
 
 def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
     """Draw dynamic modulus, loss factor and energy against mean strain, bars of amplitude."""

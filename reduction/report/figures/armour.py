@@ -15,8 +15,6 @@ from reduction.report.figure import Figure, Trace, axis, line, make_figure
 from reduction.report.style import COLOURS, Shown, plot_text, shown
 from reduction.units import UnitSystem
 
-__all__ = ["THEORY_WORDS", "draw_errors", "draw_wire", "moment_unit", "of_layers"]
-
 THEORY_WORDS = {
     "small": "small angles",
     "intermediate": "intermediate angles",

@@ -12,8 +12,6 @@ from reduction.report.figure import Figure, Trace, make_figure, named_axis, plai
 from reduction.report.sources import bar_look, is_hatched, source_words
 from reduction.report.view import TestView
 
-__all__ = ["draw_budgets", "draw_coefficient_budgets"]
-
 _HATCHED = " Hatched: of the same thing as the plain bar of that colour."
 _PER_LINE, _AROUND = 17, 110
 """Height of a line of the words of a bar, and of title and axis. [px]"""

@@ -35,8 +35,6 @@ from reduction.report.view import TestView, all_specimens, any_synthetic
 from reduction.units import UnitSystem
 from reduction.vocabulary import BRANCH_NAMES, BRANCH_VALUES
 
-__all__ = ["draw_all_moduli", "draw_parts", "draw_static_dynamic"]
-
 
 def draw_all_moduli(tests: Sequence[TestView]) -> list[Figure]:
     """Draw the modulus of every test in one figure a specimen, a colour and a marker a test."""

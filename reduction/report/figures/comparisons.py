@@ -14,8 +14,6 @@ from reduction.report.sources import source_words
 from reduction.report.style import COLOURS, DASHES, SYMBOLS, Shown, colour, shown
 from reduction.report.uncertainty import NORMAL, expand, factor_words
 
-__all__ = ["draw_all_comparisons", "draw_comparison", "draw_cycle_bias", "draw_error"]
-
 _PREDICTED, _MEASURED, _CALIBRATED, _GREY = COLOURS[0], COLOURS[1], COLOURS[2], COLOURS[6]
 _ALPHA = 0.22
 _EVENT_SYMBOLS = {"pick_up": SYMBOLS[2], "working": SYMBOLS[0], "break": SYMBOLS[5]}

@@ -25,8 +25,6 @@ from reduction.surface.bands import evaluate_surfaces
 from reduction.surface.product import ResponseSurfaces
 from reduction.surface.tested import ABOVE_LEVERAGE
 
-__all__ = ["draw_cube"]
-
 _GREY = "#8C8C8C"
 _DEPTH = (0.46, 0.34)
 """By which the back of the cube is shifted right and up."""

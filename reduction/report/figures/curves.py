@@ -13,8 +13,6 @@ from reduction.report.style import COLOURS, SYMBOLS, colour, shown
 from reduction.report.uncertainty import NORMAL, factor_words
 from reduction.units import UnitSystem
 
-__all__ = ["draw_assembly", "draw_composite", "draw_stiffness"]
-
 _CURVE, *_PIECES = COLOURS
 _DASHES = {"cyclic": "solid", "static": "dash", "first-loading": "dot"}
 

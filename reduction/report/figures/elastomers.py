@@ -17,8 +17,6 @@ from reduction.report.style import colour, shown
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_NAMES
 
-__all__ = ["draw_mooney"]
-
 FIT_POINTS = 60
 LEAST_STRAIN = 0.05
 """Below this the reduced stress is a small number over a small number. [1]"""

@@ -11,8 +11,6 @@ from reduction.report.figure import Figure, Trace, axis, line, make_figure
 from reduction.report.style import COLOURS, Kind, colour, marker, shown
 from reduction.report.view import TestView
 
-__all__ = ["draw_holds"]
-
 FIT_POINTS = 120
 _FIT = COLOURS[6]
 """Of a fit upon any colour, on white and on black."""

@@ -23,10 +23,8 @@ from reduction.report.figures.hosemarks import (
     percent,
     strain_axis,
 )
-from reduction.report.hoseview import DEGREES, HoseView
-from reduction.report.style import Shown, plot_text, shown
-
-__all__ = ["draw_chart", "draw_limits"]
+from reduction.report.hoseview import HoseView
+from reduction.report.style import DEGREES, Shown, plot_text, shown
 
 _FAMILY = (45.0, 50.0, float(np.degrees(NEUTRAL_ANGLE)), 58.0, 61.0, 64.0, 66.0, 68.0, 70.0, 72.0)
 """Wrap angles of the chart. [deg]"""

@@ -12,11 +12,6 @@ from reduction.report.hoseview import EVENT_WORDS, HoseView, OneEvent
 from reduction.report.style import COLOURS, Shown, symbol
 from reduction.report.uncertainty import NORMAL
 
-__all__ = [
-    "CORDS", "GREY", "NET", "RUBBER", "SLACKEST", "SYMBOLS", "event_marks", "interval", "is_drawn",
-    "kept_figure", "percent", "slack_zone", "strain_axis",
-]  # fmt: skip
-
 NET, CORDS, RUBBER = COLOURS[0], COLOURS[1], COLOURS[2]
 GREY = COLOURS[6]
 SYMBOLS = {

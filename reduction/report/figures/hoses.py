@@ -29,11 +29,9 @@ from reduction.report.figures.hosemarks import (
     slack_zone,
     strain_axis,
 )
-from reduction.report.hoseview import DEGREES, SOURCE_WORDS, HoseView
-from reduction.report.style import COLOURS, colour, shown
+from reduction.report.hoseview import SOURCE_WORDS, HoseView
+from reduction.report.style import COLOURS, DEGREES, colour, shown
 from reduction.report.uncertainty import NORMAL, factor_words
-
-__all__ = ["draw_all_hoses", "draw_budget", "draw_pressure", "draw_tension"]
 
 _LEAST_SHARE = 2.0
 """A source that never has so much of the variance stands with the others. [%]"""

@@ -8,16 +8,13 @@ from typing import Any
 import numpy as np
 
 from reduction.record import Bools, Floats, Integers
-from reduction.report.experimentview import ExperimentView, response_unit
+from reduction.report.experimentview import FORM_WORDS, ExperimentView, response_unit
 from reduction.report.figure import Figure, Trace, axis, line, make_figure, plain_numbers
-from reduction.report.formtables import FORM_WORDS
 from reduction.report.htmltable import number_text
 from reduction.report.style import COLOURS, SYMBOLS, colour, plot_text, shown
 from reduction.report.surfaceuncertainty import expanded_of_runs
 from reduction.report.uncertainty import factor_words
 from reduction.report.view import TestView
-
-__all__ = ["draw_derived", "draw_forms", "draw_single_time"]
 
 _GREY = "#8C8C8C"
 

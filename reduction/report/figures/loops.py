@@ -11,8 +11,6 @@ from reduction.report.style import COLOURS, DASHES, shown
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_VALUES
 
-__all__ = ["draw_loops"]
-
 
 def draw_loops(view: TestView) -> list[Figure]:
     """Draw one figure a specimen; stress where an area is known, else tension."""

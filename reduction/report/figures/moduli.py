@@ -29,8 +29,6 @@ from reduction.report.uncertainty import (
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_NAMES
 
-__all__ = ["BRANCH_COLOURS", "draw_cycle_curves", "draw_moduli"]
-
 BRANCH_COLOURS = {"ascending": COLOURS[0], "descending": COLOURS[1]}
 
 

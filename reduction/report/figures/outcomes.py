@@ -20,8 +20,6 @@ from reduction.report.figure import Figure, Trace, axis, band, line, make_figure
 from reduction.report.outcomeview import OutcomeView, group_names, line_of
 from reduction.report.style import colour, marker, plot_text, shown
 
-__all__ = ["draw_exposure", "draw_lives"]
-
 _POINTS = 81
 _PERCENT = 100.0
 _ALPHA = 0.18

@@ -10,8 +10,6 @@ from reduction.report.style import colour, shown
 from reduction.report.uncertainty import NORMAL, expanded_of, plus_minus_of_tests
 from reduction.report.view import TestView
 
-__all__ = ["draw_pull"]
-
 _GREY = "#8C8C8C"
 
 

@@ -20,8 +20,6 @@ from reduction.report.style import DASHES, colour, marked, shown
 from reduction.report.view import TestView, any_synthetic
 from reduction.vocabulary import BRANCH_NAMES
 
-__all__ = ["draw_ratios", "heights"]
-
 _CYCLES_OF = ", cycles "
 """Between specimen and cycles, in the name of what a ratio is of."""
 

@@ -22,8 +22,6 @@ from reduction.report.style import PHASE_FILLS, Shown, colour, plot_text, shown
 from reduction.report.view import TestView
 from reduction.vocabulary import PHASE_VALUES
 
-__all__ = ["draw_record", "draw_tension_position", "position_of"]
-
 TIME_DIGITS = 9
 MOST_PHASES = 150
 FLAG_POINTS = 400

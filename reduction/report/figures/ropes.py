@@ -10,8 +10,6 @@ from reduction.report.ropeview import RopeView, expanded_property
 from reduction.report.style import colour, marker, plot_text, shown
 from reduction.report.uncertainty import factor_words
 
-__all__ = ["draw_creep", "draw_held_pairs", "draw_stiffness"]
-
 _STIFFNESS = ("original stiffness", "static stiffness", "dynamic stiffness")
 _POINTS = 41
 

@@ -18,8 +18,6 @@ from reduction.report.figure import (
 from reduction.report.style import COLOURS, plot_text
 from reduction.surface.confounding import alias_matrix, half_normal_coordinates
 
-__all__ = ["confounding_words", "draw_effects"]
-
 _GREY = "#8C8C8C"
 _LEAST_ALIAS = 1e-6
 _FULL = 1 - 1e-6

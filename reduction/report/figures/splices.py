@@ -17,8 +17,6 @@ from reduction.report.view import TestView
 from reduction.strain.evaluate import strain_by_model, strain_sensitivity_of
 from reduction.strain.model import StrainModel
 
-__all__ = ["draw_splices"]
-
 _MARK, _METHOD, _OTHER = COLOURS[1], COLOURS[0], COLOURS[6]
 _LENGTH, _BY_TENSION = "relaxed_free_length", "tension-driven"
 _STEPS = 120

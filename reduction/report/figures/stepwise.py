@@ -10,8 +10,6 @@ from reduction.report.uncertainty import NORMAL, expanded_of, plus_minus_of_test
 from reduction.report.view import TestView
 from reduction.vocabulary import BRANCH_VALUES
 
-__all__ = ["OF_STEPS", "draw_steps", "flagged_steps"]
-
 OF_STEPS = "scatter of the readings of length, and of weight where that is stated"
 """What a number of a stepwise test has for itself: there are readings and no cycles."""
 

@@ -21,8 +21,6 @@ from reduction.report.figure import (
 from reduction.report.style import COLOURS, Shown, plot_text
 from reduction.surface.product import ResponseSurfaces
 
-__all__ = ["CONFIDENCE", "draw_checks", "draw_pareto", "term_words"]
-
 CONFIDENCE = 0.95
 _GREY = "#8C8C8C"
 

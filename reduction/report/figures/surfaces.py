@@ -23,8 +23,6 @@ from reduction.surface.product import ResponseSurfaces
 from reduction.surface.tested import ABOVE_LEVERAGE
 from reduction.vocabulary import RESPONSES
 
-__all__ = ["base_response", "draw_contours", "draw_surface", "scale_words"]
-
 _SCALE = [[0.0, "#e4eef6"], [0.5, "#97c4e3"], [1.0, "#3a8fc8"]]
 """Light enough everywhere for dark labels upon it."""
 _INK, _GREY = "#1b1f23", "#8C8C8C"

@@ -19,8 +19,6 @@ from reduction.report.style import DASHES, Shown, colour, marker, plot_text, sho
 from reduction.report.view import TestView, all_specimens, any_synthetic
 from reduction.vocabulary import BRANCH_NAMES
 
-__all__ = ["draw_specimens_together"]
-
 _GRID_POINTS = 400
 _MOST_LABELS = 10
 _MOST_NAMES = 60

@@ -13,8 +13,6 @@ from reduction.report.style import Kind, colour, faded, plot_text, shown
 from reduction.report.uncertainty import NORMAL, expanded_of, plus_minus
 from reduction.report.view import TestView
 
-__all__ = ["LONG", "draw_trends"]
-
 LONG = 100
 """More cycles than this are drawn against the logarithm of their number."""
 _UNDER_LABELS = 0.85

@@ -11,8 +11,6 @@ from reduction.report.figure import Figure, Trace, axis, line, make_figure, plai
 from reduction.report.style import COLOURS, SYMBOLS, Shown, faded, shown
 from reduction.units import UnitSystem
 
-__all__ = ["THEORY_NAMES", "draw_section", "draw_surface", "draw_wave_load", "force_per_length"]
-
 _IMPROVED, _CLASSIC, _DRAG, _WATER, _GREY = (COLOURS[k] for k in (0, 1, 2, 5, 6))
 THEORY_NAMES = {"airy": "Airy", "stokes": "Stokes, second order"}
 _UP = {"horizontal": "along the wave", "vertical": "upwards"}

@@ -1,1 +1,0 @@
-"""Whether raw files and products still belong together."""

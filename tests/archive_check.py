@@ -1,0 +1,133 @@
+"""A written archive against the schema, on the file as it lies on the disk.
+
+A small part of CF, fitted to what `reduction.archive.schema` and its like promise; the whole of CF
+is checked by an outside program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.archive.attributes import CONVENTIONS
+from reduction.archive.open import schema_of_file
+from reduction.archive.variable import Variable
+from reduction.archive.version import SCHEMA_VERSION
+
+_BLOCK = 1 << 20  # values of a long variable that are read at a time
+_CACHE = 1 << 19  # bytes of the largest chunk
+_REQUIRED = ("title", "history", "raw_file_sha256", "settings", "software_version")
+
+
+def check_archive(path: Path) -> list[str]:
+    """Return what is wrong with an archive file, one sentence a finding.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        A netCDF file.
+
+    Returns
+    -------
+    findings : list of str
+        Empty where the file keeps every rule.
+    """
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_maskandscale(False)
+        return [*_global_findings(file), *_variable_findings(file)]
+
+
+def _global_findings(file: netCDF4.Dataset) -> Iterator[str]:
+    if file.groups:
+        yield "the file has groups"
+    if getattr(file, "Conventions", None) != CONVENTIONS:
+        yield f"Conventions is not {CONVENTIONS}"
+    if getattr(file, "schema_version", None) != SCHEMA_VERSION:
+        yield f"schema_version is not {SCHEMA_VERSION}"
+    for name in _REQUIRED:
+        if not getattr(file, name, ""):
+            yield f"global attribute {name} is missing"
+    for name, dimension in file.dimensions.items():
+        if dimension.isunlimited():
+            yield f"dimension {name} is unlimited"
+
+
+def _variable_findings(file: netCDF4.Dataset) -> Iterator[str]:
+    schema = schema_of_file(file.dimensions)
+    for name, variable in file.variables.items():
+        if name not in schema:
+            yield f"{name} is not in the schema"
+            continue
+        row = schema[name]
+        dims = (*row.dims, f"{name}_strlen") if row.is_text else row.dims
+        if variable.dimensions != dims:
+            yield f"{name} has dimensions {variable.dimensions}, not {dims}"
+        yield from _type_findings(name, variable, row)
+        yield from _reference_findings(name, variable, file)
+        if row.flags:
+            yield from _flag_findings(name, variable, row)
+        elif not row.is_bounds and not row.is_text and not getattr(variable, "units", ""):
+            yield f"{name} has no units"
+        if not row.is_bounds and not getattr(variable, "long_name", ""):
+            yield f"{name} has no long_name"
+
+
+def _type_findings(name: str, variable: netCDF4.Variable[Any], row: Variable) -> Iterator[str]:
+    if variable.dtype is str:
+        yield f"{name} holds strings of variable length"
+    elif row.is_text:
+        if variable.dtype != np.dtype("S1"):
+            yield f"{name} is not text"
+        if getattr(variable, "_Encoding", "") != "utf-8":
+            yield f"{name} does not say that it is utf-8"
+    elif variable.dtype != np.dtype(row.dtype):
+        yield f"{name} has type {variable.dtype}, not {row.dtype}"
+
+
+def _reference_findings(
+    name: str, variable: netCDF4.Variable[Any], file: netCDF4.Dataset
+) -> Iterator[str]:
+    for attribute in ("ancillary_variables", "coordinates", "bounds"):
+        for other in str(getattr(variable, attribute, "")).split():
+            if other not in file.variables:
+                yield f"{name} names {other} in {attribute}, which is not there"
+            elif attribute != "bounds" and not set(file.variables[other].dimensions) <= set(
+                variable.dimensions
+            ):
+                yield f"{name} names {other} in {attribute}, which has other dimensions"
+
+
+def _flag_findings(name: str, variable: netCDF4.Variable[Any], row: Variable) -> Iterator[str]:
+    kind = "flag_masks" if row.is_mask else "flag_values"
+    listed = np.atleast_1d(getattr(variable, kind, np.empty(0)))
+    if listed.dtype != variable.dtype:
+        yield f"{name} has {kind} of type {listed.dtype}, not {variable.dtype}"
+    if listed.size != len(str(getattr(variable, "flag_meanings", "")).split()):
+        yield f"{name} has not one meaning for each of its {kind}"
+    if not listed.size:
+        return
+    if any(_has_odd(part, listed, row) for part in _parts(variable)):
+        yield f"{name} has values without a meaning"
+
+
+def _parts(variable: netCDF4.Variable[Any]) -> Iterator[NDArray[Any]]:
+    """Values of a variable, a long one by blocks of its last dimension."""
+    if not variable.ndim:
+        yield np.asarray(variable[...])
+        return
+    if variable.chunking() != "contiguous":
+        variable.set_var_chunk_cache(_CACHE)  # each chunk is read once
+    for start in range(0, variable.shape[-1], _BLOCK):
+        yield np.asarray(variable[..., start : start + _BLOCK])
+
+
+def _has_odd(stored: NDArray[Any], listed: NDArray[Any], row: Variable) -> bool:
+    if row.is_mask:
+        allowed = np.bitwise_or.reduce(listed)
+        return bool(np.bitwise_or.reduce(stored, axis=None) & ~allowed)
+    return not np.isin(stored, listed).all()

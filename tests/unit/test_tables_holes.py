@@ -1,0 +1,20 @@
+"""Why a cell of a table is empty beside a number."""
+
+from reduction.archive.variable import measured
+from reduction.tables.column import Column, uncertainty_of
+from reduction.tables.holes import column_descriptions, lonely_numbers
+from reduction.tables.table import SYNTHETIC
+
+
+def test_an_empty_cell_beside_a_number_has_a_reason_and_a_full_column_needs_none():
+    diameter = Column("diameter", measured("diameter", ("specimen",))[0])
+    columns = [diameter, uncertainty_of(diameter), SYNTHETIC]
+    holed = lonely_numbers(columns, [["0.02", "0.02"], ["", "1e-4"], ["no", "no"]])
+    full = lonely_numbers(columns, [["", "0.02"], ["", "1e-4"], ["no", "no"]])
+    assert (holed, full) == ({1}, set())
+    (_, of_holed, _) = column_descriptions(columns, holed)
+    assert of_holed[-1] == (
+        "is an uncertainty; empty where there is one reading, and nothing is stated of it"
+    )
+    (_, of_full, _) = column_descriptions(columns, full)
+    assert of_full[-1] == "is an uncertainty"
