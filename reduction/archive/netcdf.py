@@ -72,9 +72,10 @@ def _defined(file: netCDF4.Dataset, name: str, variable: xr.Variable) -> netCDF4
         for key in ("zlib", "complevel", "shuffle", "chunksizes")
         if key in encoding
     }
-    # with the sum of each chunk the library refuses values that are not as they were written
+    # with the sum of each chunk the library refuses values that are not as they were written; a
+    # short variable would take several times its size in chunks
     place = file.createVariable(
-        name, kind, dims, fill_value=encoding.get("_FillValue"), fletcher32=bool(dims), **options
+        name, kind, dims, fill_value=encoding.get("_FillValue"), fletcher32=bool(options), **options
     )
     if options:
         place.set_var_chunk_cache(_CACHE)

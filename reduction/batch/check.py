@@ -15,12 +15,10 @@ from reduction.errors import SettingsError
 from reduction.strain.model import StrainModel
 
 
-def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
-    """The surveys that were asked for; a test's name stands for all its steps."""
-    if not tests:
-        return list(surveys)
-    known = {survey.plan.id for survey in surveys}
-    known |= {name.rpartition(".")[0] for name in known if "." in name}
+def refuse_unknown_tests(campaign: Campaign, tests: Sequence[str]) -> None:
+    """Refuse names that are of no test and of no step, before anything is read or written."""
+    known = set(campaign.tests)
+    known |= {step.product(name) for name, plan in campaign.tests.items() for step in plan.steps}
     unknown = sorted(set(tests) - known)
     if unknown:
         raise SettingsError(
@@ -28,6 +26,12 @@ def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Su
             found=", ".join(unknown),
             needed="one of " + ", ".join(sorted(known)),
         )
+
+
+def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
+    """The surveys that were asked for; a test's name stands for all its steps."""
+    if not tests:
+        return list(surveys)
     return [
         survey
         for survey in surveys
@@ -56,6 +60,7 @@ def check_campaign(
     models : dict of (test, specimen) to StrainModel
         How position would become strain.
     """
+    refuse_unknown_tests(campaign, tests)
     surveys = survey_campaign(campaign, progress=progress).surveys
     models, errors = fit_strain_models(campaign, surveys)
     statuses = []

@@ -14,7 +14,7 @@ from reduction.archive.products import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.write import write_whole
 from reduction.batch.asked import products_asked
 from reduction.batch.basis import Basis
-from reduction.batch.check import selected_surveys
+from reduction.batch.check import refuse_unknown_tests, selected_surveys
 from reduction.batch.comparisons import write_comparisons
 from reduction.batch.executor import Workers
 from reduction.batch.experiments import write_experiments
@@ -125,6 +125,7 @@ def run_campaign(
         If the workers or their scheduler are lost.
     """
     progress = progress or Silent()
+    refuse_unknown_tests(campaign, tests)
     with run_lock(processed / campaign.id) as lock:
         try:
             return _run(

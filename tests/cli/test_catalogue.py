@@ -80,7 +80,10 @@ def test_a_broken_archive_is_named_on_standard_error_and_the_rest_is_answered(
     done = command("catalogue", folder, "--kind", "cyclic", "--rebuild", "--json")
     tests = {row["test"] for row in rows_of(done)}
     assert "T-1" in tests and "T-2" not in tests
-    assert done.stderr.startswith("left out: ") and "T-2.nc is not a netCDF file" in done.stderr
+    assert (
+        done.stderr.startswith("left out: ")
+        and "T-2.nc cannot be read as a netCDF file" in done.stderr
+    )
     assert list(json.loads(done.stdout)["unreadable"]) == ["tmt-synthetic/T-2.nc"]
 
 

@@ -98,15 +98,12 @@ def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(reduced, 
     assert statuses["A"]["status"] == "failed" and statuses["A"]["exit_status"] == 3
     assert "A.csv:1001 [crosshead_ft]" in statuses["A"]["message"]
     assert "ovrflw" in done.stderr and "Traceback" not in done.stderr
-    # the marks of A can no longer be used, but B stands as it was made with them
-    assert statuses["B"]["status"] == "unchanged"
-    assert statuses["B"]["message"].startswith("kept as an earlier, complete run made it: A failed")
-    assert (reduced / "processed" / "small" / "B.nc").read_bytes() == beside
     assert (reduced / "processed" / "small" / "A.nc").read_bytes() == old
     with (reduced / "processed" / "small" / "status.csv").open(newline="") as file:
         assert {row["test"]: row["status"] for row in csv.DictReader(file)}["A"] == "failed"
-    # only when it is asked for is B made without them, and says which marks it lacks and why
-    command("run", campaign, "--json", "--force", cwd=reduced)
+    # the marks of A can no longer be used: B is made without them, and says which and why
+    assert statuses["B"]["status"] == "reduced_with_notes"
+    assert (reduced / "processed" / "small" / "B.nc").read_bytes() != beside
     with open_archive(reduced / "processed" / "small" / "B.nc") as archive:
         notes = archive["note"].values.tolist()
     for name in ("new", "used"):
@@ -379,8 +376,8 @@ def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
         ),
         (
             ("check", "https://ann:secret@example.org/c.toml?sig=abc"),
-            "the campaign is an address on the net, and none is fetched unasked; found "
-            "'https://example.org/c.toml'; needed --allow-remote",
+            "this command reads no address on the net; found 'https://example.org/c.toml'; needed "
+            "a file on this machine. Download it first.",
         ),
     ],
 )

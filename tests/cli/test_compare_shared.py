@@ -1,6 +1,5 @@
 """What a test may be wrong by, in its comparison: logs made wrong and compared again."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -238,35 +237,6 @@ def test_that_nothing_is_stated_is_said_where_nothing_is(tmp_path):
     assert any(
         "no uncertainty of the calibration is stated" in one for one in found.validation.notes
     )
-
-
-def changed(path, change):
-    """A copy of an archive with something else in it."""
-    with open_archive(path) as archive:
-        data = archive.load()
-    new = path.with_name(f"old-{path.name}")
-    change(data).to_netcdf(new)
-    return new
-
-
-def test_an_archive_that_kept_no_shared_errors_has_zeros_of_its_channels_and_says_so(tmp_path):
-    campaign, processed = reduced(tmp_path, "")
-
-    def older(data):
-        settings = json.loads(data.attrs["settings"])
-        del settings["uncertainty"]
-        rows = [name for name in data if str(name).endswith("_uncertainty_contribution")]
-        return data.drop_vars(rows).assign_attrs(settings=json.dumps(settings))
-
-    path = changed(processed / "L-64.nc", older)
-    named = compare_archive(path, campaign.hoses["H64"], campaign.comparisons["H64-static"])
-    curve = named.comparison.measured
-    rows = dict(zip((one.source for one in curve.component), curve.contribution_of("midline"),
-                    strict=True))  # fmt: skip
-    assert list(rows) == ["tension_offset", "strain_offset", "strain_gain"]
-    there = np.isfinite(curve.midline_tension)
-    np.testing.assert_allclose(rows["tension_offset"][there], 5 * LBF, rtol=1e-6)
-    assert any("of a version that kept no shared errors" in note for note in named.notes)
 
 
 def test_a_hose_without_a_diameter_says_that_its_instruments_are_left_out(tmp_path):

@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.archive.open import open_archive
 from reduction.batch.run import run_campaign
 from reduction.campaign.load import load_campaign
 
@@ -105,20 +104,6 @@ def test_the_curve_moves_by_what_it_says_where_every_log_reads_1_percent_high(
     # a tenth of the stated gain
     inner = found["tension"] > 0.1 * found["tension"].max()
     assert moved[inner] == pytest.approx(0.1 * np.array(row["contribution"])[inner], rel=0.02)
-
-
-def test_an_archive_that_keeps_nothing_apart_is_named_and_counts_as_its_own(
-    command, gain, tmp_path
-):
-    shutil.copy(gain / "T-2.nc", tmp_path)
-    with open_archive(gain / "T-1.nc") as archive:
-        old = archive.load().drop_vars(
-            [name for name in archive.variables if "_uncertainty_contribution" in str(name)]
-        )
-    old.to_netcdf(tmp_path / "T-1.nc")
-    found = composite(command, tmp_path)
-    assert any(note.startswith("T-1: what is shared with other tests") for note in found["notes"])
-    assert not any(note.startswith("T-2: what is shared") for note in found["notes"])
 
 
 def test_weights_that_are_heavier_than_they_say_are_in_their_curve_whole(command, tmp_path):

@@ -34,4 +34,4 @@ def test_a_run_and_a_report_write_the_page(tmp_path):
     done = reduction(
         "report", tmp_path / "processed", "--reports", tmp_path / "again", cwd=tmp_path
     )
-    assert "T01.nc is not a netCDF file" in page.read_text(encoding="utf-8")
+    assert "T01.nc cannot be read as a netCDF file" in page.read_text(encoding="utf-8")

@@ -121,7 +121,7 @@ def test_an_archive_that_the_report_cannot_read_leaves_the_page_as_it_was(
     spoil(older / "processed" / "short" / "A.nc")
     done = command("report", "processed/short", "--quiet", cwd=older)
     assert done.returncode == 6, "asked for by itself, the page names what it lacks"
-    assert "processed/short/A.nc is not in the report: A.nc is damaged" in done.stderr
+    assert "processed/short/A.nc is not in the report: A.nc cannot be read" in done.stderr
     assert page.read_bytes() != before
 
 

@@ -362,5 +362,5 @@ def test_an_address_without_an_archive_is_told(bucket, command, tmp_path):
 def test_a_broken_archive_is_told_by_its_address(bucket, command, tmp_path):
     bucket.objects["bucket/p/A.nc"] = b"no archive"
     done = command("budget", "s3://bucket/p/A.nc", "--allow-remote", cwd=tmp_path)
-    assert done.stderr.startswith("s3://bucket/p/A.nc is not a netCDF file; found ")
+    assert done.stderr.startswith("s3://bucket/p/A.nc cannot be read as a netCDF file; found ")
     assert str(tempfile.gettempdir()) not in done.stderr

@@ -124,7 +124,9 @@ def test_the_folder_above_names_its_campaigns(archives, tmp_path):
 
 def test_a_file_in_the_folder_that_is_no_archive_is_named(folder):
     (folder / "notes.nc").write_text("not netCDF", encoding="utf-8")
-    with pytest.raises(ArchiveError, match=r"notes.nc is not a netCDF file; found .*; needed"):
+    with pytest.raises(
+        ArchiveError, match=r"notes.nc cannot be read as a netCDF file; found .*; needed"
+    ):
         reduction.open_campaign(folder)
 
 

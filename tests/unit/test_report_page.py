@@ -329,7 +329,7 @@ def test_a_file_that_is_no_archive_is_named_and_the_others_are_shown(report, ric
     page = report(rich_test)
     text = "".join(page.text)
     assert "broken.nc" in text
-    assert "is not a netCDF file" in text
+    assert "cannot be read as a netCDF file" in text
     assert page.rows("Elastic modulus of the rubber")
 
 
